@@ -72,7 +72,7 @@ if [[ -z "$tree" ]]; then
   launcher=()
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  cmake --preset package "${launcher[@]}" --log-level=WARNING >/dev/null
+  cmake --preset package "${launcher[@]}" -DCMAKE_SKIP_RPATH=ON --log-level=WARNING >/dev/null
   cmake --build "$tree" -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-sensor-small chorus-fusion chorus chorus-host pages
 fi
 

@@ -15,15 +15,16 @@
 #include "common/base/strong_id.h"
 #include "common/body/body_frame.h"
 #include "common/sensor/sensor_frame.h"
+#include "common/time/clock_estimate.h"
 #include "common/time/timestamp.h"
 
 namespace chorus {
 
-/// How the answer for an instant was obtained.
+/// How a sensor's bodies at an instant were obtained.
 enum class Basis {
   Exact,         ///< The sensor captured at exactly that instant.
   Interpolated,  ///< The instant is between two captures.
-  Pending,       ///< A later capture may still arrive: ask again.
+  Pending,       ///< A later capture may still arrive; ask again.
   /// There will be none: the sensor is past the instant, or the gap between captures is too wide.
   Lost,
 };
@@ -42,6 +43,9 @@ struct Extrinsics {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
   double error = 0.0;           ///< Sum of the edge errors along the chain [m].
+  /// The best chain that ends with another edge, and its error: why this one was chosen.
+  std::vector<SensorId> next_chain = {};
+  double next_error = 0.0;
   /// Covariance of (rotation vector, sensor position) in world axes, relative to the master [rad^2,
   /// rad m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -57,7 +61,13 @@ struct PairwiseRegistration {
   double icp_rms = 0.0;   ///< Residual after ICP refinement [m].
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
-  double spread = 0.0;     ///< RMS distance of the walk from its centroid, horizontally [m].
+  double spread = 0.0;  ///< RMS distance of the walk from its centroid, horizontally [m].
+  /// How far this pair alone would place a person in front of its source from where all pairs
+  /// together do [m]; none: not known.
+  std::optional<double> apart = {};
+  /// The worst loop closure error of the edge with two others, there and back again [m]; none: it
+  /// is in no such loop.
+  std::optional<double> loop = {};
   double inflation = 1.0;  ///< Because pairs are correlated: number of pairs per independent pair.
   /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad
   /// m, m^2].
@@ -66,17 +76,33 @@ struct PairwiseRegistration {
 
 enum class Verdict { None, Provisional, Good, Refused };
 
-/// How far one sensor's place may be trusted.
+/// How far one sensor's place can be trusted.
 struct SensorVerdict {
   Verdict verdict = Verdict::None;   ///< Refused: the sensor has no place.
   std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
 };
 
-/// The error of one sensor's clock, as found from the walk.
+/// The correction of one sensor's clock, as found from the walk.
 struct ClockOffset {
-  Duration added{0};  ///< After this is added to them, its capture times are by the common clock.
+  Duration added{0};  ///< Common clock minus the sensor's: added to its capture times.
   Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
+  /// The SensorFrame::clock_sigma of the capture times that it was found from.
+  Duration stated = from_seconds(kUnknownClock);
+  /// The shortest time from such a capture time to receipt during the walk; none: not known.
+  std::optional<Duration> least_age = {};
 };
+
+/// Whether the host of these capture times answers with its own time.
+[[nodiscard]] constexpr bool exchanges_time(double clock_sigma) {
+  return clock_sigma < 0.5 * kUnknownClock;
+}
+
+/// Whether the offset holds for capture times of this clock_sigma: it does not if the host has
+/// begun or ceased to answer with its time since, or if its own estimate has become the better one.
+[[nodiscard]] inline bool holds_for(const ClockOffset& clock, double clock_sigma) {
+  return exchanges_time(clock_sigma) == exchanges_time(seconds(clock.stated)) &&
+         clock_sigma > seconds(clock.sigma);
+}
 
 /// The places of all sensors.  It is replaced as a whole, stored, and has a version.
 struct Registration {
@@ -114,10 +140,10 @@ struct SensorView {
 struct Person {
   PersonId id;
   std::vector<SensorView> views;
-  /// Probability that left and right are not exchanged; none if the sides were not resolved.
+  /// Probability that left and right are not swapped; none if the sides were not resolved.
   std::optional<double> sides_confidence = {};
-  /// Set if nobody sees the person: where their middle is expected, world [m].  Then there are no
-  /// views.
+  /// Set if no sensor sees the person: where their middle is expected, world [m].  Then there are
+  /// no views.
   std::optional<Eigen::Vector3d> carried = {};
 };
 
@@ -129,8 +155,8 @@ struct FusedBody {
   std::array<std::uint64_t, kJointCount> contributors{};
   std::optional<std::size_t> slot;  ///< The person's slot in every output; none: no slot.
   std::optional<double> sides_confidence = {};  ///< Copied from Person.
-  /// For how long nobody has seen the person [s]; meanwhile they are where they are expected.  None
-  /// while they are seen.
+  /// For how long no sensor has seen the person [s]; meanwhile they are where they are expected.
+  /// None while they are seen.
   std::optional<double> carried_for = {};
 };
 

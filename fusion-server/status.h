@@ -9,9 +9,27 @@
 #include <vector>
 
 #include "common/base/histogram.h"
+#include "common/time/ntp_status.h"
 #include "fusion-server/flow.h"
 
 namespace chorus {
+
+/// What became of a sensor's frames whose time was not as it should be, since the start.
+struct FrameFates {
+  std::uint64_t late = 0;       ///< Came after a newer one; took its place all the same.
+  std::uint64_t doubled = 0;    ///< Had the capture time of one that was there; left out.
+  std::uint64_t early = 0;      ///< Came from the future; left out.
+  std::uint64_t backwards = 0;  ///< Numbered after the newest, captured before it; left out.
+  std::uint64_t stale = 0;      ///< Came too late to be of use; left out.
+  std::uint64_t restarts = 0;  ///< How often its clock was set back, as three frames in a row said.
+
+  bool operator==(const FrameFates&) const = default;
+};
+
+/// How many frames these left out because of their time, but for doubles.
+[[nodiscard]] constexpr std::uint64_t refused(const FrameFates& fates) {
+  return fates.early + fates.backwards + fates.stale;
+}
 
 struct SensorStatus {
   SensorId id;
@@ -21,27 +39,39 @@ struct SensorStatus {
   bool streaming = false;       ///< True while its frames come by event stream instead of polling.
   std::optional<Duration> age;  ///< Since its newest capture, by our clock; none: no frame yet.
   double rate_hz = 0.0;
-  std::size_t bodies = 0;  ///< In its newest frame.
+  std::size_t bodies = 0;  ///< Number of bodies in its newest frame.
   double weight = 0.0;     ///< Largest Otto weight of its views; only "otto" methods use weights.
   double share = 0.0;  ///< Share of the joints fused in the last second to which it contributed.
   double share_afterwards = 0.0;  ///< The same, including its late frames, as /frame?at= shows it.
   /// Share of the instants that waited for this sensor as long as they could.
   double awaited = 0.0;
-  std::optional<Duration> clock_offset;  ///< Our clock minus the sensor's.
+  /// Our clock minus the sensor's, as its host's answers tell it.
+  std::optional<Duration> clock_offset;
   std::optional<Duration> clock_uncertainty;
-  bool clock_corrected = false;  ///< True if the offset is added to its capture times.
-  std::uint64_t frames = 0;      ///< Delivered since start.
-  std::uint64_t missed = 0;      ///< Gaps in the sensor's frame numbers that were not filled.
-  std::uint64_t refused = 0;     ///< Frames that went back in time or had an implausible time.
-  std::uint64_t failures = 0;    ///< Requests without a usable answer.
+  bool clock_corrected = false;           ///< True if the offset is added to its capture times.
+  std::optional<Duration> walked_offset;  ///< Added beside that because a walk told so.
+  std::optional<Duration> walked_sigma;
+  std::optional<NtpStatus> host;  ///< What the sensor's host says of its own clock.
+  std::uint64_t frames = 0;       ///< Delivered since start.
+  std::uint64_t missed = 0;       ///< Gaps in the sensor's frame numbers that were not filled.
+  std::uint64_t refused = 0;      ///< Frames that went back in time or had an implausible time.
+  FrameFates fates;               ///< Early, backwards and stale ones count as refused, too.
+  std::uint64_t failures = 0;     ///< Requests without a usable answer.
 
-  /// How far from where the others see people it sees them, beyond what is usual for it [m]; none
-  /// until somebody has walked in view of it and of another one.
+  /// Distance between where this sensor and the others see the same people, less what is usual for
+  /// this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
-  std::string alarm;  ///< It was moved, as a sentence for people; empty: it stands as registered.
+  /// That it was moved, as a sentence for people; empty if it stands as registered.
+  std::string alarm;
 
   bool operator==(const SensorStatus&) const = default;
 };
+
+/// All that is known of how far our clock is ahead of the sensor's; none: nothing is.
+[[nodiscard]] inline std::optional<Duration> total_offset(const SensorStatus& sensor) {
+  if (!sensor.clock_offset && !sensor.walked_offset) return std::nullopt;
+  return sensor.clock_offset.value_or(Duration{0}) + sensor.walked_offset.value_or(Duration{0});
+}
 
 enum class SessionState {
   Collecting,  ///< Waiting for somebody to walk long enough.
@@ -54,7 +84,7 @@ enum class SessionState {
 struct PairCoverage {
   SensorId first;
   SensorId second;
-  std::size_t sightings = 0;  ///< Instants at which both saw the one person.
+  std::size_t sightings = 0;  ///< Instants at which both saw the only person.
   double spread = 0.0;        ///< rms radius of these about their centre [m].
   /// Radius inside which one would be placed relative to the other, in 95 % [m].
   double expected = 0.0;
@@ -64,11 +94,21 @@ struct PairCoverage {
 
 /// A square of half a metre of the floor on which somebody walked.
 struct CoveredCell {
-  double x = 0.0;           ///< Of its middle, world [m].
+  double x = 0.0;           ///< x of its middle, world [m].
   double z = 0.0;           ///< [m]
-  std::size_t sensors = 0;  ///< That saw somebody there.
+  std::size_t sensors = 0;  ///< Number of sensors that saw somebody there.
 
   bool operator==(const CoveredCell&) const = default;
+};
+
+/// How well a session places one sensor so far.
+struct SensorAccuracy {
+  SensorId sensor;
+  /// Radius inside which it stands on the floor, relative to the master, in 95 % [m]; none: the
+  /// last provisional solve did not place it.
+  std::optional<double> radius;
+
+  bool operator==(const SensorAccuracy&) const = default;
 };
 
 /// One registration session: its progress, then its outcome.
@@ -83,8 +123,11 @@ struct SessionStatus {
   bool adopted = false;  ///< True if its result is, or was, in use and was not withdrawn.
   /// What the last solve lacked, and what became of its result.
   std::vector<std::string> reasons;
-  std::vector<PairCoverage> pairs;  ///< What the walk has covered; by pairs of sensors ...
-  std::vector<CoveredCell> cells;   ///< ... and from above, once sensors have places.
+  double target_radius = 0.0;  ///< It ends by itself once all are placed this well [m]; 0: never.
+  bool reached = false;        ///< It has ended, or is ending, because they are.
+  std::vector<SensorAccuracy> accuracy;  ///< By its last solve, of all that took part.
+  std::vector<PairCoverage> pairs;       ///< What the walk has covered; by pairs of sensors ...
+  std::vector<CoveredCell> cells;        ///< ... and from above, once sensors have places.
 
   bool operator==(const SessionStatus&) const = default;
 };

@@ -1,4 +1,4 @@
-// The contract's files as compiled in from proto/ (proto/CMakeLists.txt).
+// The files of the contract in proto/, which are compiled in (proto/CMakeLists.txt).
 #pragma once
 
 #include <string_view>

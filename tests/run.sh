@@ -4,8 +4,8 @@
 #   tests/run.sh --sanitize address|thread [ctest arguments]
 #     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
 #   tests/run.sh --workshop
-#     instead: makes the packages, installs them into fresh Debian roots without network, and tests them; then uses five of these as
-#     hosts of a workshop, each with its own network (as root, minutes)
+#     instead: makes the packages, installs them into fresh Debian roots without network, and tests them; boots one under systemd; makes a
+#     container image and runs it; then uses five roots as hosts of a workshop, each with its own network (as root, minutes)
 # CHORUS_JOBS=N limits the build (default: all cores, but no more than the memory can feed).
 # CHORUS_TARGETS="base.file_test ..." builds only these with --sanitize; then choose the same tests by -R.
 set -euo pipefail
@@ -25,6 +25,8 @@ if [ "${1:-}" = --workshop ]; then
   deploy/install-packages.sh build workshop
   python3 -B tests/package/installed_root.py
   export CHORUS_PACKAGES=${CHORUS_PACKAGES:-$PWD/var/packages}
+  python3 -B tests/package/booted.py
+  python3 -B tests/package/container_image.py
   exec python3 -B tests/package/networked_workshop.py
 fi
 

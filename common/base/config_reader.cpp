@@ -178,7 +178,7 @@ void ConfigReader::read(std::string_view key, int& out, int least, int most) {
   const json* value = node_->find(key);
   if (value == nullptr) return;
   if (!value->is_number_integer()) return node_->complain_type(key, "a whole number", *value);
-  const double wide = value->get<double>();  // exact for every int; larger numbers stay large
+  const double wide = value->get<double>();  // exact for every int; larger numbers stay too large
   if (wide < least || wide > most) {
     return node_->complain_type(key, range_text(least, most), *value);
   }

@@ -28,8 +28,8 @@ class ConfigReader {
   /// refused.
   [[nodiscard]] static Result<ConfigReader> parse(std::string_view text, std::string_view origin);
 
-  /// Replaces one value; to be called before it is read: "sensors.0.port=8082" (the --set option of
-  /// every program).
+  /// Replaces one value, as in "sensors.0.port=8082" (the option --set of every program).  Call
+  /// this before the value is read.
   [[nodiscard]] Result<void> set(std::string_view assignment);
 
   void read(std::string_view key, bool& out);

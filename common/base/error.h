@@ -20,7 +20,7 @@ enum class ErrorCode {
   Unsupported,    ///< Well-formed, but we lack this method, version or feature.
   Unauthorized,
   Forbidden,
-  Conflict,     ///< The current state forbids it (for example, a session is running already).
+  Conflict,     ///< The current state forbids it (for example, a session is already running).
   Unavailable,  ///< Not ready, or the other side does not answer; trying again may help.
   Timeout,
   Io,        ///< The operating system reported an error.

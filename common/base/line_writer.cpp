@@ -20,7 +20,7 @@
 namespace chorus {
 namespace {
 
-constexpr int kLookMs = 1000;  // A stuck writer checks this often whether it is still needed.
+constexpr int kLookMs = 1000;  // [ms]; a stuck writer checks this often whether it is still needed.
 
 /// While this exists, new threads begin with all signals blocked: signals are meant for the
 /// program's own threads.
@@ -62,7 +62,7 @@ struct LineWriter::State {
   std::uint64_t untold = 0;            ///< Missing, not yet reported; writer's thread only.
   std::atomic<std::size_t> bytes = 0;  ///< Waiting or being written.
   std::atomic<std::uint64_t> dropped = 0;
-  /// Number of pieces that the reader has taken or that are lost for good.
+  /// Number of pieces that the reader has taken or that are lost for ever.
   std::atomic<std::uint64_t> progress = 0;
   std::atomic<bool> ended = false;
 };

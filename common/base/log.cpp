@@ -137,7 +137,7 @@ constexpr std::chrono::milliseconds kLastPatience{500};
 void flush_on_crash(int signal) {
   if (const LineWriter* writer = sink().writer.load())
     writer->flush_in_signal_handler(kLastPatience);
-  std::raise(signal);  // SA_RESETHAND: this time it ends the process
+  std::raise(signal);  // SA_RESETHAND: this time the signal ends the process
 }
 
 /// Installs the handler only if nothing else, such as a sanitizer, has installed one for the

@@ -9,9 +9,10 @@
 
 namespace chorus {
 
-/// Yaw of the body away from facing the sensor squarely, in (-pi, pi]; 0: chest towards the sensor.
-/// Computed from the line between the shoulders (between the hips when a shoulder is not seen) and
-/// the horizontal line of sight; none when neither line is seen or the line of sight is vertical.
+/// Yaw of the body away from facing the sensor squarely, in (-pi, pi]; 0 means chest towards the
+/// sensor.  Computed from the line between the shoulders (between the hips when a shoulder is not
+/// seen) and the horizontal line of sight; none when neither line is seen or the line of sight is
+/// vertical.
 [[nodiscard]] std::optional<double> facing_angle(const Skeleton<SensorSpace>& body);
 
 /// Horizontal angle of the neck off the optical axis; none when the neck is not seen.

@@ -11,7 +11,8 @@ namespace chorus {
 
 /// Interpolates positions linearly (a ray's direction is then normalised) and orientations by a
 /// sign-aligned LERP where both are given; the state is the worse of the two; s is in [0, 1].  The
-/// result is not tracked when a joint is not given, or when one is a point and the other a ray.
+/// result is not tracked when either joint has no position or direction, or when one is a point and
+/// the other a ray.
 [[nodiscard]] Joint interpolate(const Joint& a, const Joint& b, double s);
 
 /// Interpolates each joint.  `s` is clamped to [0, 1]; NaN counts as 0.

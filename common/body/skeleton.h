@@ -60,7 +60,7 @@ struct Joint {
   }
 };
 
-/// True if there are rays but no point, as from cameras without depth.
+/// True if the body has rays but no point, as from cameras without depth.
 [[nodiscard]] bool has_rays_alone(const std::array<Joint, kJointCount>& joints);
 
 template <class Space>

@@ -23,7 +23,7 @@ cv::Mat marker_picture(const cv::aruco::Dictionary& dictionary, int id) {
   return bits;
 }
 
-/// Adds the black cells of a marker, those beside each other in a row as one.
+/// Adds the black cells of a marker; neighbours in a row become one part.
 void add_marker(const cv::Mat& bits, double left, double top, double side,
                 std::vector<BlackPart>& out) {
   const double cell = side / bits.rows;
@@ -87,7 +87,8 @@ std::vector<BlackPart> black_parts(const Board& board) {
   const double side = board.square_mm;
   const double inset = 0.5 * (board.square_mm - board.marker_mm);
   int id = 0;
-  // Numbered from the upper left, and the square at the lower left is black: OpenCV 4.6.
+  // Markers are numbered from the upper left, and the square at the lower left is black, as in
+  // OpenCV 4.6.
   for (int row = board.rows - 1; row >= 0; --row) {
     for (int column = 0; column < board.columns; ++column) {
       if (row % 2 == column % 2) {

@@ -11,26 +11,26 @@ namespace chorus::calibration {
 
 enum class BoardKind {
   Charuco,    ///< Markers in the white squares: found even if only a part of it is visible.
-  Chessboard  ///< Without markers: must be visible as a whole.
+  Chessboard  ///< Without markers: must be entirely visible.
 };
 
 struct Board {
   BoardKind kind = BoardKind::Charuco;
-  int columns = 8;          ///< Squares, not inner corners.
+  int columns = 8;          ///< Number of squares, not of inner corners.
   int rows = 6;             ///< Squares.
   double square_mm = 30.0;  ///< Side of a square.
   double marker_mm = 22.5;  ///< Side of a marker.
-  int marker_bits = 4;      ///< Of OpenCV's dictionaries DICT_4X4 to DICT_7X7.
+  int marker_bits = 4;      ///< 4 to 7, as in OpenCV's dictionaries DICT_4X4 to DICT_7X7.
 };
 
 /// InvalidArgument names the option to change.
 [[nodiscard]] Result<void> check(const Board& board);
 
-/// Inner corners.
+/// Number of inner corners.
 [[nodiscard]] std::size_t corner_count(const Board& board);
 
-/// The predefined dictionary of OpenCV with the fewest markers that suffice for the board; the
-/// smaller ones are beginnings of the larger.
+/// Size of the smallest predefined dictionary of OpenCV that suffices for the board.  (Each is the
+/// beginning of the next larger one.)
 [[nodiscard]] int markers_in_dictionary(const Board& board);
 
 /// "charuco, 8 x 6 squares of 30 mm, markers of 22 mm (DICT_4X4_50)"
@@ -44,7 +44,7 @@ struct BlackPart {
   double height = 0.0;
 };
 
-/// Everything that is black; where parts touch, together.
+/// Everything that is black; parts that touch are joined.
 [[nodiscard]] std::vector<BlackPart> black_parts(const Board& board);
 
 }  // namespace chorus::calibration

@@ -5,13 +5,13 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/base/units.h"
 #include "common/calibration/board_pattern.h"
 
 namespace chorus::calibration {
 namespace {
 
 constexpr std::size_t kLeastCorners = 8;
-constexpr double kMetre = 1e-3;
 
 cv::Mat grey_of(const cv::Mat& picture) {
   if (picture.channels() == 1) return picture;
@@ -67,7 +67,7 @@ std::vector<Corner> BoardFinder::Pattern::find_chessboard(const cv::Mat& grey) c
           grey, inner, pixels,
           cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK))
     return {};
-  // The window stays within a square of its corner, or it would see the neighbours.
+  // The search window must not reach neighbouring corners, so it is smaller than a square.
   double step = std::max(grey.cols, grey.rows);
   for (std::size_t i = 1; i < pixels.size(); ++i)
     step = std::min(step, cv::norm(pixels[i] - pixels[i - 1]));
@@ -78,7 +78,7 @@ std::vector<Corner> BoardFinder::Pattern::find_chessboard(const cv::Mat& grey) c
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const auto column = static_cast<double>(i % static_cast<std::size_t>(inner.width));
     const auto row = static_cast<double>(i / static_cast<std::size_t>(inner.width));
-    const double square = board.square_mm * kMetre;
+    const double square = mm(board.square_mm);
     out.push_back({{column * square, row * square}, {pixels[i].x, pixels[i].y}});
   }
   return out;
@@ -103,7 +103,7 @@ std::vector<Corner> BoardFinder::find(const cv::Mat& picture) const {
     return {};  // a picture that is too small for its filters
   }
   if (corners.size() < kLeastCorners) return {};
-  return spread_out(corners, pattern_->board.square_mm * kMetre) ? corners : std::vector<Corner>();
+  return spread_out(corners, mm(pattern_->board.square_mm)) ? corners : std::vector<Corner>();
 }
 
 }  // namespace chorus::calibration

@@ -4,10 +4,12 @@
 
 #include <opencv2/aruco/charuco.hpp>
 
+#include "common/base/units.h"
+
 namespace chorus::calibration {
 
 std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board) {
-  // The enumeration counts DICT_4X4_50, _100, _250, _1000, DICT_5X5_50, ...
+  // The enumeration runs DICT_4X4_50, _100, _250, _1000, DICT_5X5_50, ...
   const auto size =
       std::find(kDictionarySizes.begin(), kDictionarySizes.end(), markers_in_dictionary(board));
   const auto step = static_cast<int>(size - kDictionarySizes.begin());
@@ -17,10 +19,9 @@ std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board) {
 }
 
 std::shared_ptr<cv::aruco::CharucoBoard> charuco_of(const Board& board) {
-  constexpr double kMetre = 1e-3;
   return cv::aruco::CharucoBoard::create(
-      board.columns, board.rows, static_cast<float>(board.square_mm * kMetre),
-      static_cast<float>(board.marker_mm * kMetre), dictionary_of(board));
+      board.columns, board.rows, static_cast<float>(mm(board.square_mm)),
+      static_cast<float>(mm(board.marker_mm)), dictionary_of(board));
 }
 
 }  // namespace chorus::calibration

@@ -13,7 +13,7 @@ class CharucoBoard;
 
 namespace chorus::calibration {
 
-/// Markers in the predefined dictionaries of each number of bits.
+/// Numbers of markers in the predefined dictionaries; the same for each number of bits.
 inline constexpr std::array kDictionarySizes{50, 100, 250, 1000};
 
 [[nodiscard]] std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board);

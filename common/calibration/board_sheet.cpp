@@ -29,7 +29,7 @@ constexpr std::array kPages{Page{"A4", 210, 297}, Page{"A3", 297, 420}, Page{"A2
                             Page{"A1", 594, 841}, Page{"A0", 841, 1189}};
 constexpr std::array kLetter{Page{"Letter", 215.9, 279.4}};
 
-/// The page, turned if need be; none if none is large enough.
+/// The smallest page that fits, in either orientation; none if none is large enough.
 std::optional<Page> page_for(double width, double height, bool letter) {
   const auto holds = [&](const Page& page) {
     return width + 2 * kMargin <= page.width && height + 2 * kMargin + kRulerStrip <= page.height;
@@ -64,7 +64,7 @@ std::string drawing(const Board& board, const Page& page) {
   return out;
 }
 
-/// A PDF of numbered objects, with its table of where each begins.
+/// A PDF: numbered objects, and a table of the offsets at which they begin.
 class Pdf {
  public:
   void object(const std::string& text) {
@@ -85,7 +85,7 @@ class Pdf {
   std::vector<std::size_t> begins_;
 };
 
-/// CRC-32 as PNG has it (ISO 3309).
+/// CRC-32 as used in PNG (ISO 3309).
 std::uint32_t crc_of(const std::string& bytes) {
   std::uint32_t crc = 0xFFFFFFFFU;
   for (const char c : bytes) {
@@ -101,7 +101,7 @@ std::string big_endian(std::uint32_t value) {
   return out;
 }
 
-/// The chunk that says how many pixels a metre has, so that programs print the real size.
+/// The chunk with the number of pixels per metre, so that programs print the true size.
 std::string resolution_chunk() {
   const auto per_metre = static_cast<std::uint32_t>(std::lround(kDots * 1000.0 / kInch));
   const std::string body = "pHYs" + big_endian(per_metre) + big_endian(per_metre) + '\1';

@@ -1,4 +1,4 @@
-// A board as a file to print, in its real size.
+// A board as a file to print, in its true size.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace chorus::calibration {
 
-/// A page of PDF: the smallest of A4 to A0, or Letter if that is wanted, that holds the board with
-/// a margin, and a ruler to check the printer.  TooLarge when no page does.
+/// A PDF of one page with the board, a margin, and a ruler to check the printer.  The page is the
+/// smallest of A4 to A0, or Letter if that is wanted.  TooLarge when the board does not fit.
 [[nodiscard]] Result<std::string> board_pdf(const Board& board, bool letter = false);
 
-/// A PNG of 300 dots per inch, which it states, with a white margin of half a square.
+/// A PNG at 300 dots per inch (stated in the file), with a white margin of half a square.
 [[nodiscard]] Result<std::string> board_png(const Board& board);
 
 }  // namespace chorus::calibration

@@ -16,7 +16,7 @@ constexpr double kOddView = 2.5;      // times the median error of the views
 constexpr double kGoodViewPx = 0.25;  // a view this good is never left out
 constexpr std::size_t kTerms = 9;     // fx fy cx cy k1 k2 p1 p2 k3
 
-/// What OpenCV answers.
+/// The output of OpenCV.
 struct Solution {
   Intrinsics camera;
   std::array<double, kTerms> sigma{};
@@ -45,8 +45,8 @@ Points for_opencv(const std::vector<const View*>& views) {
   return out;
 }
 
-/// Against the picture's plane: a board beside the middle that is parallel to it tells nothing of
-/// the focal length, although it is seen obliquely.
+/// Tilt against the picture's plane, not against the line of sight: a board parallel to that plane
+/// says nothing about the focal length, even if it is off-centre and therefore seen obliquely.
 double tilt_of(const cv::Mat& turn) {
   cv::Mat rotation;
   cv::Rodrigues(turn, rotation);
@@ -89,7 +89,7 @@ Solution solve(const std::vector<const View*>& views, PictureSize size, bool wit
   return out;
 }
 
-/// Estimates k3 if it is known better than to a third of itself and improves the fit.
+/// Estimates k3 if its standard deviation is below a third of its value and it improves the fit.
 Solution solve_well(const std::vector<const View*>& views, PictureSize size) {
   Solution plain = solve(views, size, false);
   Solution full = solve(views, size, true);
@@ -119,7 +119,7 @@ std::vector<const View*> used_of(const Calibration& calibration) {
   return used;
 }
 
-/// Writes what was found about the used views to them.
+/// Writes each used view's error and tilt to `out`.
 void tell(const Solution& solution, Calibration& out) {
   std::size_t i = 0;
   for (SolvedView& each : out.views) {
@@ -132,7 +132,7 @@ void tell(const Solution& solution, Calibration& out) {
   out.error_px = solution.error;
 }
 
-/// Leaves out the odd ones; how many there were.
+/// Leaves out the odd views and returns their number.
 std::size_t leave_out(const Solution& solution, Calibration& out, std::size_t most) {
   const auto odd = odd_views(solution.view_errors, most);
   std::vector<SolvedView*> used;

@@ -1,5 +1,5 @@
 // The lens of a camera from views of a board (Z. Zhang, "A flexible new technique for camera
-// calibration", 2000, as OpenCV has it), and whether it may be trusted.
+// calibration", 2000, as implemented in OpenCV), with its uncertainty.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace chorus::calibration {
 
 struct SolvedView {
   View view;
-  double error_px = 0.0;  ///< Root mean square of its corners' distance from where they should be.
-  double tilt = 0.0;      ///< Of the board against the picture's plane [rad].
+  double error_px = 0.0;  ///< Root mean square reprojection error of its corners.
+  double tilt = 0.0;      ///< Angle between the board and the picture's plane [rad].
   bool used = true;       ///< False: left out, because it does not fit the others.
 };
 
@@ -23,7 +23,7 @@ struct Calibration {
   Intrinsics intrinsics;
   /// Standard deviations, in the intrinsics' units: fx, fy, cx, cy, k1, k2, p1, p2, k3.
   std::array<double, 9> sigma{};
-  double error_px = 0.0;  ///< Over all used views.
+  double error_px = 0.0;  ///< Root mean square over all used views.
   std::vector<SolvedView> views;
 
   /// Standard deviation of the focal length, relative to it.

@@ -13,7 +13,7 @@ constexpr std::uint32_t kFocalOn35mm = 0xA405;  // tag
 constexpr double kFilmWidth = 36.0;             // [mm]
 constexpr double kFilmHeight = 24.0;
 
-/// A TIFF file: numbers in its own byte order; what lies outside is 0.
+/// A TIFF file: reads numbers in the file's byte order; numbers beyond its end are 0.
 class Tiff {
  public:
   explicit Tiff(std::string_view bytes) : bytes_(bytes), little_(bytes.starts_with("II")) {}

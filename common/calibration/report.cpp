@@ -10,7 +10,7 @@
 namespace chorus::calibration {
 namespace {
 
-/// `parts`: of a unit.  Divided at the end, so that the nearest double is written in few digits.
+/// Rounds to 1/`parts`.  Divides last, so that the result prints in few digits.
 double rounded(double value, double parts) { return std::round(value * parts) / parts; }
 
 void draw_thirds(cv::Mat& picture) {
@@ -27,7 +27,7 @@ void draw_thirds(cv::Mat& picture) {
 
 std::string intrinsics_json(const Intrinsics& camera, double focal_sigma) {
   constexpr double kPixels = 1e3;
-  constexpr double kTerms = 1e6;
+  constexpr double kRounding = 1e6;
   nlohmann::ordered_json out{{"width", camera.width},
                              {"height", camera.height},
                              {"fx", rounded(camera.fx, kPixels)},
@@ -35,7 +35,7 @@ std::string intrinsics_json(const Intrinsics& camera, double focal_sigma) {
                              {"cx", rounded(camera.cx, kPixels)},
                              {"cy", rounded(camera.cy, kPixels)},
                              {"distortion", nlohmann::ordered_json::array()}};
-  for (const double term : camera.distortion) out["distortion"].push_back(rounded(term, kTerms));
+  for (const double term : camera.distortion) out["distortion"].push_back(rounded(term, kRounding));
   // Rounded up: 0 would say that it is known exactly.
   out["focal_sigma_percent"] = std::ceil(focal_sigma * 1e4) / 100.0;
   return out.dump(1) + "\n";

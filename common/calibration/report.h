@@ -1,4 +1,4 @@
-// What a calibration found, for people and for programs.
+// The result of a calibration, for people and for programs.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ namespace chorus::calibration {
 /// device.camera.intrinsics.
 [[nodiscard]] std::string intrinsics_json(const Intrinsics& camera, double focal_sigma);
 
-/// A PNG as large as the pictures: every corner, green where it belongs to a used view and red
-/// where to one that was left out, and lines between the thirds.
+/// A PNG as large as the pictures: every corner, green in used views and red in views that were
+/// left out, and lines between the thirds.
 [[nodiscard]] Result<std::string> coverage_png(const std::vector<SolvedView>& views,
                                                PictureSize size);
 

@@ -10,10 +10,11 @@ namespace chorus::calibration {
 namespace {
 
 constexpr double kThird = 1.0 / 3.0;
-constexpr double kWidest = 0.2;    // focal length by the picture's longer side: 136 degrees
+constexpr double kWidest = 0.2;    // smallest focal length relative to the picture's longer side: a
+                                   // field of view of 136 degrees
 constexpr double kNarrowest = 12;  // 5 degrees
 
-/// A strip of the picture: its name, and which share of a side it takes.
+/// A third of the picture: its name, and the part of a side that it covers.
 struct Strip {
   const char* name;
   int axis;  ///< 0: of the width, 1: of the height.

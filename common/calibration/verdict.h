@@ -13,17 +13,17 @@ struct Demands {
   std::size_t views = 12;
   std::size_t tilted_views = 3;
   double tilt = 0.35;          ///< A view counts as tilted from here [rad]: 20 degrees.
-  double share = 0.04;         ///< Of the corners that each third of the picture needs.
+  double share = 0.04;         ///< Share of all corners that each third of the picture must have.
   double focal_sigma = 0.01;   ///< Relative.
   double error_share = 0.001;  ///< Mean error, relative to the picture's longer side.
 };
 
-/// One sentence for each weakness, saying what to do: "no board in the left third ..."; none: the
-/// calibration is good.
+/// One sentence for each weakness, saying what to do ("no board in the left third ..."); empty if
+/// the calibration is good.
 [[nodiscard]] std::vector<std::string> weaknesses(const Calibration& calibration,
                                                   const Demands& demands = {});
 
-/// The same of views that are too few for a calibration.
+/// The same for views that are too few for a calibration.
 [[nodiscard]] std::vector<std::string> missing_views(const std::vector<View>& views,
                                                      PictureSize size, const Demands& demands = {});
 

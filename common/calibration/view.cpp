@@ -9,12 +9,13 @@
 namespace chorus::calibration {
 namespace {
 
-/// Closer than this, two views say the same: a few hundredths of the picture, or some degrees.
+/// Two views closer than this add no information: a few hundredths of the picture, or some degrees.
 constexpr double kSame = 0.05;
 
-/// How the board lies in the picture: the affine map from board to picture, by the picture's width
-/// and the board's size (a tilt shortens one of its directions); how much larger one side of the
-/// board appears than the other, which tells a tilt from its opposite; and the centre.
+/// How the board appears in the picture: the affine map from board to picture, relative to the
+/// picture's width and the board's size (a tilt shortens one direction); how much larger one side
+/// of the board appears than the other, which distinguishes a tilt from its opposite; and the
+/// centre.
 using Look = Eigen::Matrix<double, 8, 1>;
 
 struct Affine {
@@ -42,7 +43,7 @@ Affine affine_of(const View& view) {
   return out;
 }
 
-/// g in pixel = (A b) (1 - g.b): how the scale falls along the board [1/m].
+/// g in pixel = (A b) (1 - g.b): how the scale decreases along the board [1/m].
 Eigen::Vector2d fall_of(const View& view, const Affine& map) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-12;
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
@@ -57,7 +58,7 @@ Eigen::Vector2d fall_of(const View& view, const Affine& map) {
 }
 
 Look look_of(const View& view, PictureSize size) {
-  constexpr double kAcross = 4.0;  // a board's width by the deviation of its corners
+  constexpr double kAcross = 4.0;  // a board's width relative to the deviation of its corners
   const Affine map = affine_of(view);
   const auto count = static_cast<double>(view.corners.size());
   const double extent = kAcross * std::sqrt(map.scatter.trace() / count);

@@ -1,4 +1,4 @@
-// One picture of a board, as corners; and which of many pictures to use.  Pure.
+// The corners of a board in one picture, and the choice among many pictures.  Pure.
 #pragma once
 
 #include <string>
@@ -25,8 +25,8 @@ struct PictureSize {
   bool operator==(const PictureSize&) const = default;
 };
 
-/// At most `most` views, each as different from the others as possible in place, size and tilt of
-/// the board; in their order.  A board that stands still counts once.
+/// At most `most` views, as different from each other as possible in position, size and tilt of the
+/// board; in the original order.  A board that does not move counts once.
 [[nodiscard]] std::vector<View> varied_views(const std::vector<View>& views, PictureSize size,
                                              std::size_t most);
 

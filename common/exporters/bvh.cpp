@@ -81,7 +81,7 @@ class BvhWriter {
 
   const SkeletonFit& fit_;
   const BvhOptions& options_;
-  /// The joints in the order of the hierarchy, in which the channels follow, too.
+  /// The joints in the order of the hierarchy, which is also that of the channels.
   std::vector<std::size_t> order_;
   std::string text_ = "HIERARCHY\n";
 };

@@ -12,7 +12,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-// The parameters may fill so many blocks, because one byte counts these.
+// Largest number of blocks for the parameters, because one byte counts them.
 constexpr std::size_t kMaxBlocks = 255;
 constexpr std::size_t kMaxPersons = 100;
 constexpr std::size_t kLabelsPerParameter = 255;  // A dimension is stored in a byte.
@@ -34,7 +34,7 @@ void append_float(std::string& bytes, float value) {
   append_word(bytes, bits >> 16);
 }
 
-/// The content of a parameter: type, dimensions, values.
+/// A parameter's type, dimensions and values.
 struct Content {
   int type = 2;  ///< -1: text, 1: bytes, 2: words, 4: floats.
   std::vector<std::size_t> dimensions;
@@ -202,7 +202,7 @@ std::string header_of(const Take& take, std::size_t data_start) {
   return header;
 }
 
-void append_joint(std::string& bytes, const Joint& joint, double variance) {
+void append_point(std::string& bytes, const Joint& joint, double variance) {
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     append_float(bytes, joint.seen() ? static_cast<float>(to_mm(joint.position[axis])) : 0.0f);
   float residual = -1.0f;
@@ -232,7 +232,7 @@ Result<std::string> c3d_of(const Take& take) {
     for (const PersonTrack& track : take.persons) {
       const Pose& pose = track.poses[f];
       for (std::size_t j = 0; j < kJointCount; ++j)
-        append_joint(bytes, pose.skeleton.joints[j], pose.variance[j]);
+        append_point(bytes, pose.skeleton.joints[j], pose.variance[j]);
     }
   }
   bytes.resize((bytes.size() + kBlock - 1) / kBlock * kBlock, '\0');

@@ -4,8 +4,8 @@
 // are counted in POINT:LONG_FRAMES and in the fields of TRIAL; more than 255 points are named in
 // POINT:LABELS2 and so on.  A joint that is not tracked is 0 0 0 with residual -1.  The residual is
 // the standard deviation over all three axes, sqrt(3 variance), rounded to 1..255 mm, if the
-// variance is known, else 0 ("interpolated or modelled").  X_SCREEN +X and Y_SCREEN +Y say that +y
-// is up.  Several persons have labels P1:Head, P2:Head, ... and a group SUBJECTS.
+// variance is known, otherwise 0 ("interpolated or modelled").  X_SCREEN +X and Y_SCREEN +Y say
+// that +y is up.  Several persons have labels P1:Head, P2:Head, ... and a group SUBJECTS.
 #pragma once
 
 #include <string>

@@ -13,12 +13,11 @@ namespace {
 constexpr std::string_view kHeader =
     "frame,time_s,utc,person,joint,state,x_m,y_m,z_m,qx,qy,qz,qw,sd_mm\n";
 constexpr std::array<std::string_view, 3> kStates{"NotTracked", "Inferred", "Tracked"};
-constexpr int kTimeDigits = 6;
 constexpr int kMetreDigits = 6;
 constexpr int kTurnDigits = 6;
 constexpr int kDeviationDigits = 3;
 
-void append_joint(std::string& row, const Joint& joint, double variance) {
+void append_columns(std::string& row, const Joint& joint, double variance) {
   const JointState state = joint.seen() ? joint.state : JointState::NotTracked;
   row.append(",").append(kStates[static_cast<std::size_t>(state)]);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -49,7 +48,7 @@ std::string csv_of(const Take& take) {
       const Pose& pose = track.poses[f];
       for (std::size_t j = 0; j < kJointCount; ++j) {
         text.append(who).append(kJointNames[j]);
-        append_joint(text, pose.skeleton.joints[j], pose.variance[j]);
+        append_columns(text, pose.skeleton.joints[j], pose.variance[j]);
       }
     }
   }

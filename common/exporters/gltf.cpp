@@ -9,7 +9,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr double kThickness = 0.08;  // Width of an octahedron, as a fraction of the bone's length.
-constexpr double kWaist = 0.2;       // Where it is widest, as a fraction of that length.
+constexpr double kWaist = 0.2;       // Position of the widest part, as a fraction of that length.
 constexpr std::array<std::array<double, 3>, 6> kColours{{{0.90, 0.45, 0.13},
                                                          {0.16, 0.50, 0.73},
                                                          {0.20, 0.63, 0.33},

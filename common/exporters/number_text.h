@@ -6,6 +6,9 @@
 
 namespace chorus::exporters {
 
+/// Of a time [s]: microseconds.
+inline constexpr int kTimeDigits = 6;
+
 /// Appends a number with `digits` after the point; 0 if it is not finite.
 void append_fixed(std::string& text, double value, int digits);
 

@@ -14,7 +14,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr double kMinBone = 1e-4;           // [m]; a shorter bone has no direction
-constexpr int kProcrustesRounds = 3;        // After this many, the shape no longer changes.
+constexpr int kProcrustesRounds = 3;        // After this many rounds the shape no longer changes.
 constexpr std::size_t kShapeFrames = 2000;  // enough for a mean shape
 constexpr double kFootOut = 0.3;
 
@@ -44,7 +44,8 @@ Eigen::Vector3d t_pose_direction(JointId end) {
   return Eigen::Vector3d::UnitY();  // the spine points up
 }
 
-/// Median distance of two joints over the frames that have both; none if there is no such frame.
+/// Median distance between two joints over the frames that have both; none if there is no such
+/// frame.
 std::optional<double> bone_length(const PersonTrack& track, JointId a, JointId b) {
   std::vector<double> lengths;
   for (const Pose& pose : track.poses) {
@@ -105,8 +106,9 @@ Eigen::Quaterniond turn_between(const BonePairs& pairs, const Eigen::Quaterniond
   return nearest_rotation(cross + kLikely * cross.norm() * likely.toRotationMatrix());
 }
 
-/// Replaces the rest offsets of one joint's children by the mean of the shapes in which they are
-/// seen.
+/// Points the rest offset of each child in the mean direction in which that child was seen, over a
+/// sample of the frames in which all children were seen, each turned back to the rest pose.  The
+/// lengths of the bones stay.
 void average_shape(const PersonTrack& track, std::vector<FittedJoint>& joints, std::size_t joint,
                    const std::vector<std::size_t>& children) {
   std::vector<Eigen::Vector3d> sums(children.size(), Eigen::Vector3d::Zero());

@@ -11,7 +11,7 @@
 //   frames   root position = SpineBase.  From the root down, a joint with one child turns by the
 //            shortest arc that points the bone at the fused child, seen from the joint's place in
 //            the chain; a joint with several children takes the rotation that fits all of them
-//            best (Kabsch): so pelvis and chest get their twist from the hip and shoulder lines,
+//            best (Kabsch), so pelvis and chest get their twist from the hip and shoulder lines,
 //            wrists from the thumb.  The points do not show the twist of arms, thighs and shins
 //            about themselves; it stays zero relative to the parent.
 // A joint that is not seen keeps its last local rotation; without SpineBase the whole pose is kept.

@@ -8,7 +8,6 @@ namespace chorus::exporters {
 namespace {
 
 constexpr int kRateDigits = 6;
-constexpr int kTimeDigits = 6;
 constexpr int kCoordinateDigits = 5;  // decimals of millimetres
 
 std::string properties(const Take& take, std::size_t markers) {

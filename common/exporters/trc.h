@@ -1,4 +1,5 @@
-// TRC: Motion Analysis' table of markers, as OpenSim reads it.  Tabs, three columns per marker, mm.
+// TRC: the marker table of Motion Analysis, as OpenSim reads it.  Tabs, three columns per marker,
+// mm.
 //
 // Rows: the file type; the names of the file's properties; their values; the names of the markers;
 // X1 Y1 Z1 ...; an empty row; then rows of frame number, seconds since the start, and coordinates.

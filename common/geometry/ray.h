@@ -1,4 +1,4 @@
-// Half-lines from an eye point, and the point where several of them meet.
+// Half-lines from an eye point, and the point nearest to several of them.
 #pragma once
 
 #include <optional>

@@ -13,8 +13,8 @@ namespace chorus {
 /// Unit quaternion nearest to q; identity when q is zero or not finite.
 [[nodiscard]] Eigen::Quaterniond normalised_or_identity(const Eigen::Quaterniond& q);
 
-/// True when all four parts are finite and the norm is within 1e-3 of 1.  Not so for the leaf
-/// joints of the Kinect, whose orientation is 0 0 0 0.
+/// True when all four parts are finite and the norm is within 1e-3 of 1.  False for the leaf joints
+/// of the Kinect, whose orientation is 0 0 0 0.
 [[nodiscard]] bool is_unit(const Eigen::Quaterniond& q);
 
 /// Rotation vector of q: axis times angle, angle in [0, pi].
@@ -38,7 +38,8 @@ namespace chorus {
 /// Rotation about +y by `yaw` [rad].
 [[nodiscard]] Eigen::Quaterniond about_y(double yaw);
 
-/// Yaw of b_from_a about +y: atan2(R(0,2), R(2,2)), i.e. where +z is sent in the x-z plane.
+/// Yaw of b_from_a about +y: atan2(R(0,2), R(2,2)), i.e. the direction of the rotated +z axis in
+/// the x-z plane.
 [[nodiscard]] double yaw_of(const Eigen::Matrix3d& b_from_a);
 
 /// Angle wrapped to (-pi, pi].

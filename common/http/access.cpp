@@ -67,7 +67,7 @@ bool is_reading(const RequestHead& head) {
 }
 
 /// The token in the request.  Browsers attach Basic credentials to any request that any page makes,
-/// so these never allow writing, not even by the GET that opens a WebSocket.
+/// so these never allow writing, nor opening a WebSocket by GET.
 std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
   if (const auto bearer = credentials(head, "bearer")) return std::string(*bearer);
   const bool reads = needed != Role::Control && is_reading(head);

@@ -55,7 +55,7 @@ struct Guard {
 /// (DNS rebinding).
 [[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& names);
 
-/// The names under which this host is asked (net::names_of).
+/// The names by which clients may address this host (net::names_of).
 [[nodiscard]] std::vector<std::string> host_names();
 
 /// True for a request that comes from one of this service's own pages.

@@ -12,7 +12,7 @@
 namespace chorus::http {
 namespace {
 
-// Connections accepted beyond the limit: they may read what is vital and get 503 for the rest.
+// Connections accepted beyond the limit.  They may read vital paths and get 503 for all others.
 constexpr std::size_t kReserve = 32;
 constexpr std::size_t kReservePerAddress = 4;
 // Descriptors for everything besides HTTP clients: polled sensors, tracker outputs, files, the log.
@@ -80,8 +80,9 @@ void ServerCore::welcome(net::Socket socket) {
   connection->start_in_reserve();
 }
 
-/// Closes one idle connection.  `of_its_address`: one of the newcomer's address; otherwise one of
-/// the address with the most connections.  Among those, the one that has been idle longest.
+/// Closes one idle connection.  With `of_its_address` it is one of the newcomer's address,
+/// otherwise one of the address with the most connections.  Among those, the one that has been idle
+/// longest.
 bool ServerCore::close_an_idle_one(const Connection* newcomer, bool of_its_address) {
   std::shared_ptr<Connection> least;
   std::size_t most = 0;

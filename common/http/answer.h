@@ -1,5 +1,4 @@
-// One answer, ready to be written: a few header lines of its own, then bytes shared between
-// answers.
+// One answer, ready to be written: a few header lines of its own, then bytes that answers share.
 #pragma once
 
 #include <memory>
@@ -20,13 +19,13 @@ struct Answer {
   std::string_view body = {};
   std::shared_ptr<const void> owner = {};     ///< Keeps `own` and `body` alive.
   std::shared_ptr<const FileBody> file = {};  ///< Sent after `body`.
-  /// When set, Server-Timing tells the age of the capture at sending.
+  /// When set, Server-Timing shows the age of the capture at sending.
   std::optional<Timestamp> captured = {};
   /// Close after this answer, because the beginning of the next request is unknown.
   bool close = false;
 };
 
-/// What the first lines of an answer contain that is known only when it is sent.
+/// The contents of an answer's first lines that are known only when it is sent.
 struct AnswerStamp {
   Timestamp received;  ///< When the request was complete: t1 of the clock field.
   Timestamp sent;      ///< t2, and Date.

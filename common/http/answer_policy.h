@@ -1,4 +1,4 @@
-// What the owner of a server adds to its answers besides what HTTP requires.
+// What the owner of a server adds to its answers beyond what HTTP requires.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 namespace chorus::http {
 
 struct AnswerPolicy {
-  /// The name of a header field that tells clients our clock, as "t1 t2" in UTC nanoseconds: when
+  /// The name of a header field that shows clients our clock, as "t1 t2" in UTC nanoseconds: when
   /// the request was complete and when the answer left.  Empty: no such field.
   std::string clock_field = {};
   std::string resource_lines = {};  ///< Header lines, each with CR LF, for every known path.

@@ -200,7 +200,7 @@ void AsyncClient::Impl::arm(std::chrono::milliseconds time, std::string_view doi
   timer.async_wait(
       [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
         if (cancelled || self->attempt != mine || !self->callback) return;
-        // The timer was set again after it expired but before this handler ran: the newer wait
+        // The timer was set again after it had expired but before this handler ran; the newer wait
         // counts.
         if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
         self->finish(

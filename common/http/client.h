@@ -36,7 +36,7 @@ struct Url {
 
 struct ClientRequest {
   std::string method = "GET";
-  std::string target = {};  ///< Empty: the target of the Url in fetch(), else "/".
+  std::string target = {};  ///< Empty: the target of the Url in fetch(), otherwise "/".
   std::vector<Header> headers = {};
   std::string body = {};
 };

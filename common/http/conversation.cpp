@@ -194,7 +194,7 @@ std::string Conversation::handshake() const {
   return handshake_of(head_, unread().substr(request_size_));
 }
 
-/// True when the sender of this request has room for it; beyond the limits, only for a vital path.
+/// True if this request is within the limits of its sender; beyond them, only if its path is vital.
 bool Conversation::may_ask() {
   if (peer_.proxy) {
     if (const auto account = forwarded_account(head_)) {
@@ -219,7 +219,7 @@ void Conversation::advance_body() {
   const auto wanted = static_cast<std::size_t>(head_.content_length) - body_.size();
   buffer_.take_body(request_size_, wanted, body_);
   if (body_.size() < head_.content_length) {
-    // A head that nearly fills the buffer leaves no room for reading the body.
+    // A head that fills the buffer leaves no room for reading the body.
     if (buffer_.full())
       return refuse(status::kFieldsTooLarge, "shorten the header fields of a request with a body");
     return read();

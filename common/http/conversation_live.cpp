@@ -53,8 +53,8 @@ void Conversation::end_wait(Answer answer) {
   send(std::move(answer));
 }
 
-/// Keeps reading while there is nothing to answer, to notice when the client leaves.  Not if the
-/// buffer contains more requests, because compact() must be possible then.
+/// Keeps reading while there is nothing to answer, to notice when the client leaves; but not if the
+/// buffer contains more requests, because compact() must then be possible.
 void Conversation::watch() {
   if (unread().size() == request_size_) read();
 }
@@ -72,8 +72,8 @@ void Conversation::begin_stream() {
 
 void Conversation::push_event() {
   if (event_under_way_) {
-    // The last event is still being written when the next version is published: only the newest
-    // version waits, those in between are skipped.
+    // If the last event is still being written when new versions are published, only the newest
+    // version waits; those in between are skipped.
     if (now_ >= deadline_) return hang_up();
     if (event_pending_) count(context_.counters.events_skipped);
     event_pending_ = true;

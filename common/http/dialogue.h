@@ -33,11 +33,11 @@ class Dialogue {
 /// with a problem document.
 using Opener = std::function<Result<std::unique_ptr<Dialogue>>(const std::string& address)>;
 
-/// How a pattern's WebSockets are answered.
+/// How the WebSockets of a pattern are served.
 struct DialogueRoute {
   Opener open;
   std::string protocol;                       ///< The protocol's name in Sec-WebSocket-Protocol.
-  std::size_t max_message_bytes = 64 * 1024;  ///< Longer messages disconnect their client.
+  std::size_t max_message_bytes = 64 * 1024;  ///< A longer message disconnects its client.
 };
 
 /// A client that does not read is disconnected when this many bytes are waiting for it.

@@ -85,7 +85,7 @@ void add_line(std::string& out, std::string_view name, std::string_view value) {
 }
 
 /// Runs an action once, on whichever thread comes first; an action that throws may be tried again.
-/// Not std::call_once: with it the thread sanitizer hangs when the action throws.
+/// std::call_once is not used, because the thread sanitizer hangs when its action throws.
 class Once {
  public:
   template <class Action>

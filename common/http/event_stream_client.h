@@ -19,7 +19,7 @@ class AsyncEventStream {
  public:
   struct Handlers {
     /// Gets the status, the fields and the time stamps of the answer's head, even if the answer is
-    /// no event stream.
+    /// not an event stream.
     std::function<void(const ClientResponse&)> on_head;
     std::function<void(std::vector<ServerEvent>)> on_events;  ///< Never empty.
     /// The last call for a stream.  Unsupported: the answer is not an event stream.

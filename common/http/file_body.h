@@ -1,4 +1,4 @@
-// A file as the body of an answer: it is read piece by piece while it is sent, and never held whole
+// A file as the body of an answer: it is read piece by piece while it is sent, and never entirely
 // in memory.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace chorus::http {
 /// length that it had at first.
 class FileBody {
  public:
-  /// NotFound for anything other than a regular file.
+  /// NotFound if it is not a regular file.
   [[nodiscard]] static Result<std::shared_ptr<const FileBody>> open(
       const std::filesystem::path& path);
   ~FileBody();

@@ -14,7 +14,7 @@
 
 namespace chorus::http {
 
-/// The Request for a handler; `path` is decoded already.  Malformed when the query is malformed.
+/// The Request for a handler; `path` must already be decoded.  Malformed: the query is.
 [[nodiscard]] Result<Request> request_of(const RequestHead& head, const Peer& peer,
                                          std::string_view path);
 

@@ -17,7 +17,7 @@ class LiveDocument {
   [[nodiscard]] DocumentPtr current() const;
   void publish(DocumentPtr next);
 
-  /// `on_change` is called after each publish on the publisher's thread, so it must not do more
+  /// `on_change` is called after each publish on the publisher's thread, so it should do no more
   /// than post a task.
   void subscribe(std::function<void()> on_change);
 

@@ -19,8 +19,8 @@
 namespace chorus::http {
 
 struct ServerLimits {
-  /// Lower when the system allows fewer descriptors.  A few connections beyond the limit are
-  /// accepted, only to answer 503 or a request for a vital path (Router::vital).
+  /// Lower if the system allows fewer descriptors.  A few connections beyond the limit are
+  /// accepted, only to answer with 503, or to serve a vital path (Router::vital).
   std::size_t max_connections = 2000;
   std::size_t max_per_address = 64;  ///< Does not apply to loopback and trusted proxies.
   std::size_t max_long_polls = 1500;
@@ -87,7 +87,7 @@ struct ServerCounters {
   std::uint64_t closed_for_room = 0;  ///< Idle connections closed to make room for others.
   /// TLS handshakes that were broken off, malformed, or refused by the client.
   std::uint64_t handshakes_failed = 0;
-  /// The most connections at once that the descriptors allow.
+  /// Largest number of simultaneous connections that the descriptors allow.
   std::uint64_t connections_limit = 0;
 };
 
@@ -110,7 +110,7 @@ class Server {
   /// nothing on a server without TLS.
   void set_identity(tls::Identity identity);
 
-  /// Whether the server's thread has done the task that the last call posted; posts the next one.
+  /// True if the server's thread has done the task that the last call posted; posts the next one.
   /// If calls are seconds apart, false means that the thread hangs.  Call it from one thread only.
   [[nodiscard]] bool alive();
 

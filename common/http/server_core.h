@@ -23,7 +23,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes);
 
   [[nodiscard]] Result<void> listen();
-  /// Starts what must always be running (accepting, sweeping) if it is not running.
+  /// Starts accepting and sweeping, which must always run, if they are not running.
   void ensure();
   void welcome(net::Socket socket);
   /// From now on counts the connection for `account`, which a trusted proxy named; false when that
@@ -41,7 +41,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   void wait_for(std::size_t entry, std::shared_ptr<Connection> connection);
   void stop_waiting(std::size_t entry, const Connection* connection);
   void forget(const Connection* connection);
-  /// Puts `by` in the place of a connection; both are the same client, which stays counted once.
+  /// Replaces a connection with `by`.  Both are the same client, which is still counted once.
   void replace(const Connection* connection, std::shared_ptr<Connection> by);
   void begin_stop();
 

@@ -46,7 +46,7 @@ struct FileState {
   bool operator==(const FileState&) const = default;
 };
 
-/// NotFound for anything other than a regular file; a FIFO would block its reader forever.
+/// NotFound if it is not a regular file: a FIFO would block its reader forever.
 Result<FileState> state_of(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode))

@@ -9,8 +9,8 @@
 namespace chorus::http {
 
 /// Ten wrong tokens from one address are checked without delay; after that, one a second.  In
-/// between not even the right token is checked, because the answer would reveal that it is right.
-/// After the first few thousand addresses, all further ones are counted as one.
+/// between no token is checked, not even the right one, because the answer would reveal that it is
+/// right.  After the first few thousand addresses, all further ones are counted as one.
 class TokenTries {
  public:
   using Time = std::chrono::steady_clock::time_point;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMaxSaid = 4096;  ///< Limit of one message from a client.
 /// Beast ends a broken or closed conversation by waiting for the client to hang up.  At this
 /// interval we check whether the conversation is over, and then hang up ourselves.
-constexpr std::chrono::milliseconds kLook{250};
+constexpr std::chrono::milliseconds kOverCheck{250};
 constexpr std::string_view kMediaType = "application/json";
 
 class WebSocketConnection final : public Connection {
@@ -33,7 +33,7 @@ class WebSocketConnection final : public Connection {
   enum class State { Opening, Open, Closing, Closed };
 
   void listen();
-  void look_again() { deadline_ = core_.now + kLook; }
+  void look_again() { deadline_ = core_.now + kOverCheck; }
   void push();
   void on_pushed(net::error_code failed);
   void pushed();

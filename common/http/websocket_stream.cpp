@@ -10,7 +10,7 @@
 
 #include "common/net/token_bucket.h"
 
-// How Beast ends and closes a stream of ours; it finds these by the namespace of the stream.
+// Beast calls these to end and close a stream of ours; it finds them by the stream's namespace.
 namespace chorus::net {
 
 inline void beast_close_socket(Stream& stream) { stream.close(); }
@@ -96,8 +96,8 @@ void WebSocketStream::write(std::string_view text, Done done) {
       });
 }
 
-/// Not done by Beast: its close waits for its read, and a read that meets a broken frame at that
-/// moment waits for the close, whatever happens to the socket (1.74: close.hpp, read.hpp).
+/// Does not use Beast's close, which waits for its read, while a read that meets a broken frame at
+/// that moment waits for the close, whatever happens to the socket (1.74: close.hpp, read.hpp).
 bool WebSocketStream::say_goodbye(Goodbye code) {
   if (beast_->writing || !is_open()) return false;
   const auto number = static_cast<std::uint16_t>(code);

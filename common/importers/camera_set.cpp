@@ -14,7 +14,6 @@ namespace chorus::importers {
 namespace {
 
 constexpr std::size_t kMaxCameras = 64;  // As many as a Snapshot can name.
-constexpr double kMaxPixels = 1e5;
 constexpr double kRotationSlack = 1e-3;  // Largest |R R^T - 1|; files round.
 
 Result<Eigen::Matrix3d> read_matrix(const nlohmann::json& rows, double bound,
@@ -35,7 +34,7 @@ Result<int> read_size(const nlohmann::json& camera, const char* key, const std::
   const auto value = member(camera, key, at);
   if (!value) return pass(value);
   std::array<double, 1> size{};
-  const auto read = read_numbers(nlohmann::json::array({**value}), size, kMaxPixels, at);
+  const auto read = read_numbers(nlohmann::json::array({**value}), size, kMaxPixel, at);
   if (!read) return pass(read);
   if (size[0] < 1.0) return fail(ErrorCode::Malformed, at, "image sizes must be 1 or more.");
   return static_cast<int>(size[0]);
@@ -48,13 +47,13 @@ Result<Intrinsics> read_intrinsics(const nlohmann::json& camera, const std::stri
   if (!height) return pass(height);
   const auto k = member(camera, "K", at);
   if (!k) return pass(k);
-  const auto matrix = read_matrix(**k, kMaxPixels, at + ".K");
+  const auto matrix = read_matrix(**k, kMaxPixel, at + ".K");
   if (!matrix) return pass(matrix);
   const auto distortion = member(camera, "distortion_k1k2p1p2k3", at);
   if (!distortion) return pass(distortion);
   Intrinsics out{*width,          *height, (*matrix)(0, 0), (*matrix)(1, 1), (*matrix)(0, 2),
                  (*matrix)(1, 2), {}};
-  const auto read = read_numbers(**distortion, out.distortion, kMaxPixels, at + ".distortion");
+  const auto read = read_numbers(**distortion, out.distortion, kMaxPixel, at + ".distortion");
   if (!read) return pass(read);
   if (out.fx <= 0.0 || out.fy <= 0.0)
     return fail(ErrorCode::Malformed, at + ".K", "focal lengths must be positive.");

@@ -11,8 +11,6 @@
 namespace chorus::importers {
 namespace {
 
-constexpr BodyId kOnlyBody{1};
-
 /// How a body is made of landmarks.
 struct Form {
   bool rays;

@@ -84,7 +84,7 @@ Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
   return set;
 }
 
-/// Whether an input was left empty by whoever wrote it: no reason to stop the others.
+/// True if the input was written empty, which is no reason to refuse the others.
 bool is_empty(const std::filesystem::path& input, const Error& why) {
   std::error_code ignored;
   if (std::filesystem::is_directory(input, ignored)) return why.code == ErrorCode::NotFound;

@@ -63,11 +63,12 @@ struct ImportedSet {
 };
 
 /// Reads a set of files.  Usually each input is one sensor.  For pose2sim the only input is the
-/// folder. For c3d, bvh and mvnx, and for a single csv or ndjson file without a floor, the only
+/// folder.  For c3d, bvh and mvnx, and for a single csv or ndjson file without a floor, the only
 /// input is a file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs
 /// would be the same sensor or have the same numbers.  The notes of every recording say when the
-/// set begins and how long it lasts (set_origin, set_period_ns), so that several replays loop in
-/// step.  If files count from the start of one sensor, the time between them is kept.
+/// set begins and how long it lasts (set_origin, set_period_ns), so that several replays stay in
+/// step when they loop.  If files count from the start of one sensor, the time between them is
+/// kept.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
                                                const std::vector<std::filesystem::path>& inputs,
                                                const ImportOptions& options = {});

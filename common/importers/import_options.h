@@ -30,6 +30,12 @@ struct ImportLimits {
 /// noise.  Tighter than kMaxCoordinate, because these files do not state their unit.
 inline constexpr double kMaxImported = 100.0;
 
+/// Limit of the time from the first frame of a recording to its last: a week [s].
+inline constexpr double kMaxSeconds = 7 * 24 * 3600.0;
+
+/// The id of the person in formats that know only one.
+inline constexpr BodyId kOnlyBody{1};
+
 struct ImportOptions {
   std::optional<SensorId> sensor;   ///< None: sensor_named_after(file).
   std::optional<FloorPlane> floor;  ///< In sensor space; put into every frame.

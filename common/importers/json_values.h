@@ -14,6 +14,9 @@
 
 namespace chorus::importers {
 
+/// Limit of a coordinate, length or focal length in a picture [px].
+inline constexpr double kMaxPixel = 1e5;
+
 /// Reads a whole document; errors name the file and, for broken syntax, line and column.
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file,
                                                std::uintmax_t max_bytes);

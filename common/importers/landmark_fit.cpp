@@ -97,7 +97,7 @@ Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected, const Intrins
 
 Covariance fit_error(const Joint& joint) {
   constexpr double kAcross = 0.025;  // [m]
-  constexpr double kOfRange = 0.06;  // [1], of the distance
+  constexpr double kOfRange = 0.06;  // relative to the distance
   constexpr double kInferred = 2.0;  // Factor for an Inferred joint.
   const double range = joint.position.norm();
   if (!joint.seen() || !(range > 0.0)) return {};

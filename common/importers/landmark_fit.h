@@ -2,9 +2,9 @@
 //
 // The detector gives the body in metres about its hips and, separately, the pixel of each landmark.
 // The pose that projects the body onto these pixels places it in front of the camera.  Its depth is
-// as good as the detector's guess of the person's size (decimetres), its bearing as good as the
-// pixels. So each landmark takes its depth from the fit and its lateral place from its own pixel
-// ray.  The lateral error is then 15-35 mm, against 31-48 mm for the rigid fit
+// as accurate as the detector's guess of the person's size (decimetres), its bearing as accurate as
+// the pixels.  So each landmark takes its depth from the fit and its lateral position from its own
+// pixel ray.  The lateral error is then 15-35 mm, against 31-48 mm for the rigid fit
 // (tests/bench/accuracy/real_bench.cpp).
 #pragma once
 
@@ -27,9 +27,8 @@ enum class Lateral {
                                               const Intrinsics& intrinsics,
                                               Lateral lateral = Lateral::PixelRay);
 
-/// The error of a joint made of fitted landmarks: 25 mm across the line of sight, and 6 % of the
-/// distance along it, because of a wrong guess of the person's size; twice as much for an Inferred
-/// joint.
+/// The error of a joint made from fitted landmarks: 25 mm across the line of sight, and 6 % of the
+/// distance along it, because the person's size is a guess; twice as much for an Inferred joint.
 [[nodiscard]] Covariance fit_error(const Joint& joint);
 
 /// Only the rays through the landmarks' pixels, in sensor space; without such a ray, a landmark is

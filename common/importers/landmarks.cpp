@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "common/importers/import_options.h"
 #include "common/importers/json_values.h"
 #include "common/importers/uniform_clock.h"
 
 namespace chorus::importers {
 namespace {
 
-constexpr double kMaxPixel = 1e5;
-constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 constexpr int kMaxHz = 1000;
 
 /// Reads 33 arrays of three numbers each.

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "common/base/parse.h"
+#include "common/importers/import_options.h"
 #include "common/importers/text_rows.h"
 #include "common/motion/bvh.h"
 #include "common/motion/c3d.h"
@@ -23,7 +24,6 @@ namespace {
 
 constexpr std::size_t kShownLabels = 40;
 constexpr double kNanosecondsPerSecond = 1e9;
-constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 
 /// What every reader returns: one motion per person, all of the same length.
 struct Captured {

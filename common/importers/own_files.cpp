@@ -18,7 +18,6 @@
 namespace chorus::importers {
 namespace {
 
-constexpr double kLongest = 7 * 24 * 3600.0;  // [s]
 constexpr std::array<std::string_view, 3> kStates{"NotTracked", "Inferred", "Tracked"};
 constexpr std::array<std::string_view, 3> kPosition{"x_m", "y_m", "z_m"};
 constexpr std::array<std::string_view, 4> kTurn{"qx", "qy", "qz", "qw"};
@@ -29,7 +28,7 @@ Result<Timestamp> instant_of(const Table& row, const ImportOptions& options) {
     if (!utc) return row.wrong("utc", "is not a UTC time such as 2026-11-22T07:30:00.033Z");
     return *utc;
   }
-  const auto since = row.number("time_s", kLongest);
+  const auto since = row.number("time_s", kMaxSeconds);
   if (!since) return pass(since);
   if (!*since) return row.wrong("time_s", "is missing, and so is utc");
   return options.start + from_seconds(**since);
@@ -132,8 +131,8 @@ Result<void> read_joint_rows(LineReader& lines, const ImportOptions& options,
   }
 }
 
-Result<void> read_frames(LineReader& lines, const ImportOptions& options,
-                         record::FrameRecording& recording) {
+Result<void> read_ndjson_lines(LineReader& lines, const ImportOptions& options,
+                               record::FrameRecording& recording) {
   recording.notes["time"] = "UTC as recorded";
   while (const auto line = lines.next_filled()) {
     const auto document = resource::read_frame(*line, resource::Format::Json);
@@ -201,7 +200,7 @@ Result<void> read_azure_rows(LineReader& lines, const ImportOptions& options,
     const auto person = table->natural("body_idx", 1);
     if (!person) return pass(person);
     if (!first) first = *stamp;
-    if (*stamp < *first || static_cast<double>(*stamp - *first) > 1e6 * kLongest)
+    if (*stamp < *first || static_cast<double>(*stamp - *first) > 1e6 * kMaxSeconds)
       return table->wrong("timestamp", "goes back, or jumps by more than a week");
     auto skeleton = azure_body(*table, **layout);
     if (!skeleton) return pass(skeleton);
@@ -221,7 +220,7 @@ Result<record::FrameRecording> read_joint_csv(const std::filesystem::path& file,
 
 Result<record::FrameRecording> read_frame_lines(const std::filesystem::path& file,
                                                 const ImportOptions& options) {
-  return read_text_recording(file, options, {"frames (ndjson)", {}, "line", read_frames});
+  return read_text_recording(file, options, {"frames (ndjson)", {}, "line", read_ndjson_lines});
 }
 
 Result<record::FrameRecording> read_azure_kinect_csv(const std::filesystem::path& file,

@@ -1,5 +1,5 @@
-// Reads two simple formats, which `chorus export --format csv` and `chorus fuse --out X.ndjson`
-// write, and in which other trackers' data can be imported.
+// Reads two simple formats, in which other trackers' data can be imported.  `chorus export --format
+// csv` and `chorus fuse --out X.ndjson` write them, too.
 //
 // CSV: one row per joint; the first row names the columns; docs/guide/recording.md explains them.
 // NDJSON: one /frame document per line (proto/README.md, section 3).

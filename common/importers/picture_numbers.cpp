@@ -17,8 +17,8 @@ using Runs = std::vector<std::string>;
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// The runs of a name; `shape`: the name with a # for each, so that runs of names with the same
-/// shape mean the same.
+/// The runs of digits in a name.  `shape` becomes the name with each run replaced by #; in names
+/// with the same shape, the runs have the same meaning.
 Runs runs_of(const std::string& name, std::string& shape) {
   Runs runs;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -35,7 +35,7 @@ std::optional<std::uint64_t> number_of(const std::string& run) {
   return run.size() <= kLongestNumber ? parse_number<std::uint64_t>(run) : std::nullopt;
 }
 
-/// The run that numbers these names, which have the same shape; none if no run does.
+/// The run that numbers these names, which all have the same shape; none if no run does.
 std::optional<std::size_t> numbering_run(const std::vector<const Runs*>& names) {
   const Runs& first = *names.front();
   for (std::size_t run = first.size(); names.size() > 1 && run-- > 0;) {

@@ -19,14 +19,15 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kMaxPixel = 1e5;
 constexpr double kMaxConfidence = 1e3;  // some networks exceed 1, which then counts as 1
 constexpr std::uint64_t kMostId = 1'000'000'000;
-constexpr double kLongest = 1e7;  // [s] from the first picture: 115 days; more fits no Timestamp
-/// Standard deviation of a landmark by the height of its person: about 8 px at 500 px.
+// [s] after the first picture: 115 days; more does not fit a Timestamp.
+constexpr double kLongest = 1e7;
+/// Standard deviation of a landmark, relative to the height of the person: about 8 px at 500 px.
 constexpr double kSigmaByHeight = 0.016;
 constexpr double kLeastSigma = 2.0;  // [px]
-constexpr double kOutside = 0.2;     // share of landmarks outside of the picture: another size
+// If this share of the landmarks is outside the picture, the size is wrong.
+constexpr double kOutside = 0.2;
 
 struct Count {
   std::size_t points;
@@ -40,13 +41,12 @@ const std::array<Count, 6> kCounts{{{17, &layout::kCoco17},
                                     {136, &layout::kHalpe26}}};
 
 using People = std::vector<PosePerson>;
-/// By the number of the picture.
+/// People, by the number of the picture.
 struct Pictures {
   double rate_hz = 30.0;
   std::map<std::uint64_t, People> people = {};
 
-  /// Malformed: no number of a picture.  Conflict: another picture has that number, and nobody can
-  /// tell which one is meant.
+  /// Malformed: `number` is not that of a picture.  Conflict: another picture has that number.
   [[nodiscard]] Result<void> add(std::uint64_t number, People&& found, const std::string& at) {
     if (!(static_cast<double>(number) <= kLongest * rate_hz))
       return fail(ErrorCode::Malformed, at,
@@ -77,7 +77,7 @@ Result<PosePerson> checked(PosePerson person, const std::string& at) {
 
 double confidence_of(double value) { return std::clamp(value, 0.0, 1.0); }
 
-/// An id of a tracker: a number, or an array with one; negative or absurdly large: none.
+/// A tracker's id: a number, or an array with one; none if it is negative or absurdly large.
 std::optional<std::uint64_t> id_in(const json& person) {
   for (const char* key : {"person_id", "track_id"}) {
     const auto found = person.find(key);
@@ -142,7 +142,7 @@ Result<People> read_people(const json& list, const std::string& at) {
   return people;
 }
 
-/// The list of pictures in a video's file; none if the document is of one picture.
+/// The list of pictures in a video's file; none if the document describes a single picture.
 const json* pictures_in(const json& document) {
   const json* list = &document;
   if (document.is_object()) {
@@ -171,7 +171,7 @@ Result<void> read_video(const json& list, const std::string& at, Pictures& out) 
   return {};
 }
 
-/// `number`: of the picture, for a file of one picture.
+/// `number` is that of the picture, for a file that describes a single one.
 Result<void> read_document(const fs::path& file, std::uint64_t number, const ImportLimits& limits,
                            Pictures& out) {
   const std::string at = file.string();
@@ -224,7 +224,7 @@ Result<Pictures> read_pictures(const fs::path& input, double rate_hz, const Impo
                                 : "holds no file that can be used; the first: " + damage.first);
 }
 
-/// Refuses landmarks that are not pixels of such pictures.
+/// Refuses landmarks that do not fit the picture size of `camera`.
 Result<void> check_size(const Pictures& pictures, const Intrinsics& camera, const std::string& at) {
   std::size_t sure = 0;
   std::size_t outside = 0;

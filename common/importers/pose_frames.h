@@ -1,12 +1,12 @@
-// Landmarks in pictures, as OpenPose, RTMPose (RTMLib, Pose2Sim) and MMPose write them: one JSON
-// file a picture in a folder a camera, or one file a video.  They become rays.
+// Landmarks in pictures, as OpenPose, RTMPose (RTMLib, Pose2Sim) and MMPose write them: a folder
+// per camera with one JSON file per picture, or one file per video.  They become rays.
 //
 //   OpenPose  {"people": [{"person_id": [-1], "pose_keypoints_2d": [u, v, confidence, ...]}]}
 //   MMPose    [{"keypoints": [[u, v], ...], "keypoint_scores": [...]}] for a picture;
 //             [{"frame_id": 0, "instances": [...]}] or {"instance_info": [...]} for a video
 //
-// The layout follows from how many landmarks a person has: BODY_25, COCO 17 and 18, HALPE 26, and
-// the bodies of COCO wholebody (133) and HALPE (136).
+// The layout follows from the number of landmarks of a person: BODY_25, COCO 17 and 18, HALPE 26,
+// and the bodies of COCO wholebody (133) and HALPE (136).
 #pragma once
 
 #include <filesystem>
@@ -19,13 +19,13 @@ namespace chorus::importers {
 
 struct PoseCamera {
   Intrinsics intrinsics;
-  double rate_hz = 30.0;  ///< Pictures a second.
+  double rate_hz = 30.0;  ///< Pictures per second.
 };
 
 /// One camera.  A picture's number is in its file's name (picture_numbers.h), or its "frame_id";
-/// number 0 is at options.start.  Conflict when two pictures have the same.  A damaged file has no
-/// frame; the note "damage.1" counts them and names the first.  NotFound when no file can be used;
-/// InvalidArgument when the landmarks do not lie in pictures of the intrinsics' size.
+/// number 0 is at options.start.  Conflict when two pictures have the same number.  A damaged file
+/// yields no frame; the note "damage.1" counts them and names the first.  NotFound when no file can
+/// be used; InvalidArgument when the landmarks do not lie in pictures of the intrinsics' size.
 [[nodiscard]] Result<record::FrameRecording> read_pose_frames(const std::filesystem::path& input,
                                                               const PoseCamera& camera,
                                                               const ImportOptions& options = {});

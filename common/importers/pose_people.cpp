@@ -8,7 +8,8 @@
 namespace chorus::importers {
 namespace {
 
-constexpr double kNear = 0.5;    // of a person's size, from one picture to the next
+// Share of a person's size that the person may move from one picture to the next.
+constexpr double kNear = 0.5;
 constexpr int kRemembered = 30;  // pictures
 constexpr double kSure = 0.1;    // lowest confidence of a point that counts here
 
@@ -61,13 +62,14 @@ void PeopleNumbers::follow(const std::vector<PosePerson>& people,
 
 std::vector<std::uint64_t> PeopleNumbers::number(const std::vector<PosePerson>& people) {
   std::vector<std::uint64_t> numbers(people.size(), 0);
-  // Also in pictures of nobody, or of people with ids: whoever was there is forgotten in time.
+  // Done even if the picture shows nobody, or people with ids, so that people are forgotten in
+  // time.
   std::erase_if(known_, [](const Known& each) { return each.missed > kRemembered; });
   for (Known& each : known_) ++each.missed;
   if (!people.empty() && all_have_their_own_id(people)) {
     for (std::size_t i = 0; i < people.size(); ++i) {
       numbers[i] = *people[i].id;
-      last_ = std::max(last_, numbers[i]);  // our own must not be the tracker's of somebody else
+      last_ = std::max(last_, numbers[i]);  // our numbers must differ from the tracker's ids
     }
     return numbers;
   }

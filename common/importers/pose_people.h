@@ -1,4 +1,4 @@
-// People in pictures, as pose estimators write them, and the same person from picture to picture.
+// People in pictures, as pose estimators write them, and their identity from picture to picture.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,20 @@ namespace chorus::importers {
 
 struct PosePoint {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double confidence = 0.0;  ///< 0: not found; at most 1.
+  double confidence = 0.0;  ///< In [0, 1]; 0: not found.
 };
 
 struct PosePerson {
   std::vector<PosePoint> points;         ///< In the order of a layout.
-  std::optional<std::uint64_t> id = {};  ///< As the file says, if it does.
+  std::optional<std::uint64_t> id = {};  ///< As stated in the file, if it is.
 };
 
-/// Numbers people who are numbered anew in every picture: each keeps the number of the nearest
-/// person of the pictures before, if that is within half of their height.
+/// Numbers people consistently where a file numbers them from scratch in every picture: each gets
+/// the number of the nearest person of the pictures before, if that person is within half a body
+/// height.
 class PeopleNumbers {
  public:
-  /// One number for each, none twice; the ids of the file, where all have one.
+  /// A different number for each; the file's ids, if all people have one.
   [[nodiscard]] std::vector<std::uint64_t> number(const std::vector<PosePerson>& people);
 
  private:
@@ -31,15 +32,15 @@ class PeopleNumbers {
     std::uint64_t number = 0;
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
     double size = 0.0;  ///< Diagonal of the box around the points [px].
-    int missed = 0;     ///< Pictures since.
+    int missed = 0;     ///< Number of pictures since the person was last seen.
   };
-  /// A person of this picture who may be one of those before.
+  /// A person of this picture and one of earlier pictures who may be the same.
   struct Pair {
     double distance = 0.0;  ///< [px]
     std::size_t person = 0;
     std::size_t known = 0;
   };
-  /// Nearest first.
+  /// The possible pairs, nearest first.
   [[nodiscard]] std::vector<Pair> pairs(const std::vector<PosePerson>& people) const;
   void follow(const std::vector<PosePerson>& people, std::vector<std::uint64_t>& numbers);
 

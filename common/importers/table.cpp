@@ -6,19 +6,13 @@
 #include <fmt/format.h>
 
 #include "common/base/parse.h"
+#include "common/importers/text_rows.h"
 
 namespace chorus::importers {
 namespace {
 
 constexpr std::size_t kMaxColumns = 1024;
-constexpr std::size_t kShownFieldBytes = 24;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \r") - first + 1);
-}
 
 /// The separator that is most frequent in the first row; a comma if none is.
 char separator_of(std::string_view header) {
@@ -35,7 +29,7 @@ void Table::split(std::string_view line) {
   fields_.clear();
   while (fields_.size() <= kMaxColumns) {
     const auto end = line.find(separator_);
-    fields_.push_back(trimmed(line.substr(0, end)));
+    fields_.push_back(trimmed(line.substr(0, end), " \r"));
     if (end == std::string_view::npos) return;
     line.remove_prefix(end + 1);
   }

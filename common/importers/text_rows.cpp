@@ -11,15 +11,6 @@
 namespace chorus::importers {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";
-constexpr std::size_t kShownFieldBytes = 24;  // Limit for quoting a wrong field in a message.
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
 /// Cuts the next field off `rest`; none when no field is left.
 std::optional<std::string_view> cut_field(std::string_view& rest, char separator, bool first) {
   if (separator == ' ') {
@@ -40,6 +31,12 @@ std::optional<std::string_view> cut_field(std::string_view& rest, char separator
 }
 
 }  // namespace
+
+std::string_view trimmed(std::string_view text, std::string_view blanks) {
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
 
 Result<std::string> read_bounded(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   std::error_code failed;

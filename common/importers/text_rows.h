@@ -14,6 +14,12 @@
 
 namespace chorus::importers {
 
+inline constexpr std::size_t kShownFieldBytes = 24;  ///< Limit for quoting a wrong field.
+inline constexpr std::string_view kBlanks = " \t\r";
+
+/// The text without the blanks at both ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text, std::string_view blanks = kBlanks);
+
 /// Reads a whole file; refuses one that is larger than max_bytes, missing, or not a regular file.
 [[nodiscard]] Result<std::string> read_bounded(const std::filesystem::path& file,
                                                std::uintmax_t max_bytes);

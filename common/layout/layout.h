@@ -1,5 +1,6 @@
-// Skeleton layouts: which landmarks a tracker provides, in which order, and how our joints are made
-// of them.  Each layout's table is in its own file, with the published source of the order.
+// Skeleton layouts: which landmarks a tracker provides, in which order, and how our joints are
+// computed from them.  Each layout's table is in its own file, with the published source of the
+// order.
 #pragma once
 
 #include <array>
@@ -58,10 +59,10 @@ struct Landmark {
   Covariance covariance = {};
 };
 
-/// Makes our joints of landmarks, which are in the layout's order; landmarks missing at the end are
-/// not tracked.  A joint is as certain as its least certain landmark.  Its covariance assumes that
-/// the landmarks' errors are independent, and is known if all their covariances are.  Of rays, the
-/// directions are averaged: for landmarks at different depths the result is only nearly the ray to
+/// Computes our joints from landmarks in the layout's order; landmarks missing at the end are not
+/// tracked.  A joint is as certain as its least certain landmark.  Its covariance assumes that the
+/// landmarks' errors are independent, and is known if all their covariances are.  For rays, the
+/// directions are averaged; with landmarks at different depths the result is only nearly the ray to
 /// their centre (off by 3 mm for hips at 3 m).  Landmarks have no orientation, so the joints have
 /// none.
 [[nodiscard]] std::array<Joint, kJointCount> joints_of(const Layout& layout,

@@ -29,7 +29,7 @@ constexpr std::array kRecipes{
 
 }  // namespace
 
-/// Confidence is "visibility"; MediaPipe guesses an invisible landmark, it never leaves it out.
+/// Confidence is "visibility"; MediaPipe guesses invisible landmarks instead of leaving them out.
 const Layout kMediapipe{"mediapipe_33",
                         "MediaPipe Pose, BlazePose",
                         "https://ai.google.dev/edge/mediapipe/solutions/vision/pose_landmarker",

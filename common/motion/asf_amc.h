@@ -8,7 +8,6 @@
 // (Lander, "Working with motion capture file formats"; checked against a second reader and by
 // tests: feet on the floor, left on the left).  In CMU files, lengths are inches times the unit
 // `length` of the header.
-// `length` of the header.
 #pragma once
 
 #include <array>
@@ -49,7 +48,7 @@ using AmcFrame = std::vector<double>;
                                                       std::string_view origin,
                                                       const AsfSkeleton& skeleton);
 
-/// The end points of all bones, in the order of the bones, in the file's world space (y up) [m].
+/// The end points of all bones, in their order, in the file's world space (y up) [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> bone_ends(const AsfSkeleton& skeleton,
                                                      const AmcFrame& frame);
 

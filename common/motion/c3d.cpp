@@ -20,7 +20,7 @@ constexpr std::uint8_t kKey = 0x50;  // The second byte of every C3D file.
 constexpr std::uint8_t kFirstProcessor = 84;
 constexpr std::array<std::string_view, 3> kProcessors{"Intel", "DEC", "MIPS"};
 constexpr std::size_t kMaxPoints = 4096;
-constexpr double kMaxRateHz = 1e5;
+constexpr double kMaxFrameRateHz = 1e5;
 constexpr double kMaxWordFrames = 65535;
 
 enum Processor : std::uint8_t { kIntel, kDec, kMips };
@@ -148,7 +148,7 @@ Result<C3d> C3dReader::read() {
   out.processor = std::string(kProcessors[processor_]);
   out.labels = labels(layout->points);
   out.rate_hz = number("POINT:RATE").value_or(Numbers(bytes_, processor_).real(20));
-  if (!(out.rate_hz > 0) || out.rate_hz > kMaxRateHz) return wrong("has no rate of frames");
+  if (!(out.rate_hz > 0) || out.rate_hz > kMaxFrameRateHz) return wrong("has no rate of frames");
   out.world_from_file = world_from_file();
   read_frames(*layout, out);
   return out;
@@ -173,7 +173,7 @@ Result<void> C3dReader::read_processor() {
 
 Result<void> C3dReader::read_parameters() {
   const std::size_t blocks = static_cast<std::uint8_t>(bytes_[parameters_at_ + 2]);
-  // Some writers leave the count at 0; then only the list of parameters says where it ends.
+  // Some writers leave the count at 0; then the list of parameters ends by its own mark.
   const std::size_t end =
       std::min(bytes_.size(), parameters_at_ + (blocks == 0 ? 255 : blocks) * kBlock);
   std::size_t at = parameters_at_ + 4;

@@ -48,7 +48,7 @@ struct C3dSubject {
 
 struct C3dMotion {
   std::vector<C3dSubject> subjects;        ///< In the order in which the file names them.
-  std::vector<std::string> unused_labels;  ///< Labels of points that make no joint.
+  std::vector<std::string> unused_labels;  ///< Labels of points that belong to no joint.
 };
 
 /// Finds joints by label: first our own 25 names, then joint centres (LHJC, LKJC, ...), then

@@ -73,14 +73,14 @@ constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;
 /// The index of each point, by its label without the subject.
 using Labels = std::map<std::string, std::size_t>;
 
-struct Source {
+struct PointSource {
   std::vector<std::size_t> points;  ///< Empty if the file lacks such labels.
   JointState state = JointState::NotTracked;
 };
-using Sources = std::array<Source, kJointCount>;
+using PointSources = std::array<PointSource, kJointCount>;
 
-Source source_of(const Labels& labels, const LabelRow& row, std::string_view side) {
-  Source source{{}, row.state};
+PointSource source_of(const Labels& labels, const LabelRow& row, std::string_view side) {
+  PointSource source{{}, row.state};
   for (const std::string_view each : row.labels) {
     if (each.empty()) break;
     std::string wanted(each);
@@ -92,15 +92,15 @@ Source source_of(const Labels& labels, const LabelRow& row, std::string_view sid
   return source;
 }
 
-Sources sources_of(const Labels& labels) {
-  Sources sources;
+PointSources sources_of(const Labels& labels) {
+  PointSources sources;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto own = labels.find(std::string(kJointNames[j]));
     if (own != labels.end()) sources[j] = {{own->second}, JointState::Tracked};
   }
   for (const LabelRow& row : kLabelRows) {
     for (const auto& [joint, side] : {std::pair{row.left, "L"}, std::pair{row.right, "R"}}) {
-      Source& source = sources[index_of(joint)];
+      PointSource& source = sources[index_of(joint)];
       if (source.points.empty()) source = source_of(labels, row, side);
     }
   }
@@ -108,10 +108,10 @@ Sources sources_of(const Labels& labels) {
 }
 
 Skeleton<WorldSpace> skeleton_of(const C3d& c3d, const std::vector<C3dPoint>& frame,
-                                 const Sources& sources) {
+                                 const PointSources& sources) {
   Skeleton<WorldSpace> body;
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    const Source& source = sources[j];
+    const PointSource& source = sources[j];
     const bool there =
         !source.points.empty() && std::all_of(source.points.begin(), source.points.end(),
                                               [&](std::size_t p) { return frame[p].valid(); });
@@ -149,7 +149,7 @@ std::vector<std::pair<std::string, Labels>> subjects_of(const C3d& c3d) {
   return subjects;
 }
 
-Motion motion_of(const C3d& c3d, const Sources& sources) {
+Motion motion_of(const C3d& c3d, const PointSources& sources) {
   Motion motion{c3d.rate_hz, {}};
   motion.frames.reserve(c3d.frames.size());
   for (const auto& frame : c3d.frames) motion.frames.push_back(skeleton_of(c3d, frame, sources));
@@ -162,13 +162,14 @@ Result<C3dMotion> motion_from_c3d(const C3d& c3d) {
   C3dMotion out;
   std::set<std::size_t> used;
   for (const auto& [name, labels] : subjects_of(c3d)) {
-    const Sources sources = sources_of(labels);
+    const PointSources sources = sources_of(labels);
     const auto found = std::count_if(sources.begin(), sources.end(),
-                                     [](const Source& s) { return !s.points.empty(); });
+                                     [](const PointSource& s) { return !s.points.empty(); });
     if (found < static_cast<std::ptrdiff_t>(kFewestJoints)) continue;
     if ((out.subjects.size() + 1) * c3d.frames.size() > kMaxSkeletons)
       return fail(ErrorCode::TooLarge, "C3D labels", "too many subjects for a file this long");
-    for (const Source& source : sources) used.insert(source.points.begin(), source.points.end());
+    for (const PointSource& source : sources)
+      used.insert(source.points.begin(), source.points.end());
     out.subjects.push_back({name, motion_of(c3d, sources)});
   }
   if (out.subjects.empty())

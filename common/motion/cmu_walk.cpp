@@ -8,7 +8,8 @@
 namespace chorus::motion {
 namespace {
 
-/// The value.  If a built-in file does not parse, the build is broken, so the program aborts.
+/// The parsed value.  If a built-in file does not parse, the build is broken, so the program
+/// aborts.
 template <class Value>
 Value built_in(Result<Value> parsed) {
   if (parsed) return *std::move(parsed);

@@ -127,22 +127,22 @@ std::optional<std::size_t> find_named(const Names& names, const BvhRow& row,
 }
 
 /// The BVH joint for each Kinect joint; none where the file lacks one.
-using Sources = std::array<std::optional<std::size_t>, kJointCount>;
+using JointIndices = std::array<std::optional<std::size_t>, kJointCount>;
 
 /// Matches our own joint names (chorus export), if the file has a SpineBase.  This is tried first,
 /// because "HandLeft" is a wrist in other dialects.
-std::optional<Sources> match_own_names(const Bvh& bvh) {
-  Sources sources;
+std::optional<JointIndices> match_own_names(const Bvh& bvh) {
+  JointIndices sources;
   for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
     if (const auto joint = joint_named(bvh.joints[i].name)) sources[index_of(*joint)] = i;
   }
   return sources[index_of(JointId::SpineBase)] ? std::optional(sources) : std::nullopt;
 }
 
-Result<Sources> match_joints(const Bvh& bvh) {
+Result<JointIndices> match_joints(const Bvh& bvh) {
   Names names;
   for (std::size_t i = 0; i < bvh.joints.size(); ++i) names.emplace(plain(bvh.joints[i].name), i);
-  Sources sources;
+  JointIndices sources;
   for (const BvhRow& row : kBvhRows) {
     for (const auto& [joint, side] : {std::pair{row.left, "left"}, std::pair{row.right, "right"}}) {
       sources[index_of(joint)] = find_named(names, row, side);
@@ -223,8 +223,8 @@ Result<Motion> motion_from_amc(const AsfSkeleton& skeleton, const std::vector<Am
 }
 
 Result<Motion> motion_from_bvh(const Bvh& bvh) {
-  const std::optional<Sources> own = match_own_names(bvh);
-  const Result<Sources> sources = own ? Result<Sources>(*own) : match_joints(bvh);
+  const std::optional<JointIndices> own = match_own_names(bvh);
+  const Result<JointIndices> sources = own ? Result<JointIndices>(*own) : match_joints(bvh);
   if (!sources) return pass(sources);
   Motion motion{1.0 / bvh.frame_time, {}};
   motion.frames.reserve(bvh.frames.size());

@@ -29,7 +29,7 @@ inline constexpr double kCmuRateHz = 120.0;
                                              const std::vector<AmcFrame>& frames,
                                              double rate_hz = kCmuRateHz);
 
-/// Makes joints by name: our own 25 names if the file has a SpineBase, otherwise the names of the
+/// Finds joints by name: our own 25 names if the file has a SpineBase, otherwise the names of the
 /// usual BVH dialects.  A joint that the file lacks is not tracked or, in those dialects, inferred
 /// from its neighbours; a file in a dialect is refused unless it has hips, knees, shoulders, elbows
 /// and a neck.

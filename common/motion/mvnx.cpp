@@ -21,13 +21,13 @@ constexpr double kMaxRateHz = 1e4;
 /// The numbers in an element, in groups of `width`; none if a group is incomplete or a word is not
 /// a number.
 std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t width) {
-  constexpr std::string_view kBlanks = " \t\r\n";
+  constexpr std::string_view kXmlBlanks = " \t\r\n";
   std::vector<double> numbers;
   while (true) {
-    const std::size_t begin = text.find_first_not_of(kBlanks);
+    const std::size_t begin = text.find_first_not_of(kXmlBlanks);
     if (begin == std::string_view::npos) break;
     text.remove_prefix(begin);
-    const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+    const std::size_t end = std::min(text.find_first_of(kXmlBlanks), text.size());
     double number = 0;
     if (!read_finite(text.substr(0, end), number)) return std::nullopt;
     numbers.push_back(number);

@@ -48,9 +48,9 @@ inline constexpr std::size_t kMaxMvnxBytes = 512u << 20;
 /// numbers do not match the segments, and text where a number should be.  Skips unknown elements.
 [[nodiscard]] Result<Mvnx> parse_mvnx(std::string_view xml, std::string_view origin);
 
-/// Makes joints of points on segments (mvnx_joints.cpp has the table); the segments' rotations,
-/// twist included, become joint orientations.  A joint whose segment or point is missing is not
-/// tracked; a file without Pelvis is refused.
+/// Computes joints from points on segments (the table is in mvnx_joints.cpp); the segments'
+/// rotations, twist included, become joint orientations.  A joint whose segment or point is missing
+/// is not tracked; a file without Pelvis is refused.
 [[nodiscard]] Result<Motion> motion_from_mvnx(const Mvnx& mvnx);
 
 }  // namespace chorus::motion

@@ -69,7 +69,7 @@ Eigen::Quaterniond segment_from_joint(Along along) {
   return Eigen::Quaterniond(axes);
 }
 
-struct Source {
+struct SegmentSource {
   JointId joint;
   std::size_t segment = 0;
   Eigen::Vector3d in_segment = Eigen::Vector3d::Zero();
@@ -84,10 +84,10 @@ std::optional<std::size_t> segment_named(const Mvnx& mvnx, std::string_view labe
   return std::nullopt;
 }
 
-std::optional<Source> source_of(const Mvnx& mvnx, const SegmentRow& row) {
+std::optional<SegmentSource> source_of(const Mvnx& mvnx, const SegmentRow& row) {
   const auto segment = segment_named(mvnx, row.segment);
   if (!segment) return std::nullopt;
-  Source source{row.joint, *segment, Eigen::Vector3d::Zero(), std::nullopt, {}};
+  SegmentSource source{row.joint, *segment, Eigen::Vector3d::Zero(), std::nullopt, {}};
   if (!row.point.empty()) {
     const auto& points = mvnx.segments[*segment].points;
     const auto found = std::find_if(points.begin(), points.end(),
@@ -100,10 +100,11 @@ std::optional<Source> source_of(const Mvnx& mvnx, const SegmentRow& row) {
   return source;
 }
 
-Skeleton<WorldSpace> skeleton_of(const MvnxFrame& frame, const std::vector<Source>& sources) {
+Skeleton<WorldSpace> skeleton_of(const MvnxFrame& frame,
+                                 const std::vector<SegmentSource>& sources) {
   const Eigen::Quaterniond world = world_from_xsens();
   Skeleton<WorldSpace> body;
-  for (const Source& source : sources) {
+  for (const SegmentSource& source : sources) {
     Joint& joint = body[source.joint];
     joint.position = world * (frame.positions[source.segment] +
                               frame.orientations[source.segment] * source.in_segment);
@@ -117,7 +118,7 @@ Skeleton<WorldSpace> skeleton_of(const MvnxFrame& frame, const std::vector<Sourc
 }  // namespace
 
 Result<Motion> motion_from_mvnx(const Mvnx& mvnx) {
-  std::vector<Source> sources;
+  std::vector<SegmentSource> sources;
   for (const SegmentRow& row : kSegmentRows) {
     if (const auto source = source_of(mvnx, row)) sources.push_back(*source);
   }

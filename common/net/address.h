@@ -11,7 +11,7 @@ namespace chorus::net {
 [[nodiscard]] asio::ip::address unmapped(const asio::ip::address& address);
 
 /// The account that a connection is counted for: an IPv4 address, or the first 64 bits of an IPv6
-/// address, because one host may use all the other bits.
+/// address, because one host may use any of the remaining bits.
 [[nodiscard]] std::string account_of(const asio::ip::address& address);
 
 }  // namespace chorus::net

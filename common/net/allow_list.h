@@ -1,4 +1,4 @@
-// The addresses that a server answers if its protocol has no passwords.
+// The addresses that a server accepts if its protocol has no passwords.
 #pragma once
 
 #include <array>

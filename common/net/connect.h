@@ -13,7 +13,7 @@ namespace chorus::net {
 struct Connecting {
   std::string host;  ///< A name or a numeric address.
   std::uint16_t port = 80;
-  /// False when the caller has given up; then `done` is never called.
+  /// Returns false when the caller has given up; then `done` is never called.
   std::function<bool()> wanted;
 };
 

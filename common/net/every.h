@@ -14,7 +14,7 @@ class Every {
  public:
   Every(asio::io_context& io, std::chrono::milliseconds interval, std::function<void()> work);
 
-  /// Starts the calls unless they are running already, so run_events() may call this repeatedly.
+  /// Starts the calls unless they are already running, so run_events() may call this repeatedly.
   void ensure();
   void stop();
 

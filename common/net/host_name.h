@@ -6,10 +6,10 @@
 
 namespace chorus::net {
 
-/// As the system has it; empty when it has none.
+/// As configured in the system; empty when it has none.
 [[nodiscard]] std::string host_name();
 
-/// The names under which a host of that name is asked: that name, its first part, and the first
+/// The names by which clients may address a host of that name: the name, its first part, and that
 /// part with ".local" (multicast DNS), each once; none for "".
 [[nodiscard]] std::vector<std::string> names_of(const std::string& host_name);
 

@@ -6,7 +6,7 @@
 namespace chorus::net {
 namespace {
 
-// Until the next try when there are no descriptors.
+// Pause before the next attempt when there are no descriptors.
 constexpr std::chrono::milliseconds kPause{100};
 
 std::string text_of(const ListenAt& where) {
@@ -94,7 +94,8 @@ void AcceptLoop::on_accepted(error_code failed, Socket socket) {
     trouble_.hit(failed.message());
     return pause();
   }
-  // Accepting goes on first, because a connection that cannot be welcomed must not stop the others.
+  // Continues accepting first, because a connection that cannot be welcomed must not stop the
+  // others.
   accept();
   welcome_(std::move(socket));
 }

@@ -41,7 +41,7 @@ class AcceptLoop {
   [[nodiscard]] Result<void> listen(const ListenAt& where) { return listen_on(acceptor_, where); }
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Starts accepting unless that is running already, so run_events() may call this repeatedly.
+  /// Starts accepting unless that is already running, so run_events() may call this repeatedly.
   void ensure();
   void stop();
 

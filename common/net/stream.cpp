@@ -52,7 +52,7 @@ void Stream::Secret::shake(const Sealed& done) {
     return done({});
   }
   if (step != tls::Seal::Step::NeedsInput) {
-    say_rest();  // the alert, which tells the other side why
+    say_rest();  // the alert, which states the reason to the other side
     return done({seal.failure()});
   }
   pump();

@@ -89,7 +89,7 @@ class Stream {
   struct Secret;
   static constexpr std::size_t kMostAtOnce = 64 * 1024;
 
-  /// Makes a copyable Done of a handler; handlers of composed operations are move-only.
+  /// Wraps a handler in a copyable Done; handlers of composed operations are move-only.
   template <class Handler>
   static Done erased(Handler&& handler) {
     auto kept = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler));

@@ -28,7 +28,7 @@ class TokenBucket {
     counted_ = now;
     return true;
   }
-  /// Takes tokens even when there are too few: then a debt remains, of at most one burst.
+  /// Takes tokens even when there are too few, which leaves a debt of at most one burst.
   void charge(double owed) { tokens_ = std::max(tokens_ - owed, -allowance_.burst); }
 
  private:

@@ -35,7 +35,7 @@ class Scan {
         return {};
       case '\\':
         ++at_;
-        return {};  // An escaped character in a local name is no opening bracket.
+        return {};  // An escaped character in a local name is not an opening bracket.
       case '#':
         skip_comment();
         return {};
@@ -100,8 +100,8 @@ class Scan {
         return {};
       }
       const char c = text_[at_++];
-      // In '"\n' Serd 0.30 takes the backslash as a character by itself, and so would take another
-      // quote as the closing one.
+      // In '"\n' Serd 0.30 takes the backslash for an ordinary character, and would therefore take
+      // an escaped quote for the closing one.
       if (c == quote && at_ < text_.size() && text_[at_] == '\\') {
         return refuse(
             "a quote directly before an escape in a long string is not read; escape the quote");

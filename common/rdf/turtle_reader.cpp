@@ -8,24 +8,23 @@
 #include <cstring>
 #include <memory>
 
+#include "common/rdf/utf8.h"
+
 namespace chorus::rdf {
 namespace {
 
-const std::uint8_t* bytes_of(const std::string& text) {
-  return reinterpret_cast<const std::uint8_t*>(text.c_str());
-}
 std::string_view view_of(const std::uint8_t* bytes, std::size_t size) {
   return {reinterpret_cast<const char*>(bytes), size};
 }
 std::string_view view_of(const SerdNode* node) { return view_of(node->buf, node->n_bytes); }
 std::string_view view_of(const SerdChunk& chunk) { return view_of(chunk.buf, chunk.len); }
 
-struct Free {
+struct FreeReader {
   void operator()(SerdReader* reader) const { serd_reader_free(reader); }
   void operator()(SerdEnv* env) const { serd_env_free(env); }
 };
-using Reader = std::unique_ptr<SerdReader, Free>;
-using Env = std::unique_ptr<SerdEnv, Free>;
+using Reader = std::unique_ptr<SerdReader, FreeReader>;
+using Env = std::unique_ptr<SerdEnv, FreeReader>;
 
 Env make_env(const std::string& base) {
   if (base.empty()) return Env(serd_env_new(nullptr));

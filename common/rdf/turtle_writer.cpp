@@ -16,10 +16,6 @@ namespace {
 /// depth.
 constexpr int kMaxInline = 16;
 
-const std::uint8_t* bytes_of(const std::string& text) {
-  return reinterpret_cast<const std::uint8_t*>(text.c_str());
-}
-
 std::size_t append_to(const void* bytes, std::size_t size, void* text) {
   static_cast<std::string*>(text)->append(static_cast<const char*>(bytes), size);
   return size;
@@ -66,7 +62,7 @@ Result<void> check(const Triple& triple) {
   return {};
 }
 
-struct Free {
+struct FreeWriter {
   void operator()(SerdWriter* writer) const { serd_writer_free(writer); }
   void operator()(SerdEnv* env) const { serd_env_free(env); }
 };
@@ -163,8 +159,8 @@ class Writing {
   std::vector<Term> order_;
   std::map<Term, int> uses_;
   std::set<Term> written_;
-  std::unique_ptr<SerdEnv, Free> env_;
-  std::unique_ptr<SerdWriter, Free> writer_;
+  std::unique_ptr<SerdEnv, FreeWriter> env_;
+  std::unique_ptr<SerdWriter, FreeWriter> writer_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -15,5 +16,10 @@ namespace chorus::rdf {
 
 /// Replaces every byte that is not part of a well-formed character by U+FFFD.
 [[nodiscard]] std::string clean_utf8(std::string_view text);
+
+/// The bytes of the string, zero-terminated; valid as long as its c_str().
+[[nodiscard]] inline const std::uint8_t* bytes_of(const std::string& text) {
+  return reinterpret_cast<const std::uint8_t*>(text.c_str());
+}
 
 }  // namespace chorus::rdf

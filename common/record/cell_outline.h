@@ -19,12 +19,12 @@ struct CellLine {
   std::vector<std::filesystem::path> files;  ///< In the order in which they were written.
   std::set<SensorId> sensors;                ///< The sensors that the files name.
   bool cell = false;                         ///< True if it has several sensors, with their clocks.
-  /// Damage that shows without unpacking, as "FILE: what and why".
+  /// Damage that is visible without unpacking, as "FILE: what and why".
   std::vector<std::string> damage;
 };
 
-/// Groups files into lines, ordered by when the lines begin.  Conflict when two files are the same
-/// part of a recording.
+/// Groups files into lines (see CellLine), ordered by their beginnings.  Conflict when two files
+/// are the same part of a recording.
 [[nodiscard]] Result<std::vector<CellLine>> cell_lines(
     const std::vector<std::filesystem::path>& files);
 

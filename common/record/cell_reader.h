@@ -1,5 +1,5 @@
 // Reads a recording of a cell (cell_writer.h): every sensor's raw frames with times by the
-// recorder's clock, the sensors' places, and the fused frames.
+// recorder's clock, the registrations, and the fused frames.
 #pragma once
 
 #include <filesystem>

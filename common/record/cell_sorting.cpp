@@ -104,7 +104,8 @@ bool Sorting::begins_or_follows(Line& line) const {
   return true;
 }
 
-/// The sensor's stream, which this file begins or, as the next file of its recording, continues.
+/// The sensor's stream: begun by this file, or continued if this file is the next part of the same
+/// recording.  Conflict if it is neither.
 Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
   const auto [found, fresh] = streams_.try_emplace(sensor);
   Stream& stream = found->second;
@@ -112,7 +113,7 @@ Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
     if (source_.single) stream.recording = source_.description;
     stream.recording.sensor = sensor;
     stream.floor = stream.recording.floor;
-    // What was imported together was recorded by one clock.
+    // Streams that were imported together share one clock.
     if (stream.recording.notes.contains("set_origin")) stream.clock_sigma = 0.0;
   }
   if (stream.line.newest == files_) return &stream;

@@ -29,8 +29,8 @@ struct Topic {
 /// The time that a clock model, as JSON, adds to capture times.
 [[nodiscard]] Result<Duration> read_shift(std::string_view text);
 
-/// How exact a clock model, as JSON, says that this time is: a standard deviation [s];
-/// kUnknownClock when it does not say.
+/// The standard deviation of this time according to a clock model as JSON [s]; kUnknownClock if it
+/// states none.
 [[nodiscard]] double read_clock_sigma(std::string_view text);
 
 /// Adds `by` to `t`; false, with `t` unchanged, when the sum is beyond the times that we can
@@ -46,7 +46,7 @@ class Sorting {
   void begin_file(const std::filesystem::path& file, const std::vector<Channel>& channels,
                   const Metadata& metadata);
   [[nodiscard]] Result<std::optional<SessionItem>> take(const MessageView& message);
-  /// `notes`: what reading the file has left out.
+  /// `notes`: what was left out when reading the file.
   [[nodiscard]] Result<void> end_file(const std::vector<Channel>& channels,
                                       const std::vector<std::string>& notes);
   /// Everything in the recording except the items that take() has returned.
@@ -74,14 +74,15 @@ class Sorting {
     FrameRecording recording;  ///< Without frames.
     Line line;
     std::optional<FloorPlane> floor;
-    /// Time to add to capture times; none if they are by our clock already.
+    /// Time to add to capture times; none if they are already by our clock.
     std::optional<Duration> shift;
     double clock_sigma = kUnknownClock;
     std::size_t kept = 0;
     std::optional<Timestamp> newest;  ///< Capture time of the newest frame kept.
     std::size_t left_out = 0;
-    std::size_t kept_before = 0;          ///< The value of `kept` when the current file began.
-    std::optional<Timestamp> newest_out;  ///< Newest of the frames left out of the current file.
+    std::size_t kept_before = 0;  ///< The value of `kept` when the current file began.
+    /// Newest of the frames of the current file that were left out.
+    std::optional<Timestamp> newest_out;
   };
 
   void note_cell(const std::vector<Channel>& channels);

@@ -29,7 +29,7 @@ std::string_view schema_text(std::string_view name) {
   return {};
 }
 
-/// Compares clock models without estimate and uncertainty, which change all the time.
+/// Compares only `applied`, because estimate and uncertainty change all the time.
 bool same(const ClockModel& a, const ClockModel& b) {
   return a.applied == b.applied && a.uncertainty.has_value() == b.uncertainty.has_value();
 }

@@ -26,7 +26,7 @@
 
 namespace chorus::record {
 
-/// How a sensor's capture times are turned into our clock's.
+/// How a sensor's capture times are converted to our clock.
 struct ClockModel {
   Duration applied{0};  ///< Added to the sensor's capture times.
   Duration ours_minus_theirs{0};

@@ -21,6 +21,7 @@ inline constexpr std::string_view kFrameSchema = R"({
     "capturedNanoseconds": {"type": "string", "description": "the same, nanoseconds since the Unix epoch"},
     "source": {"type": "string", "description": "sensor id"},
     "space": {"enum": ["SensorSpace", "WorldSpace"]},
+    "sensors": {"type": "array", "items": {"type": "string"}, "description": "fused: the sensors that have a place"},
     "bodies": {"type": "array", "items": {
       "type": "object",
       "required": ["bodyId", "joints"],
@@ -37,6 +38,11 @@ inline constexpr std::string_view kFrameSchema = R"({
           "properties": {
             "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
             "qx": {"type": "number"}, "qy": {"type": "number"}, "qz": {"type": "number"}, "qw": {"type": "number"},
+            "rayX": {"type": "number"}, "rayY": {"type": "number"}, "rayZ": {"type": "number", "description": "instead of x, y, z: a unit vector from the sensor towards the joint"},
+            "variance": {"type": "number", "minimum": 0, "description": "mean variance per axis [m^2]"},
+            "cxx": {"type": "number"}, "cxy": {"type": "number"}, "cxz": {"type": "number"}, "cyy": {"type": "number"}, "cyz": {"type": "number"},
+            "czz": {"type": "number", "description": "covariance of the position [m^2], or of the ray [rad^2]"},
+            "contributors": {"type": "array", "items": {"type": "string"}, "description": "fused: the sensors this joint came from; empty: where it is expected"},
             "state": {"enum": ["Tracked", "Inferred", "NotTracked"]}
           }
         }}

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How long a message may wait in an open chunk if no other follows, and the interval of the checks
-/// of space, index and duration.
+/// How long a message may wait in an open chunk if no other follows; also the interval at which
+/// space, index and duration are checked.
 constexpr auto kRest = std::chrono::seconds(1);
 /// Events are taken in batches, because waking up for each one would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);
@@ -172,7 +172,7 @@ void Recorder::Impl::store_index() {
   // Drops an earlier problem with the index.
   if (now.state != RecordingState::Failed) now.reason.clear();
   const auto stored = write_index(options.folder, now);
-  // The recording is worth more than its index, so it goes on.
+  // The recording is worth more than its index, so it continues.
   if (!stored && !index_lost) {
     log::error("the recording's index is not written; without it a restart forgets the recording",
                {{"name", options.name}, {"reason", to_string(stored.error())}});
@@ -296,8 +296,8 @@ bool Recorder::offer(RecordedEvent event) {
   {
     const std::scoped_lock lock(impl_->mutex);
     if (impl_->stopping) return false;
-    // A registration is taken even then: it rarely changes, and the frames after it are meaningless
-    // without it.
+    // A registration is accepted even if the queue is full: it rarely changes, and the frames after
+    // it are meaningless without it.
     if (impl_->queue.size() >= most && !std::holds_alternative<PlacesChanged>(event)) {
       ++impl_->report.dropped;
       return false;

@@ -35,7 +35,7 @@ struct RecorderLimits {
 
 struct RecorderOptions {
   std::string name;
-  /// Identifies this run in all of its files, so that files of different runs are told apart.
+  /// Identifies this run in all of its files, which distinguishes them from those of other runs.
   /// Empty: generated.
   std::string id = {};
   /// A new folder for the files and their index.json.  Give either this or `file`.

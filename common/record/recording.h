@@ -32,7 +32,7 @@ struct Message {
   std::string topic;
   std::uint32_t sequence = 0;
   Timestamp log_time;      ///< When it was recorded.
-  Timestamp publish_time;  ///< When the data was captured or made.
+  Timestamp publish_time;  ///< When the data was captured or created.
   std::string data;
 };
 

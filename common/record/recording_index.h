@@ -1,5 +1,5 @@
-// The list of what a recording consists of: in memory while the recording is being written, and as
-// index.json next to its files.
+// The list of a recording's files: in memory while the recording is being written, and as
+// index.json next to them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Internal to common/record: finds the records of a recording and their places by stepping from
+// Internal to common/record: finds the records of a recording and their offsets by stepping from
 // record to record without unpacking.
 //
 // The index at the end of a file is not used, because after a crash or a disk failure there is
@@ -42,7 +42,7 @@ struct Outline {
 /// The error when a recording exceeds the limit: "it unpacks to more than 100 bytes"
 [[nodiscard]] Error over_total(const ReadLimits& limits);
 
-/// Adds a note unless it is there already or there are kMaxNotes.
+/// Adds a note, unless it is already there or there are kMaxNotes.
 void add_note(std::vector<std::string>& notes, std::string text);
 
 }  // namespace chorus::record

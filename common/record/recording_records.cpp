@@ -10,8 +10,8 @@ namespace {
 
 using mcap::ByteReader;
 
-/// JSON of bodies packs to a tenth of its size, that of empty rooms to a fiftieth; a thousandth
-/// must be an attack.
+/// JSON of bodies is compressed to a tenth of its size, that of empty rooms to a fiftieth.  A
+/// thousandth must be an attack.
 constexpr std::uint64_t kTightest = 1000;
 constexpr std::uint64_t kSmallAnyway = 1U << 16;
 

@@ -41,8 +41,8 @@ char* write_fixed(char* at, double value, int decimals) noexcept {
     *at++ = '-';
     scaled = -scaled;
   }
-  // All eight decimals are written, so that every divisor is a constant; the caller's next bytes
-  // overwrite those that were not asked for.
+  // Writes all eight decimals, so that every divisor is a constant.  The caller's next bytes
+  // overwrite the decimals that are not wanted.
   const auto units = static_cast<std::uint64_t>(scaled * kPowersOfTen[kMostDecimals - places]);
   const std::uint64_t whole = units / 100'000'000U;
   const auto fraction = static_cast<std::uint32_t>(units % 100'000'000U);

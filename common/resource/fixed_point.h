@@ -2,11 +2,15 @@
 // faster than printf.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace chorus::resource {
+
+/// Beyond this, a reader that keeps numbers as doubles, such as JavaScript, rounds integers.
+inline constexpr std::int64_t kExactInteger = std::int64_t{1} << 53;
 
 /// Larger numbers are not plausible coordinates, and the fast formatter does not handle them.
 inline constexpr double kMaxFixed = 1e6;

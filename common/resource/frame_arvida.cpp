@@ -1,8 +1,8 @@
 // Profile "arvida": the full ARVIDA pattern, one spatial relationship per joint (proto/README.md).
 //
 // In a relationship, the source is the tracker's space, the target is the joint, and the
-// translation is the joint's position in the source.  No document states this direction; we follow
-// a published client.
+// translation is the joint's position in the source.  No document specifies this direction; we
+// follow a published client.
 #include <algorithm>
 #include <array>
 
@@ -12,7 +12,7 @@
 namespace chorus::resource {
 namespace {
 
-constexpr std::string_view kPrefixes =
+constexpr std::string_view kArvidaPrefixes =
     "@prefix ch: <https://w3id.org/chorus-tracking/ns#> .\n"
     "@prefix core: <http://vocab.arvida.de/2015/06/core/vocab#> .\n"
     "@prefix maths: <http://vocab.arvida.de/2015/06/maths/vocab#> .\n"
@@ -44,12 +44,12 @@ class ArvidaFrame {
  private:
   void put_frame() {
     pen_.need(kJointText + 2 * names_.size() + frame_.source.size() * 6);
-    put(kPrefixes, "\n<", names_, "frame> a ch:Frame, core:Container ;\n  ch:sequence ");
+    put(kArvidaPrefixes, "\n<", names_, "frame> a ch:Frame, core:Container ;\n  ch:sequence ");
     pen_.put_integer(frame_.sequence);
     put(" ;\n  ch:captured \"", time_.of(frame_.captured),
         "\"^^xsd:dateTime ;\n  ch:capturedNanoseconds ");
     pen_.put_integer(to_unix_ns(frame_.captured));
-    put(" ;\n  ch:source ", quoted(frame_.source), " ;\n  ch:space ch:", name_of(frame_.space));
+    put(" ;\n  ch:source ", in_quotes(frame_.source), " ;\n  ch:space ch:", name_of(frame_.space));
     std::string_view before = " ;\n  core:member <";
     for (const BodyResource& body : frame_.bodies) {
       pen_.need(kJointText + names_.size());

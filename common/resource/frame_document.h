@@ -17,8 +17,8 @@ using FramePtr = std::shared_ptr<const FrameResource>;
                                                http::DocumentOptions options);
 
 /// The options of these documents.  The version is the sequence, with `run`, so that the ETags of a
-/// restarted service differ.  latest_options(): `/frame` is revalidated; its Content-Location is
-/// its immutable twin. kept_options(): `/frames/{seq}` may be cached for a minute.
+/// restarted service differ. latest_options(): `/frame` is revalidated; its Content-Location is its
+/// immutable copy. kept_options(): `/frames/{seq}` may be cached for a minute.
 [[nodiscard]] http::DocumentOptions latest_options(const FrameResource& frame,
                                                    const std::string& run = {});
 [[nodiscard]] http::DocumentOptions kept_options(const FrameResource& frame,

@@ -3,15 +3,12 @@
 #include <algorithm>
 
 #include "common/body/bones.h"
+#include "common/resource/fixed_point.h"
 #include "common/resource/frame_parts.h"
 #include "common/sensor/limits.h"
 
 namespace chorus::resource {
 namespace {
-
-/// Larger integers are written as strings, because readers that keep numbers as doubles would
-/// change them.
-constexpr std::uint64_t kExactInteger = std::uint64_t{1} << 53;
 
 class JsonFrame {
  public:
@@ -73,8 +70,8 @@ class JsonFrame {
   }
 
  private:
-  /// `living`: the document is about the body itself, not about one instant of it, and states the
-  /// body's type.
+  /// `living`: the document describes the body itself, not its state at one instant, and states its
+  /// type.
   void put_body_head(const BodyResource& body, bool living) {
     pen_.put("\"@id\":\"");
     put_body_name(body);
@@ -109,7 +106,7 @@ class JsonFrame {
   }
 
   void put_unsigned(std::uint64_t value) {
-    const std::string_view mark = value < kExactInteger ? "" : "\"";
+    const std::string_view mark = value < std::uint64_t{kExactInteger} ? "" : "\"";
     pen_.put(mark);
     pen_.put_integer(value);
     pen_.put(mark);
@@ -125,7 +122,7 @@ class JsonFrame {
 
   void put_origin() {
     pen_.put(",\"source\":");
-    pen_.put(quoted(frame_.source));
+    pen_.put(in_quotes(frame_.source));
     pen_.put(",\"space\":\"");
     pen_.put(name_of(frame_.space));
     pen_.put("\"");

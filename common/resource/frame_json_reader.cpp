@@ -10,12 +10,12 @@
 namespace chorus::resource {
 namespace {
 
-using Json = nlohmann::json;
+using nlohmann::json;
 
 /// Reads one object of the document into the facts about one subject; keeps the first complaint.
 class Reading {
  public:
-  Result<Facts> run(const Json& root) {
+  Result<Facts> run(const json& root) {
     if (!root.is_object()) return fail(ErrorCode::Malformed, {}, "a frame is a JSON object");
     const std::size_t frame = add_subject(root, "frame");
     // Hand-written JSON may omit the type, because only a frame can be meant.
@@ -30,7 +30,7 @@ class Reading {
   }
 
  private:
-  std::size_t add_subject(const Json& object, std::string name) {
+  std::size_t add_subject(const json& object, std::string name) {
     const auto id = object.find("@id");
     facts_.emplace_back().name =
         id != object.end() && id->is_string() ? id->get<std::string>() : std::move(name);
@@ -42,7 +42,7 @@ class Reading {
       error_ = Error{ErrorCode::Malformed, place_of(facts_[at], key), std::move(message)};
   }
 
-  void read_common(std::size_t at, const Json& object) {
+  void read_common(std::size_t at, const json& object) {
     integer(at, object, "sequence", facts_[at].sequence);
     integer(at, object, "bodyId", facts_[at].body_id);
     integer(at, object, "slot", facts_[at].slot);
@@ -58,11 +58,11 @@ class Reading {
     facts_[at].captured = *time;
   }
 
-  void read_bodies(std::size_t frame, const Json& root) {
+  void read_bodies(std::size_t frame, const json& root) {
     const auto bodies = root.find("bodies");
     if (bodies == root.end()) return;
     if (!bodies->is_array()) return complain(frame, "bodies", "is no array");
-    for (const Json& object : *bodies) {
+    for (const json& object : *bodies) {
       if (!object.is_object())
         return complain(frame, "bodies", "holds something that is no object");
       if (facts_[frame].bodies.size() > kMaxBodies) return;  // assemble() reports the limit.
@@ -77,7 +77,7 @@ class Reading {
     }
   }
 
-  void read_joints(std::size_t body, const Json& object) {
+  void read_joints(std::size_t body, const json& object) {
     const auto joints = object.find("joints");
     if (joints == object.end()) return;
     if (!joints->is_object()) return complain(body, "joints", "is no object");
@@ -97,7 +97,7 @@ class Reading {
 
   /// Reads a JSON number, or a string that spells it, as JSON-LD and large integers need.
   template <class T>
-  void integer(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out) {
+  void integer(std::size_t at, const json& object, std::string_view key, std::optional<T>& out) {
     const auto found = object.find(key);
     if (found == object.end()) return;
     if (!found->is_number_integer() && !found->is_string())
@@ -106,7 +106,7 @@ class Reading {
     if (!out) complain(at, key, "is no integer of 64 bits, or has the wrong sign");
   }
 
-  void number(std::size_t at, const Json& object, std::string_view key,
+  void number(std::size_t at, const json& object, std::string_view key,
               std::optional<double>& out) {
     const auto found = object.find(key);
     if (found == object.end()) return;
@@ -118,7 +118,7 @@ class Reading {
     if (!out) complain(at, key, "is no finite number");
   }
 
-  void text(std::size_t at, const Json& object, std::string_view key,
+  void text(std::size_t at, const json& object, std::string_view key,
             std::optional<std::string>& out) {
     const auto found = object.find(key);
     if (found == object.end()) return;
@@ -127,7 +127,7 @@ class Reading {
   }
 
   template <class T, class Find>
-  void named(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out,
+  void named(std::size_t at, const json& object, std::string_view key, std::optional<T>& out,
              Find find) {
     std::optional<std::string> name;
     text(at, object, key, name);
@@ -136,13 +136,13 @@ class Reading {
     if (!out) complain(at, key, "is none of the names this property may have");
   }
 
-  void list(std::size_t at, const Json& object, std::string_view key,
+  void list(std::size_t at, const json& object, std::string_view key,
             std::vector<std::string>& out) {
     constexpr std::size_t kMoreThanEnough = 65;  // One above the limit; assemble() reports it.
     const auto found = object.find(key);
     if (found == object.end()) return;
     if (!found->is_array()) return complain(at, key, "is no array");
-    for (const Json& item : *found) {
+    for (const json& item : *found) {
       if (!item.is_string()) return complain(at, key, "holds something that is no string");
       if (out.size() < kMoreThanEnough) out.push_back(item.get<std::string>());
     }

@@ -51,7 +51,7 @@ WritableJoint writable(const JointResource& joint) {
   return out;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::string_view kHex = "0123456789ABCDEF";
   std::string out = "\"";
   for (const char c : rdf::clean_utf8(text)) {
@@ -70,7 +70,7 @@ std::string quoted(std::string_view text) {
 std::vector<std::string> quoted_names(const FrameResource& frame) {
   std::vector<std::string> names;
   names.reserve(frame.sensors.size());
-  for (const std::string& name : frame.sensors) names.push_back(quoted(name));
+  for (const std::string& name : frame.sensors) names.push_back(in_quotes(name));
   return names;
 }
 

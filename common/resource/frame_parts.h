@@ -46,7 +46,7 @@ struct WritableJoint {
 [[nodiscard]] double writable_time(double value);
 
 /// `text` in quotes, with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// The names of all sensors, in quotes.
 [[nodiscard]] std::vector<std::string> quoted_names(const FrameResource& frame);

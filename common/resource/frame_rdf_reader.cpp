@@ -100,7 +100,7 @@ std::string_view individual(const TermView& term) {
   return term.value.substr(kChorus.size());
 }
 
-/// Adds a value to a list unless it contains that value already.
+/// Adds a value to a list, unless it is already there.
 template <class T>
 void add(std::vector<T>& list, T value) {
   if (std::ranges::find(list, value) == list.end()) list.push_back(std::move(value));
@@ -183,7 +183,7 @@ class Collector {
     if (object.kind == TermKind::Literal) return "is a literal, not a resource";
     const std::size_t to = find_or_add(object);
     std::vector<std::size_t>& links = facts_[at].*list;
-    // Limited here already, so that a long list costs nothing; assemble() reports the limit.
+    // Limited here, so that a long list costs nothing; assemble() reports the limit.
     if (links.size() <= std::max(kMaxBodies, kJointCount)) add(links, to);
     return {};
   }

@@ -30,9 +30,9 @@ struct JointResource : Joint {
 struct BodyResource {
   std::uint64_t id = 0;
   std::optional<std::size_t> slot;  ///< Fused: the person's slot in every output, below kMaxBodies.
-  /// Fused: probability that left and right are not exchanged, [0, 1].
+  /// Fused: probability that left and right are not swapped, [0, 1].
   std::optional<double> sides_confidence;
-  /// Fused: for how long no sensor has seen the person [s]; meanwhile the person is where they are
+  /// Fused: for how long no sensor has seen the person [s]; meanwhile the joints are where they are
   /// expected.  None while the person is seen.
   std::optional<double> carried_for;
   Timestamp captured;

@@ -66,8 +66,8 @@ class TurtleFrame {
     begun_ = true;
   }
 
-  /// Begins a document about the living body or joint.  It states no position: two such documents
-  /// of different instants would contradict each other.
+  /// Begins a document about the body or joint itself.  It states no position, because two such
+  /// documents from different instants would contradict each other.
   void begin_living(const BodyResource& body) {
     pen_.need(kJointBytes + names_.size());
     pen_.put(kPrefixes);
@@ -116,7 +116,7 @@ class TurtleFrame {
 
   void put_origin() {
     pen_.put(" ;\n  ch:source ");
-    pen_.put(quoted(frame_.source));
+    pen_.put(in_quotes(frame_.source));
     pen_.put(" ;\n  ch:space ch:");
     pen_.put(name_of(frame_.space));
   }
@@ -143,7 +143,7 @@ class TurtleFrame {
     pen_.put_integer(body.id);
   }
 
-  /// Writes the IRI of a body at this instant; its `ch:of` points to the living body.
+  /// Writes the IRI of a body at this instant; its `ch:of` points to the body itself.
   void put_body_name(const BodyResource& body) {
     put_frame_name();
     pen_.put("#");

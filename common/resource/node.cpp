@@ -17,7 +17,7 @@ namespace {
 using rdf::Graph;
 using rdf::Term;
 
-/// Makes a valid IRI of a string from a configuration file or a peer: escapes the characters that
+/// Turns a string from a configuration file or a peer into a valid IRI: escapes the characters that
 /// an IRI cannot contain.
 std::string safe_iri(std::string_view text) {
   constexpr std::string_view kNever = "<>\"{}|^`\\";
@@ -34,7 +34,7 @@ std::string safe_iri(std::string_view text) {
   return safe;
 }
 
-/// Makes a valid xsd:string: replaces what is not UTF-8 and removes zero bytes.
+/// Turns text into a valid xsd:string: replaces what is not UTF-8 and removes zero bytes.
 std::string safe_text(std::string_view text) {
   std::string safe = rdf::clean_utf8(text);
   std::erase(safe, '\0');

@@ -12,8 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Many JSON readers turn integers into doubles, which would change larger ones.
-constexpr std::int64_t kExactInteger = std::int64_t{1} << 53;
 constexpr int kIndent = 2;
 
 Json object_of(const Node& node, bool linked, std::string_view without = {});

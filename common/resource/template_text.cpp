@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t kIsoLength = 30;   // 2026-11-21T07:30:00.250000000Z
 constexpr std::size_t kMaxFolder = 160;  // The longest folder in a document's IRIs.
 constexpr int kMaxDigits = 15;           // A double represents these exactly.
-constexpr std::array kPowersOfTen{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                  1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+constexpr std::array kTens{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                           1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -61,8 +61,7 @@ bool TemplateText::decimal(double& out) {
   }
   const auto decimals = at_ - point - 1;
   if (decimals == 0 || whole + decimals > kMaxDigits) return false;
-  const double value =
-      static_cast<double>(digits) / kPowersOfTen[static_cast<std::size_t>(decimals)];
+  const double value = static_cast<double>(digits) / kTens[static_cast<std::size_t>(decimals)];
   out = negative ? -value : value;
   return value <= kMaxCoordinate;
 }

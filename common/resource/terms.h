@@ -27,7 +27,7 @@ struct TermUse {
   bool declared = true;
 };
 
-/// The meaning of `key` in a node of these types; a type may give a key a meaning of its own.
+/// The meaning of `key` in a node of these types; a type may give a key another meaning.
 [[nodiscard]] TermUse term(std::string_view key, const std::vector<std::string>& types = {});
 
 /// The IRI of a class or individual: "Frame", "ldp:BasicContainer" or an absolute IRI.

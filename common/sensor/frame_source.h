@@ -1,4 +1,5 @@
-// The interface of devices, which yield captures.  Simulators, recordings and hardware all have it.
+// The interface of devices, which yield captures.  Simulators, recordings and hardware all
+// implement it.
 #pragma once
 
 #include <functional>

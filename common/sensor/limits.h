@@ -1,14 +1,14 @@
-// Limits of what is accepted, the same for every reader and writer.
+// Limits that every reader and writer applies.
 #pragma once
 
 #include <cstddef>
 
 namespace chorus {
 
-/// Most bodies in one frame; a frame with more is malformed (a Kinect v2 gives six).
+/// Largest number of bodies in one frame; a frame with more is malformed (a Kinect v2 tracks six).
 inline constexpr std::size_t kMaxBodies = 64;
 
-/// Most sensors of a tracker: each is one bit of FusedBody::contributors.
+/// Largest number of sensors of a tracker: each is one bit of FusedBody::contributors.
 inline constexpr std::size_t kMaxSensors = 64;
 
 /// Largest coordinate that is accepted [m]: for a larger one, a writer writes the joint as not

@@ -3,7 +3,7 @@
 namespace chorus {
 namespace {
 
-/// Brown's model: the distorted place of an undistorted point (both normalised by depth).
+/// Brown's model: the distorted position of an undistorted point (both normalised by depth).
 Eigen::Vector2d distorted(const Eigen::Vector2d& x, const Intrinsics& camera) {
   const auto& [k1, k2, p1, p2, k3] = camera.distortion;
   const double r2 = x.squaredNorm();

@@ -11,7 +11,7 @@
 namespace chorus {
 
 /// The unit vector through a pixel (u to the right, v down) in the camera's axes: x right, y down,
-/// z ahead.  Undoes the distortion; none for pixels far outside the image, where that has no
+/// z ahead.  Corrects for distortion; none for pixels far outside the image, where that has no
 /// solution.
 [[nodiscard]] std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel,
                                                     const Intrinsics& camera);
@@ -21,11 +21,11 @@ namespace chorus {
 [[nodiscard]] Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& camera,
                                              double sigma);
 
-/// How a ray turns with the relative error of the focal length [rad]: towards the camera's axis, z.
+/// How a ray turns per relative error of the focal length [rad]: towards the camera's axis, z.
 [[nodiscard]] Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray);
 
 /// Adds the effect of an uncertain focal length (relative standard deviation `focal_sigma`) to a
-/// ray's covariance: nothing in the middle of the picture, much at its edge.  In sensor axes.
+/// ray's covariance: zero in the middle of the picture, largest at its edge.  In sensor axes.
 /// Leaves points, and rays without a known covariance, unchanged.
 void widen_ray(Joint& joint, double focal_sigma);
 

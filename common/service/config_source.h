@@ -14,7 +14,7 @@ struct ConfigSource {
   std::vector<std::string> assignments;  ///< "path=value", in order.
 };
 
-/// Reads the file anew; the code that reads the keys checks them.
+/// Reads the file, each time it is called.  The code that reads the keys checks them.
 [[nodiscard]] Result<ConfigReader> read_config(const ConfigSource& source);
 
 }  // namespace chorus::service

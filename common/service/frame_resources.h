@@ -21,7 +21,7 @@ class FrameResources {
 
   /// Sequences must increase within one run of the service.
   void publish(const FramePtr& frame);
-  /// Adds a better frame for an instant that has been published already: only /frame?at= shows it.
+  /// Adds a better frame for an instant that has already been published.  Only /frame?at= shows it.
   void amend(FramePtr frame) { ring_.amend(std::move(frame)); }
 
   /// The router keeps using this object, so the object must outlive it.

@@ -18,7 +18,7 @@ using resource::FramePtr;
 /// How far back /frames/{seq} and ?at= reach.
 struct FrameHistory {
   Duration span = std::chrono::seconds(3);
-  std::size_t most = 10'000;  ///< Most frames, whatever their rate.
+  std::size_t most = 10'000;  ///< Largest number of frames, whatever their rate.
 
   bool operator==(const FrameHistory&) const = default;
 };
@@ -37,9 +37,9 @@ class FrameRing {
   /// How many frames amend() has replaced.
   [[nodiscard]] std::uint64_t amendments() const;
 
-  /// The frame with this number, which comes from a path.  Gone when the number is before all
-  /// frames kept; NotFound when it is not a number, not published yet, or of a frame that was lost
-  /// or left out.
+  /// The frame with this number, which comes from a path.  Gone when the number is below those of
+  /// all frames kept; NotFound when it is not a number, not published yet, or that of a frame that
+  /// was lost or left out.
   [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const;
 
   /// The frame at an instant (an xsd:dateTime, or nanoseconds since the epoch as an integer),

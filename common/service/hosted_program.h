@@ -1,4 +1,4 @@
-// The part of Program that is the same for all services: leads from settings to a running service.
+// The part of Program that all services share: turns settings into a running service.
 //
 // Settings have two parts, each compared by value (defaulted ==).  A reload applies the whole part
 // `live`. The part `at_start` needs a restart; a reload logs which of its keys have changed.  No

@@ -54,7 +54,7 @@ Commands commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// How an option is written: "-h,--help", "--config TEXT" or, for an argument, its name.
+/// How an option is spelt: "-h,--help", "--config TEXT" or, for an argument, its name.
 std::string spelling(const CLI::Option& option) {
   std::string out = "\\fB" + roff(option.get_name(option.get_positional(), true)) + "\\fR";
   if (option.get_items_expected_max() > 0 && !option.get_type_name().empty())
@@ -75,7 +75,7 @@ std::string as_it_is(std::string_view text) {
   return text.empty() ? "" : ".PP\n.nf\n" + roff(text) + "\n.fi\n";
 }
 
-/// The commands of a program, and theirs in turn.
+/// The commands of a program, and their subcommands.
 std::string commands_text(const CLI::App& app, const std::string& name) {
   std::string out;
   for (const CLI::App* command : commands_of(app)) {

@@ -41,8 +41,8 @@ timespec timespec_of(std::chrono::microseconds time) {
   return {time.count() / kPerSecond, time.count() % kPerSecond * 1000};
 }
 
-/// Waits for the next signal; meanwhile tells the supervisor, as often as it requires, that the
-/// program is alive.
+/// Waits for the next signal; meanwhile reports to the supervisor, as often as it requires, that
+/// the program is alive.
 int next_signal(const sigset_t& signals, const Supervisor& supervisor, Program& program) {
   if (!supervisor.pulse()) {
     int signal = 0;

@@ -1,4 +1,4 @@
-// The frame around every service: leads from its command line to its exit code.
+// The frame around every service, from its command line to its exit code.
 //
 // The main thread waits for signals (sigwait), so that no handler interrupts other code: SIGTERM
 // and SIGINT stop the service, SIGHUP makes it read the configuration again.  If that configuration
@@ -22,7 +22,7 @@ class Program {
   /// Reads the whole configuration, calls ConfigReader::finish(), and creates everything that needs
   /// no port.  Called once, before the other functions.
   [[nodiscard]] virtual Result<LogConfig> prepare(ConfigReader config) = 0;
-  /// Called after prepare(): what would not work if the service started now, each with advice.
+  /// What would not work if the service started now, each with advice.  Called after prepare().
   /// Binds nothing and changes nothing.
   [[nodiscard]] virtual std::vector<std::string> concerns() { return {}; }
   /// Binds the ports and starts to run; returns at once.

@@ -72,7 +72,7 @@ class Recordings {
 
   [[nodiscard]] record::RecorderOptions options_for(const RecordingRequest& request) const;
   void settle();  ///< Takes note of a recording that has ended.  Call it with the mutex held.
-  /// At most `most` recordings, ordered by name, whose names come after `after`.
+  /// At most `most` recordings whose names come after `after`, ordered by name.
   [[nodiscard]] std::map<std::string, record::RecordingReport> some(const std::string& after,
                                                                     std::size_t most) const;
   [[nodiscard]] Result<record::RecordingReport> find(std::string_view name) const;

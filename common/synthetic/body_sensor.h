@@ -1,4 +1,4 @@
-// The interface of every simulated body-tracking sensor: it yields frames in order, with times by a
+// The interface of every simulated body-tracking sensor: it yields frames in order, stamped by a
 // host clock.
 //
 // Deterministic: the same scene, choice and start give the same frames.  sensor_choice.h makes a

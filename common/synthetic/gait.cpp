@@ -8,6 +8,7 @@
 #include "common/geometry/rotation.h"
 #include "common/motion/cmu_walk.h"
 #include "common/motion/motion.h"
+#include "common/synthetic/smoothstep.h"
 
 namespace chorus::synthetic {
 namespace {
@@ -19,9 +20,8 @@ constexpr std::size_t kRootTranslation = 3;
 constexpr std::size_t kMinCycle = 100;  // [frames] at 120 Hz: 0.83 s
 constexpr std::size_t kMaxCycle = 150;  // [frames]: 1.25 s
 constexpr std::size_t kBlend = 24;      // [frames] cross-faded at the seam: 0.2 s
-constexpr double kToeHeight = 0.03;     // height of a standing foot joint over the floor [m]
 
-/// How badly frame b fits after frame a: the sum of the squared differences of their angles.
+/// How badly frame b continues frame a: the sum of the squared differences of their angles.
 double mismatch(const AmcFrame& a, const AmcFrame& b) {
   double sum = 0;
   for (std::size_t c = kRootTranslation; c < a.size(); ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
@@ -73,8 +73,6 @@ void straighten_legs(const motion::AsfSkeleton& skeleton, const std::vector<AmcF
   }
 }
 
-double smooth(double x) { return x * x * (3 - 2 * x); }
-
 double lowest_foot(const Skeleton<WorldSpace>& body) {
   return std::min(body[JointId::FootLeft].position.y(), body[JointId::FootRight].position.y());
 }
@@ -114,7 +112,7 @@ void Gait::close_loop(const std::vector<AmcFrame>& take, std::size_t start, std:
   };
   for (std::size_t i = 0; i < length; ++i) {
     const std::size_t left = length - i;
-    const double fade = left > kBlend ? 0.0 : smooth(1.0 - static_cast<double>(left) / kBlend);
+    const double fade = left > kBlend ? 0.0 : smoothstep(1.0 - static_cast<double>(left) / kBlend);
     cycle_.push_back(fade > 0 ? mixed(relative(start + i), relative(start + i - length), fade)
                               : relative(start + i));
   }

@@ -3,7 +3,6 @@
 // The loop consists of joint angles, so bone lengths stay exact.  Its root keeps only the motion
 // that is left after the mean forward motion has been removed (sway, bob, surge); a Path says where
 // the person goes.
-// goes.
 #pragma once
 
 #include <vector>
@@ -12,6 +11,8 @@
 #include "common/motion/asf_amc.h"
 
 namespace chorus::synthetic {
+
+inline constexpr double kToeHeight = 0.03;  ///< Of a standing foot joint over the floor [m].
 
 class Gait {
  public:

@@ -33,8 +33,7 @@ inline constexpr std::array kOccluderKinds{OccluderKind{"car", 0.8, 1.2, 1.8},
                                            OccluderKind{"pillar", 0.4, 2.5, 0.4},
                                            OccluderKind{"table", 1.2, 0.75, 0.8}};
 
-/// Makes a thing that stands with the middle of its underside at `foot`, turned about +y by `yaw`
-/// [rad].
+/// A thing that stands with the centre of its underside at `foot`, turned about +y by `yaw` [rad].
 [[nodiscard]] Occluder stand_thing(const OccluderKind& size, const Eigen::Vector3d& foot,
                                    double yaw);
 

@@ -8,6 +8,7 @@
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "common/synthetic/draw.h"
+#include "common/synthetic/smoothstep.h"
 
 namespace chorus::synthetic {
 namespace {
@@ -20,10 +21,10 @@ constexpr double kTurnStep = 0.35;      // Amplitude of the strides when turning
 constexpr double kPauseShare = 0.35;    // Probability of a pause at a way-point of a random walk.
 constexpr double kMinPause = 0.5;       // [s]
 constexpr double kMaxPause = 3.0;       // [s]
-constexpr double kRandomLoop = 240.0;   // Least length of the loop of a random walk [s].
+constexpr double kRandomLoop = 240.0;   // Shortest loop of a random walk [s].
 constexpr double kStandLoop = 60.0;     // [s]
 constexpr double kLinePause = 0.4;      // At each end, before turning [s].
-// Least length of a leg, as a share of the reach; shorter legs are drawn again.
+// Shortest leg, as a share of the reach; shorter ones are drawn again.
 constexpr double kMinLegShare = 0.5;
 constexpr double kMinAmplitude = 0.3;
 constexpr double kMaxAmplitude = 1.4;
@@ -43,8 +44,7 @@ constexpr std::uint64_t kDrawWander = 101;
 constexpr std::uint64_t kDrawDirection = 102;
 constexpr std::uint64_t kDrawReach = 103;
 
-double smooth(double x) { return x * x * (3 - 2 * x); }
-/// Integral of smooth() from 0 to x.
+/// Integral of smoothstep() from 0 to x.
 double smooth_way(double x) { return x * x * x * (1 - 0.5 * x); }
 
 double heading_towards(const Eigen::Vector2d& way) { return std::atan2(way.x(), way.y()); }
@@ -83,7 +83,7 @@ void Path::pause(double duration) {
 
 void Path::turn_to(double heading) {
   turn_by(wrap_angle(heading - heading_));
-  heading_ = wrap_angle(heading);  // Set again, because the sum was rounded.
+  heading_ = wrap_angle(heading);  // Set exactly, because the sum was rounded.
 }
 
 void Path::turn_by(double turn) {
@@ -197,7 +197,8 @@ void Path::assemble() {
   for (int i = 0; i < kStations; ++i) {
     for (int k = 0; k < kReachesPerStation; ++k) {
       const bool left = k % 2 == 0;
-      const double aside = draw.uniform(-0.05, 0.35);  // From across the middle to far outside [m].
+      // From slightly across the middle to far outside [m].
+      const double aside = draw.uniform(-0.05, 0.35);
       const double height = kReachHeights[static_cast<std::size_t>(i + k) % kReachHeights.size()];
       reach_for(left, {left ? aside : -aside, height, kReachForward},
                 draw.uniform(kMinHold, kMaxHold));
@@ -211,7 +212,7 @@ PathPoint Path::along(const Leg& leg, double time) const {
   PathPoint point{leg.from, leg.heading, cadence_ * time, 0.0};
   const double share = leg.duration > 0 ? std::clamp(time / leg.duration, 0.0, 1.0) : 1.0;
   if (leg.move == Move::Turn) {
-    point.heading = leg.heading + leg.turn * smooth(share);
+    point.heading = leg.heading + leg.turn * smoothstep(share);
     point.amplitude = kTurnStep * amplitude_ * std::sin(std::numbers::pi * share);
   } else if (leg.move == Move::Orbit) {
     const double angle = leg.heading + leg.turn * share;
@@ -220,12 +221,13 @@ PathPoint Path::along(const Leg& leg, double time) const {
     point.heading = wrap_angle(angle + std::numbers::pi / 2);
     point.amplitude = amplitude_;
   } else if (leg.move == Move::Aside) {
-    point.place = leg.from + smooth(share) * (leg.to - leg.from);
+    point.place = leg.from + smoothstep(share) * (leg.to - leg.from);
     point.amplitude = kTurnStep * amplitude_ * std::sin(std::numbers::pi * share);
   } else if (leg.move == Move::Reach) {
     point.reach = leg.reach;
-    point.reach.amount = std::min(smooth(std::clamp(time / leg.ramp, 0.0, 1.0)),
-                                  smooth(std::clamp((leg.duration - time) / leg.ramp, 0.0, 1.0)));
+    point.reach.amount =
+        std::min(smoothstep(std::clamp(time / leg.ramp, 0.0, 1.0)),
+                 smoothstep(std::clamp((leg.duration - time) / leg.ramp, 0.0, 1.0)));
   } else if (leg.move == Move::Walk) {
     const double begin = std::clamp(time / leg.ramp, 0.0, 1.0);
     const double end = std::clamp((leg.duration - time) / leg.ramp, 0.0, 1.0);
@@ -234,7 +236,7 @@ PathPoint Path::along(const Leg& leg, double time) const {
         leg.speed * (leg.ramp * (smooth_way(begin) + 0.5 - smooth_way(end)) + cruise);
     point.place = leg.from + way * (leg.to - leg.from).normalized();
     point.amplitude =
-        amplitude_ * (leg.speed / script_.speed) * std::min(smooth(begin), smooth(end));
+        amplitude_ * (leg.speed / script_.speed) * std::min(smoothstep(begin), smoothstep(end));
   }
   return point;
 }

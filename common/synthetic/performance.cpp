@@ -11,6 +11,7 @@
 #include "common/base/median.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
+#include "common/synthetic/gait.h"
 
 namespace chorus::synthetic {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 using Body = Skeleton<WorldSpace>;
 using Frames = std::vector<Body>;
 
-constexpr double kToeHeight = 0.03;  // height of a standing foot joint over the floor [m]
 // The quantile of the frames' lowest feet that is put on the floor; lower feet are noise.
 constexpr double kStandingShare = 0.05;
 // Limits of the distance from knee to hip [m]: a child of eight, a giant.  The interval is so
@@ -220,7 +220,7 @@ void drop_pose(std::vector<motion::Motion>& roles) {
 }  // namespace
 
 Result<Performance> staged(std::vector<motion::Motion> captured) {
-  // Things and half-tracked bystanders get no role if there is somebody with all joints.
+  // Objects and half-tracked bystanders get no role if somebody has all joints.
   if (captured.size() > 1) {
     const auto lacks = [](const motion::Motion& role) {
       return missing_joint(role.frames).has_value();

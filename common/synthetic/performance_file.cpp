@@ -48,7 +48,7 @@ Captured from_bvh(const MotionFile& file, const std::string& text) {
   return single(motion::motion_from_bvh(*bvh), file.path.string());
 }
 
-/// The skeleton's file: "02_01.amc" -> "02_01.asf" if that exists, else "02.asf".
+/// The skeleton's file: "02_01.amc" -> "02_01.asf" if that exists, otherwise "02.asf".
 std::filesystem::path skeleton_of(const std::filesystem::path& amc) {
   std::filesystem::path own = amc;
   own.replace_extension(".asf");

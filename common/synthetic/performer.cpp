@@ -13,9 +13,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr double kTurnRound = 0.3;  // Time for slowing down, and for speeding up, at each end [s].
-// The fraction by which people are at most taller or shorter than the script says.
-constexpr double kBuildSpread = 0.08;
-constexpr std::uint64_t kDrawBuild = 211;
+constexpr std::uint64_t kDrawGroupBuild = 211;
 constexpr std::uint64_t kDrawStart = 212;
 
 double length_of(const motion::Motion& motion) {
@@ -23,12 +21,12 @@ double length_of(const motion::Motion& motion) {
                                : static_cast<double>(motion.frames.size() - 1) / motion.rate_hz;
 }
 
-/// Turns the time since the reversal at one end into a place; a parabola smooths the reversal.
+/// Position in the motion after the reversal at one end; a parabola smooths the reversal.
 double rounded(double time, double round) {
   return time < round ? 0.5 * (time * time / round + round) : time;
 }
 
-/// Place in the motion [s] when it is played back and forth; `time` is in [0, 2 length).
+/// Position in the motion [s] when it is played back and forth; `time` is in [0, 2 length).
 double played(double time, double length) {
   if (!(length > 0.0)) return 0.0;
   const double round = std::min(kTurnRound, 0.5 * length);
@@ -105,7 +103,7 @@ std::vector<Person> make_performers(std::shared_ptr<const Performance> performan
     }
     if (group > 0) {
       own.body_scale *=
-          1.0 + Draw{script.seed, kDrawBuild, group}.uniform(-kBuildSpread, kBuildSpread);
+          1.0 + Draw{script.seed, kDrawGroupBuild, group}.uniform(-kBuildSpread, kBuildSpread);
       const double share = Draw{script.seed, kDrawStart, group}.uniform();
       own.start = from_seconds(share * seconds(Performer(performance, own).loop()));
     }

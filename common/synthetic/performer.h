@@ -2,8 +2,8 @@
 //
 // The motion is played forwards, then backwards, and so on: a take of walking does not end where it
 // began, and a cross-fade would slide the feet and bend the bones.  Around both ends, time slows
-// down and reverses, so that neither places nor velocities jump.  Between frames, positions follow
-// a Catmull-Rom spline.
+// down and reverses, so that neither positions nor velocities jump.  Between frames, positions
+// follow a Catmull-Rom spline.
 //
 // A pure function of the motion, the script and the time since an epoch: all processes that have
 // the same three see the same person at the same instant.
@@ -23,12 +23,12 @@ struct PerformerScript {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double turn = 0.0;        ///< Yaw about that centre [rad]
   double body_scale = 1.0;  ///< Also scales paths, so that feet do not slide.
-  Duration start{0};        ///< Place in the loop at the epoch.
+  Duration start{0};        ///< Position in the loop at the epoch.
 };
 
 class Performer {
  public:
-  /// A role that the performance lacks gives a body that is not tracked.
+  /// If the performance lacks the role, the body is not tracked.
   Performer(std::shared_ptr<const Performance> performance, const PerformerScript& script);
 
   /// All 25 joints, tracked, in world space.
@@ -44,8 +44,8 @@ class Performer {
 
 /// `count` people who play the motion at the script's centre.  People from one file stay together
 /// as captured.  If there are more people than the file has, further groups play it too: evenly
-/// spaced on a circle with the script's reach, and each group is turned, has another build and is
-/// elsewhere in the loop.  Uses only the script's seed, centre, reach and body_scale.
+/// spaced on a circle with the script's reach, each group turned, of another build, and at another
+/// position in the loop.  Uses only the script's seed, centre, reach and body_scale.
 [[nodiscard]] std::vector<Person> make_performers(std::shared_ptr<const Performance> performance,
                                                   const WalkerScript& script, std::size_t count);
 

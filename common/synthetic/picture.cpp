@@ -15,7 +15,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr int kJpegQuality = 85;
-constexpr int kPngEffort = 1;  // The lowest of nine: each picture is viewed only once.
+constexpr int kPngEffort = 1;  // The lowest of nine, because each picture is viewed only once.
 
 /// libjpeg calls this instead of returning an error.
 struct JpegErrors {
@@ -124,7 +124,7 @@ Result<std::string> png_of(std::span<const std::uint16_t> pixels, PictureSize si
   std::string header;
   append_number(header, static_cast<std::uint32_t>(size.width));
   append_number(header, static_cast<std::uint32_t>(size.height));
-  // 16 bit, grey, and the only methods that PNG defines.
+  // 16 bits, grey, and the only methods that PNG defines.
   header += std::string("\x10\x00\x00\x00\x00", 5);
   std::string out = "\x89PNG\r\n\x1a\n";
   append_chunk(out, "IHDR", header);

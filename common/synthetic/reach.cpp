@@ -9,7 +9,7 @@ namespace {
 
 // Largest distance of wrist and shoulder, as a share of the arm's length: nobody locks the elbow.
 constexpr double kStraightest = 0.98;
-constexpr double kClosest = 0.35;  // Least distance of wrist and shoulder, as such a share.
+constexpr double kClosest = 0.35;  // Smallest distance of wrist and shoulder, likewise.
 
 struct Arm {
   JointId shoulder, elbow, wrist;

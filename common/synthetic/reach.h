@@ -1,4 +1,4 @@
-// Makes a hanging or swinging arm reach for a point: two bones, whose lengths are kept.
+// Makes a hanging or swinging arm reach for a point; the lengths of its two bones are kept.
 //
 // All points are in the walk frame of one person: origin on the floor under the body, +z to the
 // front, +y up, +x to the left; metres for a person as tall as the recorded subject.

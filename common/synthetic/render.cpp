@@ -19,8 +19,8 @@ constexpr std::uint16_t kNobody = 0;
 constexpr std::uint16_t kThing = 65535;
 constexpr int kMaxPixels = 4'000'000;
 
-/// What each pixel sees: the distance along its ray, and whose body (kNobody: floor or nothing;
-/// kThing).
+/// What each pixel sees: the distance along its ray, and whose body it is (kNobody: floor or
+/// nothing; kThing).
 struct RangeImage {
   int width = 0;
   int height = 0;

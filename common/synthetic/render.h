@@ -1,4 +1,4 @@
-// Images of a scene as one sensor sees it: bodies of capsules, and things, on a floor.
+// Images of a scene as one sensor sees it: bodies made of capsules, and things, on a floor.
 //
 // Images are not mirrored: sensor x points to the sensor's left, so column = cx - fx x / z and row
 // = cy - fy y / z.

@@ -9,8 +9,6 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawBuild = 201;
-// The fraction by which people are at most taller or shorter than the script says.
-constexpr double kBuildSpread = 0.08;
 
 }  // namespace
 

@@ -16,6 +16,9 @@
 
 namespace chorus::synthetic {
 
+/// The fraction by which people are at most taller or shorter than the script says.
+inline constexpr double kBuildSpread = 0.08;
+
 /// The true pose of a person at a time after the scene's epoch.
 using Person = std::function<Skeleton<WorldSpace>(Duration since_epoch)>;
 

@@ -21,7 +21,7 @@ Duration phase_of(const SimulatedSensor& sensor) {
       static_cast<Duration::rep>(draw.uniform() * span_of(sensor.model.sampling.period)));
 }
 
-/// True if the sensor sees the trunk of the body; only then it reports the body.
+/// True if the sensor sees the trunk of the body; only then does it report the body.
 bool is_seen(const Skeleton<SensorSpace>& body) {
   return body[JointId::Neck].seen() && body[JointId::SpineMid].seen() &&
          (body[JointId::Neck].state == JointState::Tracked ||
@@ -69,7 +69,7 @@ void limit_view(Skeleton<SensorSpace>& body, const FieldOfView& view) {
     const double range = p.norm();
     const double outside = std::max(std::abs(std::atan2(p.x(), p.z())) - view.half_width,
                                     std::abs(std::atan2(p.y(), p.z())) - view.half_height);
-    // Negated comparisons, so that a NaN joint becomes not tracked.
+    // NaN fails these comparisons, so such a joint becomes not tracked.
     const bool in_range = range >= view.least_range && range <= view.most_range;
     if (!joint.seen() || !in_range || !(outside <= view.margin)) {
       joint = Joint{};

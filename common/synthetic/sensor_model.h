@@ -2,9 +2,9 @@
 //
 // This is the plain profile, "gauss": limited view, joints hidden by things, white Gaussian noise,
 // jittered time, dropped frames.  The error of a real Kinect is coloured and depends on the view,
-// and a real Kinect exchanges left and right when it sees a person from behind.  This model does
-// none of that, so accuracy measured with it is better than in reality for every method.
-// Everything is a pure function of (scene, sensor, frame number).
+// and a real Kinect swaps left and right when it sees a person from behind.  This model does none
+// of that, so accuracy measured with it is better than in reality for every method.  Everything is
+// a pure function of (scene, sensor, frame number).
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace chorus::synthetic {
 
 inline constexpr std::string_view kGaussProfile = "gauss";
 
-/// When frames are taken.  Source: in real logs, steps are 32.6-33.0 ms and a few % of the frames
-/// are lost.
+/// When frames are taken.  Source: real logs, in which steps are 32.6-33.0 ms and a few % of the
+/// frames are lost.
 struct Sampling {
   Duration period{33'333'333};                     ///< 30 Hz
   Duration jitter = std::chrono::milliseconds(2);  ///< Uniform within +- this.

@@ -15,15 +15,15 @@ constexpr std::int64_t kMinNs = 1'000'000'000'000'000'000;
 constexpr std::int64_t kMaxNs = 9'000'000'000'000'000'000;
 
 constexpr double kTolerance = 50e-6;     // [s] by which stamps may contradict each other
-constexpr double kMostCounted = 1000.0;  // exchanges; older ones fade from the mean
-constexpr double kScatter = 4.0;         // least delays err by about the mean excess / exchanges
+constexpr double kMostCounted = 1000.0;  // exchanges; older ones are forgotten gradually
+constexpr double kScatter = 4.0;  // the smallest delays err by about the mean excess / exchanges
 
 bool plausible(Timestamp t) {
   const std::int64_t ns = to_unix_ns(t);
   return ns >= kMinNs && ns <= kMaxNs;
 }
 
-/// False for what cannot have happened, and for what would tell nothing.
+/// False for an exchange that cannot have happened or that contains no information.
 bool possible(const ClockExchange& exchange, Duration max_uncertainty) {
   if (!plausible(exchange.sent) || !plausible(exchange.received) ||
       !plausible(exchange.their_receipt) || !plausible(exchange.their_sending)) {
@@ -69,10 +69,10 @@ ClockFilter::Corridor ClockFilter::with(Corridor corridor, const ClockExchange& 
   return corridor;
 }
 
-/// The rate with the largest likelihood under exponential delays, a Laplace prior on the rate: the
-/// maximum of a concave function made of straight pieces is at one of its corners.
+/// The most likely rate under exponential delays and a Laplace prior on the rate.  The function to
+/// maximise is concave and piecewise linear, so its maximum is at a corner.
 double ClockFilter::widest(const Corridor& corridor) const {
-  const double least_mean = 1e-6;  // [s] so that equal delays do not make the prior void
+  const double least_mean = 1e-6;  // [s] so that equal delays do not switch the prior off
   const double excess = std::max(least_mean, mean_delay_ - corridor.width(rate_));
   const double believed = excess / (limits_.usual_rate * std::max(1.0, exchanges_));
   const auto value = [&](double rate) { return corridor.width(rate) - believed * std::abs(rate); };
@@ -94,7 +94,7 @@ double ClockFilter::widest(const Corridor& corridor) const {
   return best;
 }
 
-/// Whether some line lies between all requests and all answers.
+/// True if some line lies between all requests and all answers.
 bool ClockFilter::open(const Corridor& corridor) const {
   if (corridor.there.empty() || corridor.back.empty()) return true;
   return corridor.width(widest(corridor)) > -kTolerance;
@@ -113,7 +113,8 @@ void ClockFilter::accept(Corridor corridor, const ClockExchange& exchange) {
   last_ = exchange.received;
 }
 
-/// Keeps as much of the past as agrees with what contradicted it.
+/// After a step: keeps as much of the past as agrees with the exchanges that contradicted the
+/// estimate.
 void ClockFilter::follow_step() {
   const std::vector<ClockExchange> news = std::exchange(pending_, {});
   const auto fits = [&] {

@@ -1,12 +1,12 @@
 // How far another host's clock differs from ours, from the stamps on each answer (Cristian 1989).
 //
 // We stamp sending (t0) and receipt (t3); the other side stamps its receipt (t1) and sending (t2).
-// With theirs - ours = a + r t, all requests have t1 - t0 = a + r t0 + delay and all answers
-// t2 - t3 = a + r t3 - delay.  Delays vary to one side only, so both least delays are found, each
-// in its own direction, with one common rate (Moon, Skelly and Towsley 1999; Zhang, Liu and Xia
-// 2002): the rate that leaves the widest corridor between requests and answers, weighed against a
-// small one. The clock is the middle of the corridor; how much longer requests take than answers at
-// least cannot be seen.  A long poll may wait any time between t1 and t2.
+// With theirs - ours = a + r t, all requests have t1 - t0 = a + r t0 + delay and all answers t2 -
+// t3 = a + r t3 - delay.  Delays vary to one side only, so we find the smallest delay in each
+// direction, with one common rate (Moon, Skelly and Towsley 1999; Zhang, Liu and Xia 2002): the
+// rate that leaves the widest corridor between requests and answers, with a preference for small
+// rates.  The clock is the middle of the corridor; a difference between the smallest delays of
+// requests and answers cannot be observed.  A long poll may wait any time between t1 and t2.
 #pragma once
 
 #include <cstdint>
@@ -29,21 +29,23 @@ struct ClockExchange {
 
 struct ClockEstimate {
   Duration ours_minus_theirs{0};  ///< Add this to their stamps to get ours.
-  Duration uncertainty{0};        ///< Bound of the error: half of the least round trip, and more.
-  double rate = 0.0;              ///< By which their clock runs faster than ours [s/s].
+  Duration uncertainty{0};        ///< Bound of the error: at least half of the shortest round trip.
+  double rate = 0.0;              ///< How much faster their clock runs than ours [s/s].
 };
 
-/// Standard deviation of a clock about which nobody says anything [s].
+/// Standard deviation of a clock about which nothing is known [s].
 inline constexpr double kUnknownClock = 0.5;
 
-/// Standard deviation of a corrected stamp [s]: as if the error were uniform within its bound.
+/// Standard deviation of a corrected stamp [s], assuming that the error is uniform within its
+/// bound.
 [[nodiscard]] double clock_sigma(const std::optional<ClockEstimate>& estimate);
 
 struct ClockFilterLimits {
   Duration window = std::chrono::seconds(40);
-  /// No two clocks' rates differ by more: 500 ppm while one is set, 390 ppm of a device.
+  /// No two clocks' rates differ by more: 500 ppm while one is being adjusted, and 390 ppm of a
+  /// device.
   double max_rate = 1000e-6;
-  double usual_rate = 100e-6;  ///< Rates beyond need evidence.
+  double usual_rate = 100e-6;  ///< Larger rates need evidence.
   double wander = 10e-6;       ///< Growth of the uncertainty without exchanges [s/s].
   /// Exchanges with a larger uncertainty are ignored.
   Duration max_uncertainty = std::chrono::milliseconds(250);
@@ -67,11 +69,13 @@ class ClockFilter {
 
   [[nodiscard]] std::optional<ClockEstimate> at(Timestamp now) const;
 
-  /// The last exchange contradicts the estimate; the next ones show whether a clock was set.
+  /// True if the last exchange contradicts the estimate; the next ones show whether a clock was
+  /// set.
   [[nodiscard]] bool doubtful() const noexcept { return !pending_.empty(); }
 
  private:
-  /// Least delays both ways, in seconds since `origin_` and beside `base_`.
+  /// The smallest delays in both directions; times in seconds since `origin_`, differences relative
+  /// to `base_`.
   struct Corridor {
     DelayHull there;  ///< t1 - t0 at t0.
     DelayHull back;   ///< t3 - t2 at t3.
@@ -88,17 +92,18 @@ class ClockFilter {
 
   ClockFilterLimits limits_;
   Timestamp origin_;
-  Duration base_{0};  ///< Theirs minus ours, roughly.
+  Duration base_{0};  ///< Their clock minus ours, roughly.
   Corridor corridor_;
   double rate_ = 0.0;
-  double mean_delay_ = 0.0;  ///< Of both ways together [s].
-  double exchanges_ = 0.0;   ///< That mean_delay_ stands for.
+  double mean_delay_ = 0.0;  ///< Of both directions together [s].
+  double exchanges_ = 0.0;   ///< Number of exchanges in mean_delay_.
   std::optional<Timestamp> last_;
-  std::vector<ClockExchange> pending_;  ///< Contradictory ones, until it is clear what they are.
+  /// Contradictory exchanges, until it is clear what they mean.
+  std::vector<ClockExchange> pending_;
 };
 
-/// What to add to the sensor's capture times: the estimate, to 10 us, so that it changes about once
-/// a second and not with every frame; zero without one.
+/// What to add to the sensor's capture times: the estimate rounded to 10 us, so that it changes
+/// about once a second and not with every frame; zero without an estimate.
 [[nodiscard]] Duration correction(const std::optional<ClockEstimate>& estimate);
 
 }  // namespace chorus

@@ -6,7 +6,7 @@
 namespace chorus {
 namespace {
 
-/// Whether b is on or above the line from a to c.
+/// True if b is on or above the line from a to c.
 bool above(const DelayHull::Point& a, const DelayHull::Point& b, const DelayHull::Point& c) {
   return (b.value - a.value) * (c.time - a.time) >= (c.value - a.value) * (b.time - a.time);
 }

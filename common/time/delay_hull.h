@@ -1,8 +1,8 @@
-// The least of one-sided delays against a clock that drifts.
+// The smallest of one-sided delays relative to a clock that drifts.
 //
-// A delay is never less than the network's own, so all points (time, delay + clock difference) lie
-// above a line whose slope is the rate of the clocks.  Only their lower convex hull can touch such
-// a line, whatever the rate (Zhang, Liu and Xia 2002).
+// A delay is never below the network's minimum, so all points (time, delay + clock difference) lie
+// above a line whose slope is the rate of the clocks.  Whatever the rate, only their lower convex
+// hull can touch such a line (Zhang, Liu and Xia 2002).
 #pragma once
 
 #include <deque>
@@ -16,9 +16,9 @@ class DelayHull {
     double value = 0.0;  ///< [s]
   };
 
-  /// Times must not decrease; an earlier one counts as the last.
+  /// Times should not decrease; an earlier time counts as equal to the last.
   void add(Point point);
-  /// What lay above a forgotten point's edge stays forgotten: the hull loses at most that.
+  /// Points above an edge were not kept, so forgetting one of its ends may lose some of them.
   void forget_before(double time);
   /// Forgets the first half of the time that the hull spans, at least one point.
   void forget_half();
@@ -26,8 +26,8 @@ class DelayHull {
   [[nodiscard]] bool empty() const noexcept { return points_.empty(); }
   /// Oldest first; slopes increase.
   [[nodiscard]] const std::deque<Point>& points() const noexcept { return points_; }
-  /// The least value - rate * time: the line of this slope that all points are above.  Infinite
-  /// when there are none.
+  /// The smallest value - rate * time, that is, the intercept of the highest line of this slope
+  /// below all points.  Infinite when there are none.
   [[nodiscard]] double least(double rate) const;
 
  private:

@@ -1,7 +1,8 @@
 // One time type: UTC nanoseconds since the Unix epoch.  Capture time unless a name says otherwise.
 //
-// Timestamp has its own clock type, so UTC can never be subtracted from steady time.  UTC may step
-// (NTP), so NtpClock is not steady: use std::chrono::steady_clock for time-outs, never this one.
+// Timestamp has its own clock type, so UTC can never be subtracted from steady time.  UTC can be
+// stepped (NTP), so this clock is not steady: use std::chrono::steady_clock for time-outs, never
+// this one.
 #pragma once
 
 #include <chrono>

@@ -18,7 +18,7 @@ namespace {
 constexpr int kSerialBits = 127;
 constexpr std::size_t kLongestName = 253;
 
-/// For OpenSSL calls that fail only without memory or randomness.
+/// For OpenSSL calls that fail only for lack of memory or randomness.
 void need(bool done) {
   if (!done) throw std::runtime_error("making a certificate failed: " + last_reason());
 }

@@ -20,7 +20,7 @@ struct Validity {
   std::chrono::sys_seconds until;
 };
 
-/// From an hour ago, because a workshop's clocks differ, until `days` days from now.
+/// From an hour ago, because the clocks of a workshop differ, until `days` days from now.
 [[nodiscard]] Validity for_days(int days);
 
 /// A new authority (elliptic curve P-256) that can sign hosts, but no further authorities.  `name`

@@ -14,7 +14,7 @@ namespace {
 constexpr int kIpv4Bytes = 4;
 constexpr int kIpv6Bytes = 16;
 
-/// Text from a stranger, made safe for a terminal.
+/// Untrusted text, made safe for a terminal.
 std::string shown(const unsigned char* bytes, int size) {
   std::string text(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
   for (char& c : text) {

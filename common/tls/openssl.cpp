@@ -9,7 +9,7 @@
 namespace chorus::tls {
 namespace {
 
-/// Never asks on the terminal, because a service has none.
+/// Supplies no password, instead of asking on the terminal, which a service lacks.
 int no_password(char*, int, int, void*) { return -1; }
 
 }  // namespace

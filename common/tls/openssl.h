@@ -35,8 +35,8 @@ using Owned = std::unique_ptr<T, Freeing>;
 /// The unencrypted private key of a PEM text; null if there is none.
 [[nodiscard]] Owned<EVP_PKEY> key_in(std::string_view pem);
 
-/// Settings for servers and clients: TLS 1.2 and above, forward secrecy, nothing that outlives a
-/// connection.
+/// Settings for servers and clients: TLS 1.2 and above, forward secrecy, and no state that outlives
+/// a connection.
 [[nodiscard]] Owned<SSL_CTX> new_context(const SSL_METHOD* method);
 
 }  // namespace chorus::tls

@@ -13,7 +13,7 @@
 namespace chorus::tls {
 namespace {
 
-/// What an alert of the other side, or bytes that are not TLS, mean for the people on this side.
+/// What an alert from the other side, or bytes that are not TLS, mean for people on this side.
 struct Reason {
   int code;
   std::string_view words;
@@ -46,7 +46,7 @@ std::string words_for(unsigned long code) {
          (text == nullptr ? "it broke off" : text);
 }
 
-/// Notes the facts of a certificate that is refused, because afterwards OpenSSL no longer has it.
+/// Keeps the facts of a certificate that is refused, because OpenSSL does not keep the certificate.
 int note_objection(int accepted, X509_STORE_CTX* checking) {
   const void* const ssl =
       X509_STORE_CTX_get_ex_data(checking, SSL_get_ex_data_X509_STORE_CTX_idx());

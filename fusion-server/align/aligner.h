@@ -1,10 +1,10 @@
 // Moves one sensor's bodies to a common instant by linear interpolation (Otto 5.2.4).
 //
-// Positions are interpolated linearly, orientations by sign-aligned normalised LERP.  A joint is
+// Positions are interpolated linearly, orientations by sign-aligned normalised LERP. A joint is
 // interpolated only when both frames saw it; its state is the worse of the two.  Bodies are matched
 // by id.  A body that only one of the two frames has is left out.  So is one that would have moved
-// faster than anybody can: its id went to somebody else between the two frames.  Nothing is ever
-// extrapolated.
+// faster than anybody can, because its id was passed to somebody else between the two frames.
+// Nothing is ever extrapolated.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct AlignConfig {
   /// Widest gap between two frames that is interpolated; it is wider for a sensor with a long
   /// period (widest_gap).
   Duration max_gap = std::chrono::milliseconds(120);
-  /// Age at which a Pending answer becomes Lost; it is less if the sensor's recent delays are
+  /// Age at which Pending becomes Lost; it is less if the sensor's recent delays are shorter
   /// (longest_wait).
   Duration patience = std::chrono::milliseconds(200);
   /// A sensor is unsteady if its delay varies from frame to frame by more than this, and by more
@@ -46,12 +46,12 @@ struct AlignConfig {
 /// periods.
 [[nodiscard]] Duration widest_gap(const History& history, const AlignConfig& config);
 
-/// The longest time after an instant at which this sensor's next frame arrives, as its recent
-/// frames show; none until enough frames with a time of arrival have come.
+/// The longest time that an instant waited for this sensor's next frame, according to its recent
+/// frames; none until there are enough frames with a time of receipt.
 [[nodiscard]] std::optional<Duration> longest_wait(const History& history);
 
-/// The median of these times instead of the longest: one frame that the processor delayed does not
-/// change it.
+/// The median of these times instead of the longest; a single frame that was delayed on a busy
+/// processor does not change it.
 [[nodiscard]] std::optional<Duration> usual_wait(const History& history);
 
 }  // namespace chorus::align

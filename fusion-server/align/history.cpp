@@ -12,7 +12,7 @@ constexpr std::size_t kMinHabit = 10;  ///< With fewer there is no habit, except
 constexpr std::size_t kMinSlow = 4;    ///< A slow sensor needs only this many.
 constexpr Duration kSlow = std::chrono::seconds(1);
 
-/// Keeps only the first of several bodies with the same id, because they cannot be told apart
+/// Keeps only the first of several bodies with the same id, because they cannot be distinguished
 /// later.
 void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   for (std::size_t i = 1; i < bodies.size();) {
@@ -78,23 +78,41 @@ std::optional<Timestamp> History::newest() const {
   return frames_.back().captured;
 }
 
-PushVerdict History::push(SensorFrame frame) {
+void History::move_in_time(Duration by) {
+  if (by == Duration{0}) return;
+  for (SensorFrame& frame : frames_) chorus::move_in_time(frame, by);
+  habit_ = habit_of(frames_);
+}
+
+/// What a frame is, as if it were the only one of its kind; Restarted is for push() to say.
+PushVerdict History::verdict_on(const SensorFrame& frame) const {
   const bool received_known = frame.received != Timestamp{};
-  if (received_known && frame.captured - frame.received > limits_.max_future) {
+  if (received_known && frame.captured - frame.received > limits_.max_future)
     return PushVerdict::Future;
+  const auto place =
+      std::lower_bound(frames_.begin(), frames_.end(), frame.captured,
+                       [](const SensorFrame& f, Timestamp t) { return f.captured < t; });
+  if (place == frames_.end()) return PushVerdict::Added;
+  if (place->captured == frame.captured) return PushVerdict::Duplicate;
+  const SensorFrame& newest = frames_.back();
+  if (frame.sequence >= newest.sequence) return PushVerdict::Backwards;
+  return newest.captured - frame.captured > limits_.latest ? PushVerdict::Stale : PushVerdict::Late;
+}
+
+PushVerdict History::push(SensorFrame frame) {
+  PushVerdict verdict = verdict_on(frame);
+  if (verdict == PushVerdict::Future || verdict == PushVerdict::Duplicate) return verdict;
+  const bool refused = verdict == PushVerdict::Backwards || verdict == PushVerdict::Stale;
+  steps_back_ = refused ? steps_back_ + 1 : 0;
+  if (refused && steps_back_ < limits_.steps_to_restart) return verdict;
+  if (refused) {
+    verdict = PushVerdict::Restarted;
+    steps_back_ = 0;
+    frames_.clear();
   }
-  auto place = std::lower_bound(frames_.begin(), frames_.end(), frame.captured,
-                                [](const SensorFrame& f, Timestamp t) { return f.captured < t; });
-  if (place != frames_.end() && place->captured == frame.captured) return PushVerdict::Duplicate;
-  PushVerdict verdict = PushVerdict::Added;
-  if (place != frames_.end()) {
-    const SensorFrame& newest = frames_.back();
-    const bool restarted = newest.captured - frame.captured > limits_.restart_step;
-    if (!restarted && frame.sequence >= newest.sequence) return PushVerdict::Backwards;
-    verdict = restarted ? PushVerdict::Restarted : PushVerdict::Late;
-    if (restarted) frames_.clear();
-    if (restarted) place = frames_.end();
-  }
+  const auto place =
+      std::lower_bound(frames_.begin(), frames_.end(), frame.captured,
+                       [](const SensorFrame& f, Timestamp t) { return f.captured < t; });
   keep_first_of_each_id(frame.bodies);
   if (!frame.bodies.empty()) {
     rays_only_ = std::ranges::all_of(

@@ -14,12 +14,13 @@ namespace chorus::align {
 
 enum class PushVerdict {
   Added,
-  Duplicate,  ///< There is a frame of this capture time already (polled faster than captured).
+  Duplicate,  ///< There already is a frame with this capture time (polled faster than captured).
   Late,       ///< Its sequence is before that of the newest frame; inserted at its place.
+  Stale,      ///< The same, but too late to be of use; refused.
   Backwards,  ///< Its sequence is later, but it was captured before the newest frame; refused.
   Future,     ///< Captured implausibly long after it was received; refused.
-  /// Captured much earlier: the sensor's clock was set or the device restarted; the history was
-  /// cleared.
+  /// The third in a row that was captured before the newest frame: the sensor's clock was set back,
+  /// its device restarted, or the newest frame was from the future.  The history was cleared.
   Restarted,
 };
 
@@ -29,11 +30,13 @@ struct HistoryLimits {
   /// A frame is refused if captured - received exceeds this; a frame without `received` is
   /// accepted.
   Duration max_future = std::chrono::seconds(2);
-  /// A capture time farther back than this means a restart.
-  Duration restart_step = std::chrono::milliseconds(1500);
+  /// A late frame that was captured this long before the newest one is of no use any more.
+  Duration latest = std::chrono::milliseconds(1500);
+  /// So many frames in a row that were captured before the newest one are believed.
+  int steps_to_restart = 3;
 };
 
-/// How a sensor's recent frames have arrived.
+/// How a sensor's recent frames arrived.
 struct Habit {
   /// The longest time that an instant just after a capture, which waits longest, had to wait until
   /// a frame captured at or after it arrived.  Frames that arrived after later ones do not count.
@@ -52,6 +55,9 @@ class History {
   /// Adds a frame.  If two bodies of the frame have the same id, the first one is kept.
   PushVerdict push(SensorFrame frame);
 
+  /// Moves all capture times: the sensor's clock is known to be off by another amount from now on.
+  void move_in_time(Duration by);
+
   [[nodiscard]] const std::deque<SensorFrame>& frames() const noexcept { return frames_; }
   [[nodiscard]] std::optional<Timestamp> newest() const;
   /// None until enough frames with a time of receipt have come.  Late frames do not count.
@@ -62,8 +68,11 @@ class History {
   [[nodiscard]] bool rays_only() const noexcept { return rays_only_; }
 
  private:
+  [[nodiscard]] PushVerdict verdict_on(const SensorFrame& frame) const;
+
   HistoryLimits limits_;
   std::deque<SensorFrame> frames_;
+  int steps_back_ = 0;  ///< Refused in a row as captured before the newest one.
   std::optional<Habit> habit_;
   std::optional<Duration> period_;
   bool rays_only_ = false;

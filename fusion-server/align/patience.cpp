@@ -6,21 +6,21 @@ namespace chorus::align {
 namespace {
 
 constexpr int kWorse = 2;  // A spread of more than this many times the median sensor's is unsteady.
-/// How many cameras without depth make a body: one alone makes none.
+/// Number of cameras without depth that are needed for a body.
 constexpr std::size_t kCameras = 2;
 
 /// Factor for differences between sensors, and between the frames of one.
 constexpr int kSlack = 2;
 
-/// How slow a sensor is by its nature: its period plus its least delay.  A busy computer, which
+/// The inherent slowness of a sensor: its period plus its least delay.  A busy computer, which
 /// delays all frames, does not change this.
 Duration slowness(const History& history) {
   return history.period().value_or(Duration{0}) + history.habit()->least_delay;
 }
 
-/// Index, in order of slowness, of the sensor that is always waited for: the median; of two, the
-/// quicker one.  If no sensor has depth, at least the second, because one camera alone makes no
-/// body.
+/// Index, in order of slowness, of the slowest sensor that is always waited for: the median; of
+/// two, the faster one.  If no sensor has depth it is at least the second, because one camera alone
+/// does not yield a body.
 std::size_t middle(std::size_t count, bool rays) {
   const std::size_t least = rays ? std::min(count, kCameras) - 1 : 0;
   return std::max((count - 1) / 2, least);

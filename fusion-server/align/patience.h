@@ -1,5 +1,5 @@
-// How long an instant waits for each sensor: long where most sensors are slow, but never so long
-// that one bad link delays everybody.
+// How long an instant waits for each sensor: long if most sensors are slow, but never so long that
+// one bad link delays everybody.
 #pragma once
 
 #include <map>

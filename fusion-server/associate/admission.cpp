@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kTooNear = 0.8;  // [m]; nobody is tracked nearer than this.
 constexpr double kGirth = 0.4;    // [m]; a person this close to a line of sight blocks it.
-// Per sensor that sees the track; with more it is not admitted.
+// If more sensors than this miss the track, per sensor that sees it, the track is not admitted.
 constexpr std::size_t kMostMissing = 2;
 constexpr double kOtherSide = 0.5;  // Cosine of the least angle between sensors on different sides.
 
@@ -101,7 +101,8 @@ bool Admission::misses(const Observer& observer, const Track& track,
   return !sees_somebody && !hidden_from(observer, place);
 }
 
-/// True if several other sensors see a person in this sensor's view whom this sensor does not see.
+/// True if several other sensors see a person where this sensor looks, and this sensor does not see
+/// that person.
 bool Admission::misplaces(const SensorId& sensor) const {
   const auto own = std::ranges::find(observers_, sensor, &Observer::sensor);
   if (own == observers_.end()) return false;

@@ -1,5 +1,5 @@
-// Decides whether a new track may be published.  A body that only one sensor sees, at a place where
-// other sensors look and see nobody, has to wait.
+// Decides whether a new track may be published.  A body has to wait if only one sensor sees it, at
+// a place where other sensors look and see nobody.
 //
 // Such bodies come from furniture, mirrors, and sensors that are not where they were registered.  A
 // sensor looks into a cone about its optical axis; a person in front of a place hides the place.
@@ -17,7 +17,7 @@ struct Assigned {
   SensorId sensor;
   Eigen::Vector3d core = Eigen::Vector3d::Zero();  ///< World [m].
   PersonId track;
-  bool settled = false;  ///< True if the track is published already.
+  bool settled = false;  ///< True if the track is already published.
 };
 
 class Admission {
@@ -29,8 +29,8 @@ class Admission {
   /// Sets `admitted` in three cases: a second sensor sees the track, and not more than twice as
   /// many sensors miss it; or the track is confirmed, and no sensor that looks there has missed it;
   /// or one sensor alone has seen it for config.alone.  That time runs n times slower while the
-  /// sensor has n such bodies.  It stops while the sensor misses a person whom others see in its
-  /// view (then the body is taken for that person, misplaced), and while others see through the
+  /// sensor has n such bodies.  It stops while the sensor misses a person whom others see where it
+  /// looks (then the body is taken for that person, misplaced), and while others see through the
   /// body.
   void judge(Track& track) const;
 

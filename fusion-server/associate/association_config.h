@@ -10,7 +10,7 @@ namespace chorus::associate {
 struct AssociationConfig {
   /// A body whose core joints are farther from a person's than this is not that person [m].
   double gate = 0.6;
-  double gate_growth = 0.3;  ///< The gate grows by this per second without a view [m/s].
+  double gate_growth = 0.3;  ///< The gate grows by this for every second without a view [m/s].
   double cluster = 0.4;  ///< New bodies of different sensors closer than this are one person [m].
   /// Rays of different cameras can found a new person if they pass each other closer than this [m].
   double ray_cluster = 0.15;
@@ -24,7 +24,8 @@ struct AssociationConfig {
   Duration remember = std::chrono::seconds(60);
   /// How long a newcomer is observed before it is decided which missing person, if any, they are.
   Duration recognise = std::chrono::seconds(1);
-  /// A person who is seen again after at least this long is compared with who they were before.
+  /// If a person is seen again after at least this long, their build is compared with the one
+  /// before.
   Duration question = std::chrono::milliseconds(200);
   /// Two confirmed tracks merge after this many instants at the same spot without a common sensor.
   int merge_frames = 15;

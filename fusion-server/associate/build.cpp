@@ -8,11 +8,11 @@
 namespace chorus::associate {
 namespace {
 
-constexpr double kMostSight = 60.0;  // [s]; older observations fade.
+constexpr double kMostSight = 60.0;  // [s]; older measurements fade.
 
 struct Span {
   std::array<JointId, 2> left;
-  std::array<JointId, 2> right;  ///< The same as `left` for a length without sides.
+  std::array<JointId, 2> right;  ///< Equal to `left` for a length without sides.
 };
 
 constexpr std::array<Span, kSpans> kSpanTable{{
@@ -26,16 +26,16 @@ constexpr std::array<Span, kSpans> kSpanTable{{
     {{JointId::KneeLeft, JointId::AnkleLeft}, {JointId::KneeRight, JointId::AnkleRight}},
 }};
 
-// Standard deviations [ln m].  Of one person's lengths from one sight to another: in any number of
-// views, and in addition in one view (trackers err by how they see a body).  Between people: of
-// their size, and of their lengths at the same size.  Fitted on simulated sensors with seeds from
-// 1001 on.
+// Standard deviations [ln m].  Within one person, from one period in view to another: kOwnLength
+// whatever the number of views, kOwnInOneView in addition for a single view (a tracker's error
+// depends on its point of view).  Between people: kOthersSize of their size, kOthersLength of their
+// lengths at the same size.  Fitted on simulated sensors with seeds from 1001 on.
 constexpr double kOwnLength = 0.010;
 constexpr double kOwnInOneView = 0.036;
 constexpr double kOthersSize = 0.050;
 constexpr double kOthersLength = 0.020;
 constexpr double kSizeShare = 0.5;  // Share of the variance of a mean over independent lengths.
-constexpr double kSlowly = 0.3;     // [s] of sight; with less, the variance grows.
+constexpr double kSlowly = 0.3;     // [s] in view; with less, the variance grows.
 
 double squared(double value) { return value * value; }
 
@@ -77,8 +77,8 @@ double variance_of(const Build& build, std::size_t span) {
   return (squared(kOwnLength) + by_views) * (1.0 + kSlowly / build.sight[span]);
 }
 
-/// Log likelihood ratio for `count` normal deviations with this sum of squares: of `variance`
-/// against a variance that is larger by `more`.
+/// Log likelihood ratio of `variance` against `variance` + `more`, for `count` normal deviations
+/// with this sum of squares.
 double odds_of(double squares, double count, double variance, double more) {
   const double larger = variance + more;
   return 0.5 * (count * std::log(larger / variance) - squares / variance + squares / larger);

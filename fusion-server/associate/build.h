@@ -1,7 +1,7 @@
 // A person's build: lengths between joints, by which the person is recognised.
 //
 // The build is stored as logarithms of lengths, so a larger body differs by the same amount in each
-// of them.  Left and right are averaged, so exchanging them changes nothing.
+// of them.  Left and right are averaged, so swapping them changes nothing.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct Spans {
 
 struct Build {
   std::array<double, kSpans> mean{};   ///< [ln m]
-  std::array<double, kSpans> sight{};  ///< How long each length was observed [s]; at most a minute.
+  std::array<double, kSpans> sight{};  ///< How long each length was in view [s]; at most a minute.
   double views = 0.0;                  ///< Average number of views.
 
   /// Adds the lengths of one instant that lasts for `elapsed` [s].
@@ -38,11 +38,11 @@ struct Build {
   void add(const Build& other);
 };
 
-/// How long the person's build was observed [s]: the median over the lengths.
+/// How long the person's build was in view [s]: the median over the lengths.
 [[nodiscard]] double sight_of(const Build& build);
 
-/// Log likelihood ratio of two builds: they are of one person, against they are of any two people;
-/// 0 when they have no length in common.
+/// Log likelihood ratio of two builds being one person's against being those of any two people; 0
+/// when they have no length in common.
 [[nodiscard]] double likeness(const Build& one, const Build& other);
 
 }  // namespace chorus::associate

@@ -14,11 +14,11 @@ namespace chorus::associate {
 namespace {
 
 constexpr int kRounds = 3;  // After each round, sensors use each other's matches.
-// The weight of the place where a track is expected; one sensor's view of the person has weight 1.
+// Weight of the track's expected place; one sensor's view of the person has weight 1.
 constexpr double kOwnWeight = 1.0;
-constexpr double kSizeReach = 0.5;  // [m]; cost of a body that is larger by a factor of e.
-constexpr double kKnown = 1.0;      // [s] of sight, from which on a build is informative.
-constexpr double kDoubtful = 0.3;   // Cost added for unpublished tracks, as a share of the gate.
+constexpr double kSizeReach = 0.5;    // [m]; cost of a body that is larger by a factor of e.
+constexpr double kInformative = 1.0;  // [s] of sight, from which on a build is informative.
+constexpr double kDoubtful = 0.3;     // Cost added for unpublished tracks, as a share of the gate.
 
 /// A view while it is being matched.
 struct Loose {
@@ -34,14 +34,14 @@ double size_difference(const Spans& spans, const Build& build) {
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < kSpans; ++i) {
-    if (!spans.length[i] || build.sight[i] < kKnown) continue;
+    if (!spans.length[i] || build.sight[i] < kInformative) continue;
     sum += *spans.length[i] - build.mean[i];
     count += 1.0;
   }
   return count > 0 ? sum / count : 0.0;
 }
 
-/// Where the tracks are: as expected and as the other sensors see them.
+/// Where the tracks are: as expected, and as the other sensors see them.
 class Places {
  public:
   explicit Places(const std::vector<Candidate>& candidates) {
@@ -125,8 +125,8 @@ void assign_all(BySensor& sensors, const std::vector<Candidate>& candidates) {
   }
 }
 
-/// Complete linkage: distance of the view to the farthest member; none when its sensor has a member
-/// already.
+/// Complete linkage: distance of the view to the farthest member; none when its sensor already has
+/// a member.
 std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& view) {
   if (has_sensor(cluster, view.view.sensor)) return std::nullopt;
   double farthest = 0.0;

@@ -14,9 +14,9 @@ namespace chorus::associate {
 namespace {
 
 constexpr std::size_t kMaxTracks = 256;  // Four times what a frame may contain.
-// How long a track that was never published is looked for.
+// How long an unpublished track is looked for.
 constexpr Duration kCoastUnknown = std::chrono::seconds(1);
-// A person through whose place sensors have seen for this long has left.
+// A person has left if sensors have seen through their place for this long.
 constexpr Duration kGone = std::chrono::milliseconds(200);
 
 /// The views with their cores, ordered by sensor and body, so that the result does not depend on
@@ -58,7 +58,7 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
   return candidates;
 }
 
-/// Removes a new body near a person of whom its sensor has a body already: it is a second detection
+/// Removes a new body near a person of whom its sensor already has a body: it is a second detection
 /// of that person, unless another sensor has two there as well.
 void drop_rivals(std::vector<std::vector<PlacedView>>& newcomers,
                  const std::vector<Candidate>& candidates, double limit) {
@@ -135,8 +135,8 @@ void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& obse
   leave(candidates, admission, elapsed, tracks);
 }
 
-/// Keeps as many people as a frame may contain; false bodies must not displace people whom several
-/// sensors see.
+/// Keeps only as many people as a frame may contain; false bodies must not displace people whom
+/// several sensors see.
 void keep_the_best(std::vector<Person>& people) {
   if (people.size() <= kMaxBodies) return;
   std::stable_partition(people.begin(), people.end(),
@@ -146,7 +146,7 @@ void keep_the_best(std::vector<Person>& people) {
             [](const Person& a, const Person& b) { return a.id < b.id; });
 }
 
-/// A person with all views; one whom nobody sees is placed where they are expected.
+/// A person with all views; if no sensor sees the person, they are placed where they are expected.
 Person person_of(Candidate& candidate) {
   Person person{candidate.track.id, {}};
   if (candidate.sights.empty()) person.carried = candidate.predicted;
@@ -159,7 +159,8 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
   std::vector<Person> people;
   for (Candidate& candidate : candidates) {
     const Track& track = candidate.track;
-    const bool placed = instant - track.seen <= config.carry;  // A single ray body gives no place.
+    // A single ray body does not determine a position.
+    const bool placed = instant - track.seen <= config.carry;
     if (placed && track.named && is_settled(track, config)) people.push_back(person_of(candidate));
   }
   keep_the_best(people);
@@ -176,7 +177,7 @@ std::vector<PlacedView> taken_rays(std::vector<PlacedView>& views) {
   return taken;
 }
 
-/// Makes a candidate of each group of views, with the places of the joints.
+/// Makes each group of views a new candidate, and locates its joints.
 std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::uint64_t& next_id,
                              const AssociationConfig& config) {
   std::vector<Candidate> candidates;
@@ -193,7 +194,7 @@ std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::u
   return candidates;
 }
 
-/// Makes new people of the views that fit no track.
+/// Creates new people from the views that fit no track.
 std::vector<Candidate> newcomers(std::vector<PlacedView> views,
                                  const std::vector<Candidate>& candidates, std::uint64_t& next_id,
                                  const AssociationConfig& config) {

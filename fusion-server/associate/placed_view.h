@@ -5,7 +5,7 @@
 
 namespace chorus::associate {
 
-/// One body.  Bodies without any given joint have no core and are left out.
+/// One body.  A body of which no joint has a position or a direction has no core and is left out.
 struct PlacedView {
   SensorView view;
   /// Mean of the core joints, world [m]; for a ray body, the core of the track to which it was

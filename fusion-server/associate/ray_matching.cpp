@@ -24,7 +24,7 @@ std::optional<double> median_of(std::vector<double> values) {
   return median(std::move(values));
 }
 
-/// Median distance [m] between the two rays of each joint that both views show as a ray.
+/// Median distance [m] between the two views' rays, over the joints that both show as rays.
 std::optional<double> apart(const SensorView& a, const SensorView& b) {
   std::vector<double> distances;
   for (std::size_t i = 0; i < kJointCount; ++i) {

@@ -2,7 +2,7 @@
 //
 // A single ray body has no place.  The distance of its rays from the joints of a track decides
 // whether it shows that person.  This accounts for size and posture, so two people in one line of
-// sight are told apart.  New people are found where rays of two cameras meet, joint by joint
+// sight can be distinguished.  New people are found where rays of two cameras meet, joint by joint
 // (epipolar consistency); hypotheses that more cameras support are preferred.
 #pragma once
 
@@ -15,7 +15,8 @@
 
 namespace chorus::associate {
 
-/// For each joint, the mean of the views' points or else the point where two or more rays meet.
+/// For each joint, the mean of the views' points, or, if there are none, the point where two or
+/// more rays meet.
 [[nodiscard]] Located locate(const std::vector<PlacedView>& views);
 
 /// Median distance [m] of a view's rays from the joints of a body that has moved by `shift`; none

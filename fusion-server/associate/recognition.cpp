@@ -7,18 +7,20 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kMostMissing = 64;
+constexpr std::size_t kMostMissingTracks = 64;
 // [s] of sight, summed over the views, from which on builds can exclude people.
 constexpr double kGlance = 1.5;
-// With n times as many views as this, an n-th of the time is enough to recognise somebody.
+// With n times as many views as this, a fraction 1/n of the time is enough to recognise somebody.
 constexpr double kManyViews = 4.0;
 constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
 // Prior log odds that a person found at the expected place is the lost one.
 constexpr double kContinuity = 1.5;
-constexpr double kUnlikely = -0.5;  // Log odds at which a person lost and found loses the id.
-constexpr Duration kNoBones = std::chrono::seconds(2);  // Nobody's build is waited for longer.
+// Log odds below which a person who was lost and found loses the id.
+constexpr double kUnlikely = -0.5;
+// A build is not waited for longer than this.
+constexpr Duration kNoBones = std::chrono::seconds(2);
 
-/// True if the track's person is missing.  A candidate without an id has just given it back, and is
+/// True if the candidate's person is missing.  A candidate without an id has given it back, and is
 /// about to be erased.
 bool has_left(const Candidate& candidate) {
   return candidate.track.id != PersonId{} && candidate.sights.empty() &&
@@ -76,8 +78,8 @@ void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Track
   track.id = id;
 }
 
-/// Gives a newcomer the id of the missing person that they are, if they are one.  True once that is
-/// settled: they were recognised, are new, or it takes too long.
+/// Gives a newcomer the id of the missing person if the newcomer is one.  True once that is
+/// settled: the newcomer was recognised, is new, or it takes too long.
 bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& tracks,
           const AssociationConfig& config) {
   Track& track = candidate.track;
@@ -115,7 +117,7 @@ void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
 void miss(const Track& track, Tracks& tracks) {
   if (!(track.named || track.before) || !track.admitted) return;
   tracks.missing.push_back(missing_of(track));
-  if (tracks.missing.size() > kMostMissing) tracks.missing.erase(tracks.missing.begin());
+  if (tracks.missing.size() > kMostMissingTracks) tracks.missing.erase(tracks.missing.begin());
 }
 
 void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config) {

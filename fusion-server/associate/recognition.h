@@ -1,7 +1,7 @@
-// Decides by their build who a person is that has appeared or come back.
+// Decides who a person is, by their build, when they appear or come back.
 //
 // While people are missing, a newcomer gets no id until it is decided whether the newcomer is one
-// of them: after AssociationConfig::recognise of sight at the latest, sooner if the builds differ
+// of them: after AssociationConfig::recognise in view at the latest, sooner if the builds differ
 // too much.  A person who was lost and found keeps the id meanwhile.  If the builds show that they
 // are different people, the id goes back to the lost one.
 #pragma once

@@ -29,20 +29,19 @@ struct Track {
   std::vector<Footprint> footprints = {};
   /// Number of consecutive instants at an older track's spot without a common sensor.
   int shadowed = 0;
-  Located joints;         ///< Where the joints were when last seen; known while cameras show rays.
+  Located joints;  ///< Positions of the joints when last seen; known while cameras show rays.
   bool admitted = false;  ///< True if the track may be published; it stays true.
   /// True if another sensor has looked at the person's place and seen nobody.
   bool doubted = false;
   Duration alone{0};  ///< How long only one sensor has seen the person since `doubted` became true.
   /// How long sensors have seen through the place where the person is expected.
   Duration through{0};
-  Build build = {};  ///< Observed since the person was found, or found again.
+  Build build = {};  ///< Learned since the person was found, or found again.
   /// Set if the person was lost and found: the build of the lost one; `lost` is when they were
-  /// lost.  It is not decided yet whether the two are the same person.
+  /// lost.  It has not been decided yet whether the two are the same person.
   std::optional<Build> before = {};
   Timestamp lost = {};
-  /// True if the id is final as far as known: the person is not missing anywhere, or was
-  /// recognised.
+  /// True if the id is settled: the person is not one of those missing, or was recognised as one.
   bool named = false;
 };
 

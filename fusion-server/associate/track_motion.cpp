@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kVelocityBlend = 0.2;  // Exponential smoothing factor; about 0.15 s at 30 Hz.
 constexpr double kFastest = 4.0;        // [m/s], a sprint; limits the effect of one wrong view.
-constexpr double kKnown = 0.5;          // [s] of sight, from which on builds can be compared.
-constexpr double kLongest = 0.1;        // [s]; the longest time for which one instant counts.
+constexpr double kKnown = 0.5;          // [s] in view above which builds can be compared.
+constexpr double kLongest = 0.1;        // [s]; one instant counts for at most this time.
 
 /// Mean of the views that have a place or, if there are none, the point where the rays meet; none
 /// for a single ray body.

@@ -1,8 +1,8 @@
 // Computes where a track is expected, and how its views update it.
 //
-// An unseen person does not walk on for ever: the speed decays, and the area in which the person is
-// looked for grows.  Speed is computed, joint by joint, from bodies that a sensor showed at both
-// instants: otherwise sensors and joints that come and go would look like motion.
+// An unseen person is not assumed to walk on for ever: the speed decays, and the area in which the
+// person is looked for grows.  Speed is computed, joint by joint, from bodies that a sensor showed
+// at both instants: otherwise sensors and joints that come and go would look like motion.
 #pragma once
 
 #include "fusion-server/associate/association_config.h"

@@ -68,7 +68,7 @@ Result<FusedFrames> read_recording_files(const std::string& source) {
   record::CellStream stream(*files, query);
   FusedFrames out;
   std::size_t frames = 0;
-  std::string raw;  // A sensor of which raw frames were found.
+  std::string raw;  // A sensor with raw frames, if one was found.
   for (auto item = stream.next(); true; item = stream.next()) {
     if (!item) return pass(item);
     if (!*item) break;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::chrono::seconds kAnswerWithin{8};  // The `wait` below, plus the network's delay.
 constexpr const char* kWait = "wait=5";
 constexpr std::chrono::milliseconds kAfterFailure{250};
-// For a resource that cannot wait, and so answers 304 at once, or has no ETag to wait with.
+// Pause for a resource that cannot wait: it answers with 304 at once, or has no ETag.
 constexpr std::chrono::milliseconds kAfterNothing{10};
 
 }  // namespace

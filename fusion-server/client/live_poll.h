@@ -30,7 +30,7 @@ class LivePoll {
   struct Options {
     std::string target;  ///< "/frame"
     std::string accept = "text/turtle";
-    /// Asks again at this interval; zero: uses long polling instead.
+    /// Polls at this interval; zero: long polling instead.
     std::chrono::milliseconds every{0};
     tls::Trust trust = {};  ///< The authorities accepted for an https:// server.
   };

@@ -30,10 +30,15 @@ Timestamp received(const http::ClientResponse& answer) { return from_unix_ns(ans
 
 Duration from_milliseconds(double ms) { return from_seconds(ms / 1e3); }
 
-/// The clock model that /sensors/ reports, exact to the microsecond.
+/// The clock model that /sensors/ reports, exact to the microsecond, without what a walk told: that
+/// is recorded with the registration.
 record::ClockModel clock_of(const nlohmann::json& sensor) {
   record::ClockModel clock;
-  const double offset = number_at(sensor, "clockOffsetMilliseconds");
+  const bool walked = sensor.contains("clockFromWalkMilliseconds");
+  const double offset = number_at(sensor, "clockOffsetMilliseconds") -
+                        (walked ? number_at(sensor, "clockFromWalkMilliseconds") : 0.0);
+  constexpr double kLeast = 5e-4;  // [ms]
+  if (walked && std::abs(offset) < kLeast) return clock;
   const double uncertainty = number_at(sensor, "clockUncertaintyMilliseconds");
   if (!std::isfinite(offset) || !std::isfinite(uncertainty)) return clock;
   clock.ours_minus_theirs = from_milliseconds(offset);

@@ -34,7 +34,7 @@ namespace chorus::client {
 /// Where the certificates of this host are, if it has any.
 inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
 
-/// Whether services of this host have TLS: `chorus init` gives it to them where host.crt is.
+/// True if services of this host use TLS, which `chorus init` configures where host.crt exists.
 [[nodiscard]] bool host_has_tls(const std::string& folder = kTlsFolder);
 
 /// The fusion server of this host.
@@ -42,7 +42,7 @@ inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
 
 class ServiceClient {
  public:
-  /// `url` names the server; a path in it is kept as prefix.  For https:// the authorities() are
+  /// `url` names the server; a path in it becomes a prefix.  For https:// the authorities() are
   /// read here, once.
   [[nodiscard]] static Result<ServiceClient> of(std::string_view url);
 

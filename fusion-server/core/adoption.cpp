@@ -1,6 +1,7 @@
 #include "fusion-server/core/adoption.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -13,7 +14,6 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kReach = 2.5;   // [m] sensor to walk: rotation errors are judged at this range
 constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more were moved
 
 int rank(Verdict verdict) {
@@ -42,7 +42,7 @@ bool stands_well(const Registration& registration, const SensorId& sensor) {
   return verdict_of(registration, sensor) == Verdict::Good;
 }
 
-/// Sensors that the candidate adds, or places well where the registration in use does not.
+/// Sensors that the candidate adds, or that it places well while the registration in use does not.
 std::set<SensorId> newcomers(const Registration& current, const Registration& candidate,
                              SolveKind kind) {
   std::set<SensorId> found;
@@ -90,7 +90,53 @@ void lead_from_master(const Registration& current, Extrinsics& place) {
   std::vector<SensorId> chain = known->second.chain;
   chain.insert(chain.end(), std::next(place.chain.begin()), place.chain.end());
   place.chain = std::move(chain);
+  place.next_chain.clear();  // it leads from the candidate's master
   place.error += known->second.error;
+}
+
+/// What a sensor's clock is off by in our registration, by the stamps of the candidate's walk; none
+/// if that is not known.
+std::optional<ClockOffset> our_clock(const Registration& current, const SensorId& sensor,
+                                     const ClockOffset& walked) {
+  const auto own = current.clocks.find(sensor);
+  if (own != current.clocks.end() && holds_for(own->second, seconds(walked.stated))) {
+    ClockOffset clock = own->second;
+    if (!exchanges_time(seconds(clock.stated)) && clock.least_age && walked.least_age)
+      clock.added += *walked.least_age - *clock.least_age;
+    return clock;
+  }
+  if (!exchanges_time(seconds(walked.stated))) return std::nullopt;
+  return ClockOffset{Duration{0}, walked.stated, walked.stated, walked.least_age};
+}
+
+/// What is added to the candidate's offsets so that they are by our common clock: by the held
+/// sensor for which that is known best.
+ClockOffset between_clocks(const Registration& current, const Registration& candidate,
+                           const std::set<SensorId>& added) {
+  std::optional<ClockOffset> best;
+  for (const auto& [sensor, walked] : candidate.clocks) {
+    if (added.contains(sensor) || !current.sensors.contains(sensor)) continue;
+    const auto ours = our_clock(current, sensor, walked);
+    if (!ours) continue;
+    const Duration sigma = from_seconds(std::hypot(seconds(ours->sigma), seconds(walked.sigma)));
+    if (!best || sigma < best->sigma) best = ClockOffset{ours->added - walked.added, sigma};
+  }
+  return best.value_or(ClockOffset{});
+}
+
+/// The newcomers' clocks as the candidate's walk tells them, by our common clock.
+void take_clocks(Registration& wider, const Registration& candidate,
+                 const std::set<SensorId>& added) {
+  const ClockOffset ours_from_theirs = between_clocks(wider, candidate, added);
+  for (const SensorId& sensor : added) {
+    wider.clocks.erase(sensor);
+    const auto found = candidate.clocks.find(sensor);
+    if (found == candidate.clocks.end()) continue;
+    ClockOffset clock = found->second;
+    clock.added += ours_from_theirs.added;
+    clock.sigma = from_seconds(std::hypot(seconds(clock.sigma), seconds(ours_from_theirs.sigma)));
+    wider.clocks[sensor] = clock;
+  }
 }
 
 void add_once(std::vector<std::string>& reasons, const std::vector<std::string>& more) {
@@ -137,7 +183,8 @@ Verdict least_of_placed(const Registration& registration) {
   return least;
 }
 
-/// Gives every sensor a verdict in registrations made before there were any, and in given ones.
+/// Gives each sensor without a verdict that of the whole registration.  Registrations from a file,
+/// and those that older versions stored, have no verdict per sensor.
 void spell_out_verdicts(Registration& registration) {
   for (const auto& [sensor, place] : registration.sensors)
     registration.verdicts.try_emplace(sensor, SensorVerdict{registration.verdict, {}});
@@ -157,7 +204,7 @@ bool should_replace(const Registration& current, const Registration& candidate, 
   if (!covers(candidate, current)) return false;
   if (rank(candidate.verdict) != rank(current.verdict))
     return rank(candidate.verdict) > rank(current.verdict);
-  // A provisional solve in mid-walk does not replace a good registration; the final one may.
+  // A provisional solve during the walk does not replace a good registration; the final one may.
   return kind == SolveKind::Final || current.verdict == Verdict::Provisional;
 }
 
@@ -181,6 +228,7 @@ Result<Registration> extended(const Registration& current, const Registration& c
     wider.sensors.insert_or_assign(sensor, std::move(place));
     take_verdict(wider, sensor, sentence_of(candidate, sensor));
   }
+  take_clocks(wider, candidate, added);
   const auto touches = [&](const PairwiseRegistration& edge) {
     return added.contains(edge.source) || added.contains(edge.target);
   };
@@ -212,6 +260,7 @@ void note_refusals(Registration& current, const Registration& candidate) {
 Registration without(Registration current, const SensorId& sensor, const std::string& reason) {
   spell_out_verdicts(current);
   current.sensors.erase(sensor);
+  current.clocks.erase(sensor);
   std::erase_if(current.edges, [&](const PairwiseRegistration& edge) {
     return edge.source == sensor || edge.target == sensor;
   });

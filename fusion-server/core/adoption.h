@@ -17,12 +17,12 @@ namespace chorus::core {
 
 /// Whether the candidate should replace the whole registration: never if it is refused, has a worse
 /// verdict or has fewer sensors.  A `Final` candidate that is equally good replaces it, so that a
-/// new walk counts.
+/// new walk has an effect.
 [[nodiscard]] bool should_replace(const Registration& current, const Registration& candidate,
                                   SolveKind kind);
 
 /// The current places, plus those of sensors that only the candidate places well (at the end of a
-/// walk: places at all), moved into the world of the held ones.  NotFound: it adds no sensor;
+/// walk: at all), moved into the world of the held ones.  NotFound: the candidate adds no sensor.
 /// Conflict: the walk contradicts the places of the held sensors relative to one another.
 [[nodiscard]] Result<Registration> extended(const Registration& current,
                                             const Registration& candidate, SolveKind kind);
@@ -34,15 +34,15 @@ namespace chorus::core {
                                            const Registration& candidate, SolveKind kind,
                                            bool hold);
 
-/// Notes, for each sensor that neither the registration nor the candidate could place, why.
+/// Notes the reason for each sensor that neither the registration nor the candidate could place.
 void note_refusals(Registration& current, const Registration& candidate);
 
-/// The registration without this sensor's place, which is no longer true; the sensor is refused for
-/// this reason.  A master without a place hands over to the best of the others.
+/// The registration without this sensor's place, which is no longer true; the sensor is refused
+/// with `reason`.  If it was the master, the best of the others becomes the master.
 [[nodiscard]] Registration without(Registration current, const SensorId& sensor,
                                    const std::string& reason);
 
-/// Those sensors among `seeing` (the ones that saw a body lately) that have no place.
+/// The sensors among `seeing` (those that saw a body lately) that have no place.
 [[nodiscard]] std::set<SensorId> unplaced(const Registration& current,
                                           const std::set<SensorId>& seeing);
 

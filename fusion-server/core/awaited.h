@@ -1,4 +1,4 @@
-// What a registration still needs, worded so that a person in the room knows what to do next.
+// What a registration still needs, in words that tell a person in the room what to do next.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ struct Situation {
   const LastSeen& last_seen;
   const SessionStatus* session = nullptr;  ///< The running session; null if none is running.
   bool automatic = true;                   ///< Sessions start by themselves.
-  std::optional<Duration> retry;           ///< Time until one may start by itself again.
+  std::optional<Duration> retry;           ///< Time until a session may start by itself again.
   Timestamp now;
-  double wanted = 0.05;  ///< 95 % radius of a sensor's place that is good enough [m].
+  double wanted = 0.05;  ///< A 95 % radius of a sensor's place up to this is good enough [m].
 };
 
 /// One sentence per need; empty when every sensor has a place and no session is running.

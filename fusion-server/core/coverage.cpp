@@ -12,10 +12,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Duration kTogether = milliseconds(40);  // between the receipts of one sighting
+constexpr Duration kTogether = milliseconds(40);  // between the receipts of one common view
 constexpr double kCell = 0.5;                     // [m]
 constexpr std::size_t kMostCells = 400;           // per sensor, 10 x 10 m
-constexpr double kRate = 30.0;                    // sightings a second, of most sensors
+constexpr double kRate = 30.0;                    // common views a second, of most sensors
 
 /// The neck of the only body; none if there are several, or if it is not seen.
 std::optional<Eigen::Vector3d> neck_of(const SensorFrame& frame) {
@@ -27,7 +27,7 @@ std::optional<Eigen::Vector3d> neck_of(const SensorFrame& frame) {
 
 int cell_of(double coordinate) { return static_cast<int>(std::floor(coordinate / kCell)); }
 
-/// The sensors that are linked with `first` by pairs as good as the target.
+/// The sensors that are connected with `first` by pairs as good as the target.
 std::set<SensorId> linked_with(const SensorId& first, const std::vector<PairCoverage>& pairs,
                                double target) {
   std::set<SensorId> linked{first};
@@ -54,7 +54,7 @@ const PairCoverage* best_between(const std::set<SensorId>& inside, const SensorI
 }
 
 std::string advice_for(const SensorId& lonely, const PairCoverage* pair) {
-  constexpr double kNarrow = 0.5;  // [m]; algorithms: below this the turn is known badly
+  constexpr double kNarrow = 0.5;  // [m]; below this the rotation is badly determined
   if (pair == nullptr) {
     return fmt::format(
         "walk where {} and another sensor see you: it never saw you together with one",
@@ -82,7 +82,8 @@ void Coverage::add(const SensorFrame& frame) {
   for (auto& [other, sight] : newest_) {
     if (other == frame.sensor || frame.received - sight.received > kTogether) continue;
     const bool first = frame.sensor < other;
-    // Each sight counts once with each sensor, so that the faster sensor does not count it again.
+    // Each view of one sensor counts once with each other sensor, so that the faster of the two
+    // does not count it again.
     if (!first || !sight.counted.insert(frame.sensor).second) continue;
     Common& common = common_[{frame.sensor, other}];
     ++common.sightings;
@@ -127,10 +128,10 @@ std::vector<CoveredCell> Coverage::cells(const Registration& registration) const
 }
 
 double expected_radius(std::size_t sightings, double spread, double distance) {
-  constexpr double kError = 0.010;    // of one sensor, per axis [m]
-  constexpr double kLasts = 0.8;      // [s]; errors within that are one
-  constexpr double kBias = 0.010;     // does not shrink [m]
-  constexpr double kRadius95 = 2.45;  // [sigma], of two dimensions
+  constexpr double kError = 0.010;    // error of one sensor, per axis [m]
+  constexpr double kLasts = 0.8;      // [s]; errors within this time count as one
+  constexpr double kBias = 0.010;     // error that no length of walk reduces [m]
+  constexpr double kRadius95 = 2.45;  // 95 % radius in two dimensions [sigma]
   constexpr double kLeastSpread = 0.01;
   const double independent = std::max(1.0, static_cast<double>(sightings) / kRate / kLasts);
   const double lever = distance / std::max(spread, kLeastSpread);
@@ -142,7 +143,7 @@ std::vector<std::string> needs(const std::vector<PairCoverage>& pairs,
                                const std::set<SensorId>& seeing, double target) {
   std::vector<std::string> out;
   if (seeing.size() < 2) return out;
-  // The largest group that is linked well enough; the others need a link to it.
+  // The largest group that is connected well enough; the other sensors have to be connected to it.
   std::set<SensorId> group;
   for (const SensorId& sensor : seeing) {
     auto linked = linked_with(sensor, pairs, target);

@@ -1,7 +1,7 @@
 // What the walk of a session has covered so far: which sensors saw somebody together, and where.
 //
-// Needs no places: common sightings are judged by the time of receipt, their spread in the space of
-// one of the two sensors.
+// Needs no extrinsics: whether two sensors saw somebody together is judged by the time of receipt,
+// and how far the person walked in the space of one of the two.
 #pragma once
 
 #include <map>
@@ -23,14 +23,14 @@ class Coverage {
 
   /// All pairs that saw somebody together, ordered by names.
   [[nodiscard]] std::vector<PairCoverage> pairs() const;
-  /// Where somebody walked in the world, by how many sensors each cell was seen.
+  /// The squares of the floor in which somebody walked, and by how many sensors each was seen.
   [[nodiscard]] std::vector<CoveredCell> cells(const Registration& registration) const;
 
  private:
   struct Sight {
     Timestamp received;
     Eigen::Vector3d place;       ///< Of the neck, in the sensor's space [m].
-    std::set<SensorId> counted;  ///< With which it was counted.
+    std::set<SensorId> counted;  ///< The sensors with which it was counted.
   };
   struct Common {
     std::size_t sightings = 0;
@@ -45,8 +45,8 @@ class Coverage {
   std::map<SensorId, std::map<Cell, Eigen::Vector3d>> seen_;  ///< In each sensor's own space.
 };
 
-/// What is expected of a pair that has so many sightings: radius [m] inside which the place of one
-/// is known relative to the other, in 95 % (algorithm: docs/papers/registration.md, Coverage).
+/// The 95 % radius [m] to which the place of one sensor will be known relative to the other's, for
+/// a pair with this many common views (docs/papers/registration.md, Coverage).
 [[nodiscard]] double expected_radius(std::size_t sightings, double spread, double distance);
 
 /// Sentences for people about what the walk still needs, the most important first; empty: nothing.

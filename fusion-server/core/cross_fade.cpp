@@ -9,7 +9,7 @@ namespace {
 constexpr double kFade = 1.0;  // [s]
 constexpr double kMost = 0.5;  // [m]
 
-/// From 1 to 0 during the fade, level at both ends.
+/// Falls from 1 to 0 during the fade, with zero slope at both ends.
 double left_at(double elapsed) {
   const double t = std::clamp(elapsed / kFade, 0.0, 1.0);
   return 1.0 - t * t * (3.0 - 2.0 * t);

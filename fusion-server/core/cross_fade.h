@@ -1,7 +1,7 @@
-// Lets a change of the sensors' places reach the output little by little.
+// Lets a change of the sensors' places reach the output gradually.
 //
-// What bodies would have been with the places before, minus what they are now, is added to them and
-// fades to zero, so that nothing that follows a person jumps.
+// The difference between the bodies according to the old places and those according to the new ones
+// is added to the bodies and fades to zero, so that nothing that follows a person jumps.
 #pragma once
 
 #include <array>
@@ -14,8 +14,9 @@ namespace chorus::core {
 
 class CrossFade {
  public:
-  /// At one instant, the same people by the places before and by those of now.  A person who is
-  /// displaced by more than half a metre is not faded: the world was moved, or it is somebody else.
+  /// Takes the same people at one instant, according to the old places and to the new ones.  A
+  /// person who is displaced by more than half a metre is not faded: the world was moved, or it is
+  /// somebody else.
   void begin(const std::vector<FusedBody>& before, const std::vector<FusedBody>& now, Timestamp at);
 
   /// Adds what is left of the differences.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "fusion-server/core/world.h"
+
 namespace chorus::core {
 namespace {
 
@@ -16,13 +18,16 @@ constexpr std::string_view kOutOfOrder =
     "was set back, or it numbers its frames wrongly";
 constexpr std::string_view kFuture =
     "a frame was captured in the future, and is refused: set the clock of the sensor's host";
+constexpr std::string_view kStaleFrame =
+    "a frame came more than a second after later ones, and is refused: its network or the program "
+    "that sends it holds frames back";
 constexpr std::string_view kFrozen =
     "a body is left out: its coordinates are repeated to the last digit under new stamps";
 
-/// Whether some sensor stands in both where people would be matched: the two are one world.
+/// True if some sensor has nearly the same place in both registrations, so that people can be
+/// matched: both use the same world.
 bool share_a_place(const Registration& one, const Registration& other) {
-  constexpr double kReach = 2.5;  // [m] from the sensor to people
-  constexpr double kSame = 0.3;   // [m]
+  constexpr double kSame = 0.3;  // [m]
   const Eigen::Vector3d mark = kReach * Eigen::Vector3d::UnitZ();
   return std::ranges::any_of(one.sensors, [&](const auto& entry) {
     const auto found = other.sensors.find(entry.first);
@@ -50,6 +55,7 @@ void FusionCore::reconfigure(CoreConfig config) {
   std::erase_if(histories_,
                 [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
   guard_.keep(config_.sensors);
+  clocks_.keep(config_.sensors);
   awaited_by_ = 0;
 }
 
@@ -57,13 +63,46 @@ void FusionCore::take(SensorFrame frame) {
   if (!config_.sensors.contains(frame.sensor)) return;
   sift(frame);
   if (!histories_.contains(frame.sensor)) awaited_by_ = 0;  // one more sensor to wait for
-  const align::PushVerdict verdict = histories_[frame.sensor].push(frame);
-  if (verdict == align::PushVerdict::Duplicate) return;
-  if (verdict == align::PushVerdict::Backwards || verdict == align::PushVerdict::Future) {
-    ++refused_[frame.sensor].count;
-    return refuse(frame, verdict == align::PushVerdict::Future ? kFuture : kOutOfOrder);
+  const align::PushVerdict verdict = histories_[frame.sensor].push(in_step(frame));
+  if (count(frame, verdict)) registrar_.take(frame);
+}
+
+/// Counts what became of the frame; true if it was taken.
+bool FusionCore::count(const SensorFrame& frame, align::PushVerdict verdict) {
+  using align::PushVerdict;
+  FrameFates& fates = refused_[frame.sensor].fates;
+  const auto leave_out = [&](std::uint64_t& fate, std::string_view why) {
+    ++fate;
+    refuse(frame, why);
+    return false;
+  };
+  switch (verdict) {
+    case PushVerdict::Added:
+      return true;
+    case PushVerdict::Late:
+      return ++fates.late > 0;
+    case PushVerdict::Restarted:
+      return ++fates.restarts > 0;
+    case PushVerdict::Duplicate:
+      ++fates.doubled;
+      return false;
+    case PushVerdict::Stale:
+      return leave_out(fates.stale, kStaleFrame);
+    case PushVerdict::Backwards:
+      return leave_out(fates.backwards, kOutOfOrder);
+    case PushVerdict::Future:
+      return leave_out(fates.early, kFuture);
   }
-  registrar_.take(frame);
+  return false;
+}
+
+/// The frame by the common clock, as far as the walk has told it; its sensor's earlier frames are
+/// moved to the same clock.  Sessions collect frames as they came: a walk tells the whole offset.
+SensorFrame FusionCore::in_step(SensorFrame frame) {
+  const Duration change = clocks_.take(frame, registration());
+  histories_[frame.sensor].move_in_time(change);
+  if (const auto clock = clocks_.of(frame.sensor)) move_in_time(frame, clock->added);
+  return frame;
 }
 
 /// Removes bodies that cannot be a person's; the frame's other bodies stay.
@@ -109,8 +148,8 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   return std::move(step.snapshot);
 }
 
-/// Fuses one instant; after a change of places by the places before, too, so that bodies move from
-/// the one to the other little by little.
+/// Fuses one instant; after a change of places also with the old places, so that bodies move
+/// gradually from the old to the new positions.
 pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   const pipeline::Inputs in{tick.instant, now, tick.sequence};
   pipeline::Step step = pipeline::step(in, histories_, registration(), memory_, config_.pipeline);
@@ -124,8 +163,9 @@ pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   return step;
 }
 
-/// A sensor that was moved has no place from the next instant on, and waits for another one.  If it
-/// is off again soon, another walk would not mend it: the alarm stays, and people decide.
+/// A sensor that was moved has no place from the next instant on, until it is registered again.  If
+/// it soon raises another alarm, registering it once more would not help: the alarm stays, and
+/// people decide.
 void FusionCore::displace_moved(Timestamp instant) {
   constexpr Duration kAgain = std::chrono::minutes(30);
   const auto moved = guard_.moved();
@@ -214,7 +254,7 @@ Result<void> FusionCore::undo() {
   return done;
 }
 
-/// What is remembered of people belongs to the world before.
+/// What is remembered about people belongs to the old world.
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays
@@ -253,9 +293,9 @@ std::string FusionCore::alarm_text(const SensorId& sensor, Timestamp now) const 
   return told ? sentence_of(sensor, *told, now, anew) : std::string();
 }
 
-std::uint64_t FusionCore::refused(const SensorId& sensor) const {
+FrameFates FusionCore::fates(const SensorId& sensor) const {
   const auto it = refused_.find(sensor);
-  return it == refused_.end() ? 0 : it->second.count;
+  return it == refused_.end() ? FrameFates{} : it->second.fates;
 }
 
 std::string FusionCore::complaint(const SensorId& sensor, Timestamp now) const {

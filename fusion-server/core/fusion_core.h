@@ -16,6 +16,7 @@
 #include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registrar.h"
 #include "fusion-server/core/tick_schedule.h"
+#include "fusion-server/core/walked_clocks.h"
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/status.h"
 
@@ -75,19 +76,24 @@ class FusionCore {
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);
   }
-  [[nodiscard]] std::uint64_t refused(const SensorId& sensor) const;
+  /// What became of frames whose time was not as it should be.
+  [[nodiscard]] FrameFates fates(const SensorId& sensor) const;
   /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
-  /// The sensor does not stand where its place says; none: nothing of that kind is known.
+  /// Set if the sensor does not stand where it was registered, as far as known.
   [[nodiscard]] std::optional<SensorAlarm> alarm(const SensorId& sensor) const {
     return guard_.alarm_of(sensor);
   }
-  /// The same as a sentence for people; empty: none.
+  /// The same as a sentence for people; empty if there is no alarm.
   [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
   /// As SensorStatus::shift.
   [[nodiscard]] std::optional<double> shift(const SensorId& sensor) const {
     return guard_.shift_of(sensor);
+  }
+  /// What is added to this sensor's capture times because a walk told that its clock is off.
+  [[nodiscard]] std::optional<WalkedClock> walked_clock(const SensorId& sensor) const {
+    return clocks_.of(sensor);
   }
   /// How often a sensor lost its place because it was moved.
   [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
@@ -97,7 +103,7 @@ class FusionCore {
 
  private:
   struct Refusals {
-    std::uint64_t count = 0;
+    FrameFates fates;
     Timestamp last;  ///< When the last frame with something refused was received.
     std::string_view why;
   };
@@ -105,7 +111,9 @@ class FusionCore {
   void leave_world();
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
   void displace_moved(Timestamp instant);
+  bool count(const SensorFrame& frame, align::PushVerdict verdict);
   void refuse(const SensorFrame& frame, std::string_view why);
+  [[nodiscard]] SensorFrame in_step(SensorFrame frame);
   void sift(SensorFrame& frame);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
 
@@ -114,9 +122,10 @@ class FusionCore {
   pipeline::Histories histories_;
   pipeline::Memory memory_;
   Registrar registrar_;
+  WalkedClocks clocks_;
   std::map<SensorId, Refusals> refused_;
   std::map<SensorId, associate::FrozenBodies> frozen_;
-  pipeline::Waiting awaited_;           ///< To be waited for at the pending instant.
+  pipeline::Waiting awaited_;           ///< The sensors to wait for at the pending instant.
   std::uint64_t awaited_by_ = 0;        ///< Sequence of that instant; zero: none.
   std::vector<SensorId> last_awaited_;  ///< Sensors waited for until the last answer was given.
   Hindsight hindsight_;
@@ -124,7 +133,8 @@ class FusionCore {
   std::vector<SensorReport> reports_;
   Guard guard_;
   CrossFade fade_;
-  std::optional<Registration> before_;  ///< Until the next instant: what is to be faded from.
+  /// The old registration, from which to fade; set until the next instant.
+  std::optional<Registration> before_;
   std::map<SensorId, Timestamp> displaced_at_;  ///< When each sensor last lost its place.
   std::uint64_t displaced_ = 0;
 };

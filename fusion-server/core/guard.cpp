@@ -12,7 +12,7 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kRounded = 10.0;  // [mm]; nothing more precise can be said in a few seconds
+constexpr double kRounded = 10.0;  // [mm]; a few seconds do not allow a more precise statement
 
 SensorAlarm alarm_of(const watch::Finding& finding) {
   return {finding.shift, finding.since, finding.drifted, finding.or_else};
@@ -59,7 +59,7 @@ void Guard::look(const std::vector<Person>& people, Timestamp instant,
                  const watch::WatchConfig& config) {
   watch_.look(people, instant, config);
   auto next = watch_.finding();
-  // The same finding a moment later is still about when it began.
+  // If the same sensor is found again, the alarm keeps the time at which it began.
   if (next && finding_ && (next->sensor == finding_->sensor || next->or_else == finding_->sensor))
     next->since = std::min(next->since, finding_->since);
   finding_ = std::move(next);

@@ -1,4 +1,4 @@
-// Which sensors no longer stand where they were registered, and how people are told.
+// Which sensors no longer stand where they were registered, and how that is reported.
 #pragma once
 
 #include <map>
@@ -12,12 +12,13 @@
 
 namespace chorus::core {
 
-/// A sensor does not stand where its place says.
+/// A sensor does not stand where it was registered.
 struct SensorAlarm {
-  double shift = 0.0;  ///< How far from the others it saw people then [m].
+  double shift = 0.0;  ///< How far from where the others see them it sees people [m].
   Timestamp since;
-  bool drifted = false;             ///< Little by little; else at once.
-  std::optional<SensorId> or_else;  ///< It, or this one: with two sensors nobody can tell.
+  bool drifted = false;  ///< True if it happened gradually, false if at once.
+  /// Either the sensor or this one was moved; two sensors do not show which.
+  std::optional<SensorId> or_else;
 
   bool operator==(const SensorAlarm&) const = default;
 };
@@ -27,23 +28,23 @@ struct SensorAlarm {
 [[nodiscard]] std::string sentence_of(const SensorId& sensor, const SensorAlarm& alarm,
                                       Timestamp now, bool automatic);
 
-/// What stays in the registration as the reason why the sensor has no place.
+/// The reason, kept in the registration, why the sensor has no place.
 [[nodiscard]] std::string reason_of(const SensorId& sensor, const SensorAlarm& alarm);
 
 class Guard {
  public:
   void look(const std::vector<Person>& people, Timestamp instant, const watch::WatchConfig& config);
 
-  /// The sensor that should lose its place now; none: nothing is known to have moved.
+  /// The sensor that should lose its place now; none if no sensor is known to have been moved.
   [[nodiscard]] std::optional<SensorId> moved() const;
   [[nodiscard]] std::optional<SensorAlarm> alarm_of(const SensorId& sensor) const;
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const {
     return watch_.shift_of(sensor);
   }
 
-  /// The sensor has lost its place; its alarm lasts until it has another one.
+  /// Call this when the sensor has lost its place; its alarm lasts until it has a new one.
   void displaced(const SensorId& sensor);
-  /// Forgets what was seen if any place is another one now.
+  /// Forgets what was learned if any place has changed.
   void replaced(const Registration& before, const Registration& now);
   /// Forgets sensors that are no longer configured.
   void keep(const std::set<SensorId>& sensors);

@@ -1,4 +1,4 @@
-// Keeps instants that were answered without some sensor, to fuse them again with its late frames.
+// Keeps instants that were fused without some sensor, to fuse them again with its late frames.
 #pragma once
 
 #include <deque>
@@ -16,7 +16,7 @@ namespace chorus::core {
 using Parts = std::map<SensorId, double>;
 [[nodiscard]] Parts parts_of(const Snapshot& snapshot);
 
-/// An instant that was answered, with the data that the answer was based on.
+/// An instant that was fused, with the data that the result was based on.
 struct Answered {
   Tick tick;
   pipeline::Memory before;        ///< The memory before this instant.
@@ -29,7 +29,7 @@ class Hindsight {
  public:
   explicit Hindsight(Duration delay) : delay_(delay) {}
 
-  /// Instants answered with all sensors need not be added.
+  /// Instants fused with all sensors need not be added.
   void remember(Answered answered);
   /// The oldest instant for which late frames must have arrived by now.
   [[nodiscard]] std::optional<Answered> due(Timestamp now);
@@ -40,18 +40,18 @@ class Hindsight {
   std::deque<Answered> waiting_;
 };
 
-/// A sensor's contribution to the fused bodies, averages over about a second [0, 1].
+/// A sensor's contribution to the fused bodies; averages over about a second, in [0, 1].
 struct Share {
   double in_time = 0.0;     ///< Fraction of all joints that it contributed to.
   double afterwards = 0.0;  ///< The same including its late frames, as /frame?at= shows it.
-  double awaited = 0.0;     ///< Fraction of instants that waited for it until they were answered.
+  double awaited = 0.0;     ///< Fraction of instants that waited for it to the last.
 };
 
 /// The shares of all sensors, updated at each instant.
 class Shares {
  public:
   void answered(const Snapshot& snapshot, const std::vector<SensorId>& awaited);
-  /// Takes the final contributions of an instant: no later answer will be better.
+  /// Takes the final contributions of an instant, when no later frame will improve it.
   void settled(const Parts& parts);
   [[nodiscard]] Share of(const SensorId& sensor) const;
 

@@ -1,5 +1,5 @@
-// Which sensors deliver, which see bodies, and how many: judged by their frames alone, whether they
-// have a place or not.
+// Which sensors deliver frames, and how many bodies they see; independent of whether they have a
+// place.
 #pragma once
 
 #include <cstddef>

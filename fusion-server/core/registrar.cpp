@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "fusion-server/core/awaited.h"
+#include "fusion-server/core/closure.h"
+#include "fusion-server/registration/error_radius.h"
 
 namespace chorus::core {
 namespace {
@@ -22,6 +24,7 @@ void keep_configured(Registration& registration, const std::set<SensorId>& senso
   const auto gone = [&](const auto& entry) { return !sensors.contains(entry.first); };
   std::erase_if(registration.sensors, gone);
   std::erase_if(registration.verdicts, gone);
+  std::erase_if(registration.clocks, gone);
   std::erase_if(registration.edges, [&](const PairwiseRegistration& edge) {
     return !sensors.contains(edge.source) || !sensors.contains(edge.target);
   });
@@ -30,6 +33,29 @@ void keep_configured(Registration& registration, const std::set<SensorId>& senso
   registration.master = std::ranges::min_element(registration.sensors, {}, [](const auto& entry) {
                           return entry.second.error;
                         })->first;
+}
+
+/// Of all that took part in the walk, how well this solve places them.
+std::vector<SensorAccuracy> accuracy_of(const Registration& candidate) {
+  std::vector<SensorAccuracy> all;
+  for (const auto& [sensor, verdict] : candidate.verdicts) {
+    SensorAccuracy own{sensor, {}};
+    const auto place = candidate.sensors.find(sensor);
+    if (place != candidate.sensors.end())
+      own.radius = registration::radius_on_floor(place->second.covariance);
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
+/// Whether the walk could end here: a good one in which every sensor that took part has a place,
+/// known to within `target`; zero: never.
+bool accurate_enough(const Registration& candidate, double target) {
+  const auto all = accuracy_of(candidate);
+  const bool good = target > 0 && all.size() > 1 && candidate.verdict == Verdict::Good;
+  return good && std::ranges::all_of(all, [&](const SensorAccuracy& own) {
+           return own.radius && *own.radius <= target;
+         });
 }
 
 }  // namespace
@@ -61,6 +87,7 @@ void Registrar::begin(Duration target, bool automatic, Timestamp now) {
   status.state = SessionState::Collecting;
   status.automatic = automatic;
   status.started = now;
+  status.target_radius = config_.session.target_radius;
   sessions_.push_front(std::move(status));
   if (sessions_.size() > kSessionsKept) sessions_.pop_back();
 }
@@ -107,13 +134,13 @@ void Registrar::end_session(SessionState state) {
 
 void Registrar::show_progress(SessionStatus& session) const {
   session.elapsed = seconds(session_.elapsed());
-  session.target = seconds(session_.target());
+  if (!session.reached) session.target = seconds(session_.target());
   session.pairs = session_.coverage().pairs();
   session.cells = session_.coverage().cells(registration_);
 }
 
 void Registrar::forget() {
-  if (before_) registration_ = *before_;  // a session's own is not worth going back to
+  if (before_) registration_ = *before_;  // a session's own result is not worth going back to
   end_session(SessionState::Cancelled);
   if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
   lacks_displaced_ = false;
@@ -171,7 +198,7 @@ Result<void> Registrar::move_origin(const Origin& origin) {
   return {};
 }
 
-/// After somebody has made us forget, the world is still the one that everybody works in.
+/// After forget(), everybody still works in the old world, so a new registration is moved into it.
 Result<Registration> Registrar::successor(const Registration& base, const Registration& candidate,
                                           SolveKind kind) const {
   auto next = adopted(base, candidate, kind, sessions_.front().automatic);
@@ -198,7 +225,7 @@ void Registrar::start_by_itself(Timestamp now) {
 
 std::optional<SolveJob> Registrar::due_job(Timestamp now) {
   if (solving_) {
-    // A provisional result for half of the walk is of no use any more.
+    // A provisional result for half of the walk is no longer useful.
     if (solving_kind_ == SolveKind::Provisional && session_.final_due()) stop_solve_.request_stop();
     return std::nullopt;
   }
@@ -252,17 +279,24 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
       !sessions_.empty() && running(sessions_.front()) && sessions_.front().id == solution.session;
   if (!wanted || solution.given_up) return Outcome::Nothing;
   session_.solved_in(solution.cost);
+  note_closure(solution.registration);
   // Places of sensors that are no longer configured must not constrain the new registration.
   keep_configured(registration_, config_.sensors);
   if (before_) keep_configured(*before_, config_.sensors);
   sessions_.front().verdict = solution.registration.verdict;
   sessions_.front().reasons = solution.registration.reasons;
+  sessions_.front().accuracy = accuracy_of(solution.registration);
   return solution.kind == SolveKind::Final ? settle_final(solution.registration, now)
                                            : settle_provisional(solution.registration);
 }
 
 Outcome Registrar::settle_provisional(const Registration& candidate) {
   SessionStatus& current = sessions_.front();
+  if (!current.reached && accurate_enough(candidate, config_.session.target_radius)) {
+    current.reached = true;
+    current.target = seconds(session_.target());
+    session_.finish();
+  }
   auto next = successor(registration_, candidate, SolveKind::Provisional);
   if (!next) return Outcome::Nothing;
   if (!before_) before_ = registration_;
@@ -332,7 +366,8 @@ std::vector<std::string> Registrar::awaits(Timestamp now) const {
   return awaited(situation);
 }
 
-/// Time until the first unplaced sensor that sees a body may start a session; nothing: now.
+/// Time until the first unplaced sensor that sees a body may start a session; none: it may start
+/// now.
 std::optional<Duration> Registrar::retry_in(Timestamp now) const {
   std::optional<Timestamp> first;
   for (const SensorId& sensor : unplaced(registration_, last_seen_.seeing(now))) {

@@ -1,8 +1,8 @@
 // The registration in use, the session that improves it, and a record of the last sessions.
 //
 // It uses no thread, socket or clock: frames, requests and solutions go in, solve jobs come out.
-// Provisional registrations belong to the session: when its final solve is refused, they are
-// withdrawn.  A sensor that could not be placed does not start sessions again and again.
+// Provisional registrations belong to the session, and are withdrawn when its final solve is
+// refused.  A sensor that could not be placed does not start sessions again and again.
 #pragma once
 
 #include <deque>
@@ -63,22 +63,23 @@ class Registrar {
   [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now);
   /// Cancels this session and all its effects; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
-  /// Cancels the session and forgets the registration, but not in which world it was.
+  /// Cancels the session and forgets the registration, but not its world.
   void forget();
-  /// Goes back to the registration before this one; doing it twice changes nothing.  Conflict while
-  /// a session is running; NotFound when there is none before.
+  /// Goes back to the previous registration; a second call changes nothing.  Conflict while a
+  /// session is running; NotFound when there is none before.
   [[nodiscard]] Result<void> undo();
   /// The registration that undo() goes back to; set at the start from what is stored.
   [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }
   void set_earlier(Registration registration) { earlier_ = std::move(registration); }
 
-  /// Takes the place from a sensor that was moved; the others keep theirs, and a session for it may
-  /// start at once.  False while a session is running, or if fewer than two others have a place.
+  /// Removes the place of a sensor that was moved.  The others keep theirs, and a session for this
+  /// sensor may start at once.  False while a session is running, or if fewer than two others have
+  /// a place.
   [[nodiscard]] bool displace(const SensorId& sensor, const std::string& reason);
   /// Conflict while a session is running; NotFound and InvalidArgument as with_origin().
   [[nodiscard]] Result<void> move_origin(const Origin& origin);
 
-  /// At most one job is out at a time; its solution is returned through solved().
+  /// There is at most one job at a time; its solution is returned through solved().
   [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now);
   Outcome solved(Solution solution, Timestamp now);
 
@@ -121,10 +122,11 @@ class Registrar {
   std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
   std::optional<Registration> before_;  ///< Set while the session's own registration is in use.
   std::optional<Registration>
-      earlier_;  ///< In use before; sessions' provisional ones do not count.
-  /// `earlier_` is from before a sensor was displaced; the session that places it anew keeps it.
+      earlier_;  ///< The registration in use before; provisional ones of sessions do not count.
+  /// True if `earlier_` is from before a sensor was displaced; the session that registers the
+  /// sensor again keeps `earlier_`.
   bool lacks_displaced_ = false;
-  Places forgotten_;  ///< Of the last registration that was forgotten.
+  Places forgotten_;  ///< Places of the last registration that was forgotten.
   bool solving_ = false;
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;

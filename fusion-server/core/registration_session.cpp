@@ -7,7 +7,7 @@ namespace chorus::core {
 namespace {
 
 constexpr std::size_t kChunk = 64;  // frames; about two seconds
-constexpr int kRest = 3;            // solving takes at most a third of the time
+constexpr int kRest = 3;            // the pause after a solve is this many times its duration
 
 }  // namespace
 

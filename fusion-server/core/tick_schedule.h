@@ -1,6 +1,6 @@
-// When the fused output ticks: instants on the grid k / rate of UTC, each answered once, in order.
+// When the fused output ticks: instants on the grid k / rate of UTC, each fused once, in order.
 //
-// Pure: the caller passes the time and whether the pipeline could give a complete answer now.
+// Pure: the caller passes the time, and whether the pipeline has all frames for the instant.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace chorus::core {
 
 struct TickConfig {
   int rate_hz = 30;
-  /// An instant is answered at most this long after it, plus what extend() adds.
+  /// An instant is fused at most this long after it, plus what extend() adds.
   Duration alignment_delay = std::chrono::milliseconds(200);
-  /// Least time between two answers, limited to half an interval: after a stall the late answers
-  /// come one by one, so that a client polling the latest frame sees each of them.
+  /// Shortest time between two snapshots, limited to half an interval: after a stall the late
+  /// snapshots come one by one, so that a client polling the latest frame sees each of them.
   Duration min_spacing = std::chrono::milliseconds(13);
   /// If further behind than this (suspended host), instants are skipped, and this is reported.
   Duration max_lag = std::chrono::seconds(1);
-  /// This long after an instant it is fused again if frames came too late for it.
+  /// An instant is fused again this long after it, if frames came too late for it.
   Duration late_frames = std::chrono::milliseconds(800);
 
   bool operator==(const TickConfig&) const = default;
@@ -34,17 +34,18 @@ class TickSchedule {
   explicit TickSchedule(TickConfig config, std::uint64_t first_sequence = 1)
       : config_(config), sequence_(first_sequence) {}
 
-  /// The instant to answer next.  Starts at the first one after `now`, skips instants when we are
+  /// The instant to fuse next.  Starts at the first one after `now`, skips instants when we are
   /// further behind than max_lag, and restarts when the clock was set back.
   [[nodiscard]] Tick next(Timestamp now);
 
-  /// Zero: answer it now.  Otherwise: wait at most this long, and ask again when a frame arrives.
+  /// Zero: fuse it now.  Otherwise: wait at most this long, and call this again when a frame
+  /// arrives.
   [[nodiscard]] Duration wait(Timestamp now, bool ready) const;
 
   /// From now on, instants may wait this much longer than the alignment delay.
   void extend(Duration extension) { extension_ = extension; }
 
-  /// To be called when the tick of next() has been answered.
+  /// Call this when the tick of next() has been fused.
   void answered(Timestamp now);
 
   /// Changes the grid; the sequence continues.

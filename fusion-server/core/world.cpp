@@ -11,8 +11,7 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kReach = 2.5;  // [m] sensor to walk: rotation errors are judged at this range
-constexpr double kSame = 0.3;   // [m] marks differ by more: the sensor was moved
+constexpr double kSame = 0.3;  // [m] marks differ by more: the sensor was moved
 
 /// A sensor that both worlds have: its position and a point in front of it.
 struct Common {
@@ -65,7 +64,8 @@ std::vector<Common> agreeing(const std::vector<Common>& all, const Eigen::Isomet
   return out;
 }
 
-/// The largest group of sensors with unchanged relative places; of equals that with the master.
+/// The largest group of sensors with unchanged relative places; of equally large ones, that with
+/// the master.
 std::vector<Common> unmoved(const std::vector<Common>& all, const SensorId& master) {
   std::vector<Common> best;
   bool with_master = false;

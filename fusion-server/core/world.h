@@ -1,4 +1,4 @@
-// The world in which the places of a registration are given, and how it stays the same.
+// Keeps the world, in which the places of a registration are given, the same.
 //
 // A solve puts the origin of the world below its master, with +z in the master's viewing direction.
 // All users of the output (a VRED scene, marks on the floor) rely on the previous world, so a new
@@ -13,13 +13,16 @@
 
 namespace chorus::core {
 
+/// [m] sensor to walk: rotation errors are judged at this range.
+inline constexpr double kReach = 2.5;
+
 using Places = std::map<SensorId, Extrinsics>;
 
 /// The origin of a new world, given in the present one.
 struct Origin {
   double x = 0.0;    ///< [m]
   double z = 0.0;    ///< [m]
-  double yaw = 0.0;  ///< Of the new +z, about +y from the present +z [rad].
+  double yaw = 0.0;  ///< Yaw of the new +z, about +y from the present +z [rad].
 
   bool operator==(const Origin&) const = default;
 };
@@ -27,8 +30,8 @@ struct Origin {
 /// The place in another world; its covariance is rotated accordingly.
 [[nodiscard]] Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& new_from_old);
 
-/// The registration, its world moved so that sensors stand as in `before`.  Of the sensors that
-/// both place the majority decides (within 0.3 m), so a moved sensor moves the world only if there
+/// The registration, its world moved so that sensors stand as in `before`.  Among the sensors that
+/// both place, the majority decides (within 0.3 m), so a moved sensor moves the world only if there
 /// is no other.  Unchanged if they have no sensor in common.
 [[nodiscard]] Registration in_world_of(const Places& before, Registration candidate);
 

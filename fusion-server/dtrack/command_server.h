@@ -23,7 +23,7 @@ struct CommandServerOptions {
   int port = 50105;                   ///< 0: any free port.
   net::AllowList allow = {};          ///< Hosts that are served.
   int max_connections = 8;
-  int max_connections_per_address = 4;  ///< So that one host cannot take all places.
+  int max_connections_per_address = 4;  ///< Limited, so that one host cannot take all connections.
   /// Long, because clients send nothing while they receive frames.
   Duration idle = std::chrono::hours(1);
   Duration first_word = std::chrono::seconds(10);  ///< Time limit for the first known command.
@@ -49,7 +49,7 @@ class CommandServer {
   [[nodiscard]] std::uint16_t port() const;
   /// May be called from any thread.
   [[nodiscard]] std::optional<Controller> controller() const;
-  /// The counters refused and clients.  May be called from any thread.
+  /// Only `refused` and `clients` are counted.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;
 
  private:

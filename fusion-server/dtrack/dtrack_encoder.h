@@ -20,7 +20,7 @@
 
 namespace chorus::dtrack {
 
-/// Clients read datagrams of up to 32768 bytes; so many bodies always fit.
+/// Clients read datagrams of up to 32768 bytes; this many bodies always fit.
 inline constexpr std::size_t kMaxDtrackBodies = 150;
 inline constexpr std::size_t kMaxBytes = 32768;
 

@@ -11,7 +11,7 @@ namespace {
 
 /// What a client sends to open its firewall, with or without a NUL.
 constexpr std::string_view kFirewallOpener = "fw4dtsdkc";
-/// Most datagrams read per frame; the rest waits and may be lost.
+/// Largest number of datagrams read per frame; the rest waits and may be lost.
 constexpr int kMaxArrivals = 64;
 
 class DtrackOutlet final : public outlet::Outlet {

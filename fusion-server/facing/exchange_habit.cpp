@@ -23,8 +23,8 @@ double Rates::after(double exchanged_before, double elapsed) const {
   return exchanged() + (exchanged_before - exchanged()) * held;
 }
 
-/// Gamma-Poisson estimate of a rate, events per time; the prior counts as events in time observed
-/// before.
+/// Gamma-Poisson estimate of a rate, events per time; the prior counts as events that were observed
+/// in `prior_time`.
 double ExchangeHabit::Count::rate(double prior_rate, double prior_time) const {
   return (prior_rate * prior_time + events) / (prior_time + time);
 }

@@ -1,10 +1,10 @@
-// Learns for each sensor, in use, how readily its tracker exchanges left and right while a person
-// turns, and how readily it exchanges them back (docs/papers/sides.md, Exchange).
+// Learns for each sensor, in use, how readily its tracker swaps left and right while a person
+// turns, and how readily it swaps them back (docs/papers/sides.md, Exchange).
 //
 // The labels are a Markov chain in continuous time, with two rates for each angle between the
 // person's front and the sensor: a rate of becoming wrong and a rate of becoming right again.  Two
-// rates, not one curve, because trackers have hysteresis: a tracker may exchange sides near 130 deg
-// and exchange them back near 55 deg.
+// rates, not one curve, because trackers have hysteresis: a tracker may swap sides near 130 deg and
+// swap them back near 55 deg.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace chorus::facing {
 
-/// The prior for an unknown sensor.  It rarely exchanges the sides of a person who faces it; beyond
-/// 75 deg it exchanges them and exchanges them back with equal rates at every angle.  The rates are
-/// low, so labels that merely stay as they are prove almost nothing.
+/// The prior for an unknown sensor.  It rarely swaps the sides of a person who faces it; beyond 75
+/// deg it swaps them, and swaps them back, with equal rates at every angle.  The rates are low, so
+/// labels that merely stay as they are prove almost nothing.
 struct HabitPrior {
   double front_out = 0.002;  ///< [1/s] up to 45 deg.
   double front_back = 0.1;   ///< [1/s]
@@ -29,14 +29,14 @@ struct HabitPrior {
   bool operator==(const HabitPrior&) const = default;
 };
 
-/// Rates of change [1/s]: `out` from correct to exchanged labels, `back` the reverse.
+/// Rates of change [1/s]: `out` from correct to swapped labels, `back` the reverse.
 struct Rates {
   double out = 0.0;
   double back = 0.0;
 
-  /// Stationary probability that the labels are exchanged.
+  /// Stationary probability that the labels are swapped.
   [[nodiscard]] double exchanged() const { return out / (out + back); }
-  /// Probability that they are exchanged after `elapsed` seconds, given the probability before.
+  /// Probability that they are swapped after `elapsed` seconds, given the probability before.
   [[nodiscard]] double after(double exchanged_before, double elapsed) const;
 };
 
@@ -45,12 +45,12 @@ struct Passage {
   /// |phi|, the angle between the person's front and the sensor [rad], in [0, pi].
   double facing = 0.0;
   double elapsed = 0.0;  ///< [s]
-  double out = 0.0;      ///< Expected number of changes from correct to exchanged.
+  double out = 0.0;      ///< Expected number of changes from correct to swapped.
   double back = 0.0;
-  double exchanged = 0.0;  ///< Mean probability in that time that the labels were exchanged.
+  double exchanged = 0.0;  ///< Mean probability in that time that the labels were swapped.
 };
 
-/// What has been observed about one sensor.
+/// What was learned about one sensor.
 class ExchangeHabit {
  public:
   [[nodiscard]] Rates at(double facing, const HabitPrior& prior) const;

@@ -7,16 +7,17 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kSpanSigma = 0.2;  // [m]; of all pairs of a view together, including slow errors.
-constexpr double kMaxAgree = 4.0;   // Limit on the log odds of one instant, because errors persist.
+// [m]; error of all pairs of a view together, including slow errors.
+constexpr double kSpanSigma = 0.2;
+constexpr double kMaxAgree = 4.0;  // Limit on the log odds of one instant, because errors persist.
 
 /// The state of a two-state chain after one more observation.
 struct Chain {
-  double likelihood = 0.0;  ///< Of the observation.
+  double likelihood = 0.0;  ///< Likelihood of the observation.
   double exchanged = 0.0;   ///< Probability afterwards.
 };
 
-/// Advances the chain and adds an observation; `odds`: its log odds for "exchanged".
+/// Advances the chain and adds an observation; `odds`: its log odds for "swapped".
 Chain observe(const std::optional<double>& before, double odds, double elapsed,
               const Rates& rates) {
   const double was = before.value_or(rates.exchanged());
@@ -27,7 +28,7 @@ Chain observe(const std::optional<double>& before, double odds, double elapsed,
 }
 
 /// What happened to the labels.  A probability that moves from one state to the other counts as
-/// that fraction of a change: over the frames until the change is certain, the fractions add up to
+/// that fraction of a change; over the frames until the change is certain, the fractions add up to
 /// one.
 Passage passage(const Labels& now, double before, double after) {
   const double moved = after - before;

@@ -1,6 +1,6 @@
-// What the labels of one view tell: whether this sensor has exchanged left and right, and whether
-// the *held sides* are right, i.e. the current assumption on which side of the person is the left
-// one (docs/papers/sides.md, Labels).
+// What the labels of one view show: whether this sensor has swapped left and right, and whether the
+// *held sides* are right.  Held sides are the current assumption about which side of the person is
+// the left one (docs/papers/sides.md, Labels).
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace chorus::facing {
 
-/// Probability that a view's labels are exchanged, for both hypotheses about the held sides.
+/// Probability that a view's labels are swapped, for both hypotheses about the held sides.
 struct Exchanged {
   double held = 0.5;      ///< If the held sides are right.
   double opposite = 0.5;  ///< If the held sides are wrong.

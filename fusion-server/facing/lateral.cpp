@@ -8,8 +8,7 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;     // Weight of a pair with an inferred joint.
-constexpr double kMinLength = 0.05;  // [m]; shorter spans have no direction.
+constexpr double kGuessedPair = 0.3;  // Weight of a pair with an inferred joint.
 constexpr std::size_t kTrunkPairs = 2;
 constexpr int kRounds = 3;  // One or two rounds are enough for agreement.
 
@@ -49,7 +48,7 @@ Spans spans_of(const Skeleton<WorldSpace>& body) {
     const Joint& right = body[mirror(kSidePairs[i])];
     if (!left.seen() || !right.seen()) continue;
     const bool tracked = left.state == JointState::Tracked && right.state == JointState::Tracked;
-    spans[i] = (tracked ? 1.0 : kGuessed) * (left.position - right.position);
+    spans[i] = (tracked ? 1.0 : kGuessedPair) * (left.position - right.position);
   }
   return spans;
 }
@@ -66,7 +65,7 @@ Eigen::Vector3d forward_of(const Spans& spans) {
   Eigen::Vector3d left = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < kTrunkPairs; ++i) left += spans[i];
   left.y() = 0;
-  if (left.norm() < kMinLength) return Eigen::Vector3d::Zero();
+  if (left.norm() < kMinSpan) return Eigen::Vector3d::Zero();
   return left.normalized().cross(Eigen::Vector3d::UnitY());
 }
 

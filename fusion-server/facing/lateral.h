@@ -1,5 +1,4 @@
-// The vectors left - right of a body's joint pairs; they change sign when a tracker exchanges
-// sides.
+// The vectors left - right of a body's joint pairs; they change sign when a tracker swaps sides.
 #pragma once
 
 #include <array>
@@ -18,6 +17,8 @@ inline constexpr std::array<JointId, 6> kSidePairs{JointId::ShoulderLeft, JointI
 /// zero if one is not seen.
 using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 
+inline constexpr double kMinSpan = 0.05;  ///< [m]; shorter spans have no direction.
+
 [[nodiscard]] Spans no_spans();
 
 [[nodiscard]] Spans spans_of(const Skeleton<WorldSpace>& body);
@@ -25,8 +26,8 @@ using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 /// Root of the sum of the squared lengths of all spans [m].
 [[nodiscard]] double size_of(const Spans& spans);
 
-/// Sum of the dot products of corresponding spans [m^2]; negative: one of the two has sides
-/// exchanged.
+/// Sum of the dot products of corresponding spans [m^2]; negative if one of the two has its sides
+/// swapped.
 [[nodiscard]] double agreement(const Spans& a, const Spans& b);
 
 /// Horizontal unit vector in the direction in which a body with these spans faces; zero when

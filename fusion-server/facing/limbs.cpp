@@ -11,9 +11,10 @@ namespace {
 
 using enum JointId;
 
-constexpr std::size_t kEnough = 2;  // Other views that are needed to decide which of two is wrong.
+// Number of other views that are needed to decide which of two is wrong.
+constexpr std::size_t kEnough = 2;
 
-/// For each pair of kSidePairs, the left joints that are exchanged together with it.
+/// For each pair of kSidePairs, the left joints that are swapped together with it.
 const std::array<std::vector<JointId>, kSidePairs.size()> kHangsOn{{
     {ShoulderLeft},
     {HipLeft},

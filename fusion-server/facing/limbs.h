@@ -1,4 +1,4 @@
-// Finds limbs of which a sensor has exchanged left and right alone: only the arms, only the legs,
+// Finds limbs whose left and right a sensor has swapped separately: only the arms, only the legs,
 // or one pair of joints, while the rest of the body is labelled correctly (Otto Fig. 5;
 // docs/papers/sides.md, Limbs).
 #pragma once
@@ -10,14 +10,14 @@ namespace chorus::facing {
 struct LimbLimits {
   bool mend = true;
   double apart = 0.15;  ///< A pair whose joints are closer together than this is not changed [m].
-  /// Exchanging a pair must reduce its squared error to at most this fraction.
+  /// Swapping a pair must reduce its squared error to at most this fraction.
   double better = 0.3;
 
   bool operator==(const LimbLimits&) const = default;
 };
 
-/// Call this after each view's labels have been corrected as a whole.  Exchanges a pair of joints
-/// if that fits two or more other views much better.  A pair that only contradicts `held`, the
+/// Call this after each view's labels have been corrected as a whole.  Swaps a pair of joints if
+/// that fits two or more other views much better.  A pair that only contradicts `held`, the
 /// recently agreed spans, becomes Inferred.
 void mend_limbs(Person& person, const Spans& held, const LimbLimits& limits);
 

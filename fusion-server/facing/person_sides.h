@@ -27,7 +27,7 @@ struct Spell {
 
 /// Evidence of one instant that the held sides are right, in log odds.
 struct Evidence {
-  double news = 0.0;     ///< From labels and posture; only what earlier instants did not show.
+  double news = 0.0;     ///< From labels and posture; only what earlier instants have not shown.
   double walking = 0.0;  ///< That the person walks forwards.
   double share = 1.0;    ///< Share of `walking` that is new, in [0, 1].
 };

@@ -10,7 +10,7 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;  // Weight of an offset that depends on an inferred joint.
+constexpr double kGuessedOffset = 0.3;  // Weight of an offset that depends on an inferred joint.
 
 /// Weighted mean of offsets in world space [m].
 struct Offset {
@@ -26,16 +26,16 @@ struct Offset {
   }
 };
 
-/// How far these joints together may be trusted: 0 if one is not seen, less than 1 if one is
-/// inferred.
+/// Weight of these joints together: 0 if one is not seen, less than 1 if one is inferred.
 template <class... Ids>
 double weight_of(const Skeleton<WorldSpace>& body, Ids... ids) {
   const bool seen = (body[ids].seen() && ...);
   const bool tracked = ((body[ids].state == JointState::Tracked) && ...);
-  return seen ? (tracked ? 1.0 : kGuessed) : 0.0;
+  return seen ? (tracked ? 1.0 : kGuessedOffset) : 0.0;
 }
 
-/// Offset of `p` from the nearest point of the line between `a` and `b`.
+/// Offset of `p` from the nearest point of the segment from `a` to `b`; zero if these nearly
+/// coincide.
 Eigen::Vector3d off_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                          const Eigen::Vector3d& b) {
   constexpr double kMinLength = 1e-4;  // [m^2]
@@ -98,8 +98,8 @@ double tracked_share_of_arms(const Skeleton<WorldSpace>& body) {
   return static_cast<double>(tracked) / static_cast<double>(kArmJoints.size());
 }
 
-/// How much larger a share of the arm joints the sensors on the side of `forward` track than the
-/// other sensors.
+/// Share of the arm joints that the sensors on the side of `forward` track, minus the share that
+/// the other sensors track.
 double seen_from(const std::vector<SensorView>& views, const Eigen::Vector3d& forward) {
   double mean = 0.0;
   for (const SensorView& view : views) mean += tracked_share_of_arms(view.skeleton);

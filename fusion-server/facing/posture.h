@@ -1,5 +1,5 @@
-// Judges by the posture alone where the front of a body is; exchanging left and right does not
-// change the result (docs/papers/sides.md, Posture).
+// Judges by the posture alone where the front of a body is; swapping left and right does not change
+// the result (docs/papers/sides.md, Posture).
 //
 // Knees bend forwards, elbows backwards; hands work in front of the shoulders; people bend
 // forwards. Feet and heads are not used, because a body tracker places them too close to the sensor
@@ -35,13 +35,14 @@ struct PostureCues {
 };
 
 /// Log odds that the front is where `forward` (unit, horizontal) points.  Uses all views together,
-/// because they see the same posture.  Exchanging the labels of a view changes nothing; reversing
+/// because they see the same posture.  Swapping the labels of a view changes nothing; reversing
 /// `forward` reverses the sign.
 [[nodiscard]] double posture_log_odds(const std::vector<SensorView>& views,
                                       const Eigen::Vector3d& forward, const PostureCues& cues);
 
-/// The new evidence in a posture, given the posture `elapsed` seconds before, in log odds: an error
-/// of posture lasts as long as the posture (first-order autoregressive, time constant `same`).
+/// The new evidence in a posture, given the posture `elapsed` seconds before, in log odds.  A
+/// misleading posture misleads for as long as it lasts, so its error is autoregressive with the
+/// time constant `same`.
 [[nodiscard]] double posture_news(double now, double before, double elapsed, double same);
 
 }  // namespace chorus::facing

@@ -11,10 +11,9 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kMinLength = 0.05;  // [m]; shorter spans have no direction.
-constexpr double kClear = 2.0;       // Log odds from which on one view alone counts as certain.
+constexpr double kClear = 2.0;  // Log odds from which on one view alone counts as certain.
 constexpr double kBlind = 1.0;  // Log odds of all views together; with less, they show nothing.
-constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame are one observation.
+constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame count as one observation.
 
 /// What the model computes for one person at one instant.
 struct Instant {
@@ -24,7 +23,7 @@ struct Instant {
   std::vector<Spans> views;
   std::vector<double> agree;     ///< Log odds of each view, see agreement_log_odds().
   std::vector<bool> exchanged;   ///< For each view, whether it opposes the held sides.
-  std::vector<LabelStep> steps;  ///< For each view; its `exchanged` is 0.5 if unknown.
+  std::vector<LabelStep> steps;  ///< For each view; `exchanged` is 0.5 if unknown.
 };
 
 std::vector<Spans> all_spans(const Person& person) {
@@ -46,12 +45,12 @@ std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestam
 /// A pair whose direction is unknown at present keeps its last one.
 void keep_lost(Spans& spans, const Spans& before) {
   for (std::size_t i = 0; i < spans.size(); ++i) {
-    if (spans[i].norm() < kMinLength) spans[i] = before[i];
+    if (spans[i].norm() < kMinSpan) spans[i] = before[i];
   }
 }
 
 /// True if the view opposes the held sides.  A view that clearly shows left and right is trusted;
-/// for an unclear one the last answer is kept.
+/// for an unclear one the last decision is kept.
 bool opposes(const SensorView& view, double agree, const Sides& sides) {
   if (std::abs(agree) > kClear) return agree < 0;
   const auto before = sides.views.find(view.sensor);
@@ -82,14 +81,14 @@ Spans joined(const Instant& now) {
   return spans;
 }
 
-/// How far a view's spans can be trusted, in [0, 1].  While a tracker changes its labels, it draws
-/// the sides together, and the spans may point anywhere.  A real body does not become narrower, so
-/// spans much shorter than the held ones show no direction.
+/// How far a view's spans can be trusted, in [0, 1].  While a tracker changes its labels, it moves
+/// left and right joints towards the middle, and the spans may point anywhere.  A real body does
+/// not become narrower, so spans much shorter than the held ones show no direction.
 double trust_in(const Spans& now, const Spans& before) {
   // Spans this short, relative to the held ones, are not trusted at all.
   constexpr double kNone = 0.5;
   constexpr double kFull = 0.8;
-  const double part = size_of(now) / std::max(size_of(before), kMinLength);
+  const double part = size_of(now) / std::max(size_of(before), kMinSpan);
   return std::clamp((part - kNone) / (kFull - kNone), 0.0, 1.0);
 }
 

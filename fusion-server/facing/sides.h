@@ -1,11 +1,11 @@
 // Decides which side of a person is the left one, from all sensors and over time (Otto 5.2.2).
 //
 // A body tracker assumes that everybody faces it: for a person seen from behind, the skeleton is in
-// place, but left and right are exchanged.  So the vectors left - right of two views either agree
-// or oppose each other, which resolves the views relative to one another.  One common sign remains
-// open. A hidden Markov model estimates it from posture, walking and the learned habits of each
-// sensor, without assuming an angle at which trackers exchange sides (docs/papers/sides.md).
-// Causal: the result for an instant does not depend on later ones.
+// place, but left and right are swapped.  So the vectors left - right of two views either agree or
+// oppose each other, which resolves the views relative to one another.  One common sign remains
+// open.  A hidden Markov model estimates it from posture, walking and the learned habits of each
+// sensor, without assuming an angle at which trackers swap sides (docs/papers/sides.md).  Causal:
+// the result for an instant does not depend on later ones.
 #pragma once
 
 #include <map>
@@ -28,7 +28,7 @@ struct SidesConfig {
   double change_odds = 1.0;  ///< The held sides change if the log odds against them exceed this.
   double smoothing = 0.1;    ///< Time constant with which the held spans follow the views [s].
   double learn_from = 0.95;  ///< Habits are learned while the sides are at least this probable.
-  /// A person who was unseen for this long starts anew.
+  /// Forgets a person who was not seen for this long.
   Duration forget = std::chrono::seconds(1);
 
   bool operator==(const SidesConfig&) const = default;
@@ -55,9 +55,9 @@ struct SidesMemory {
   std::map<SensorId, ExchangeHabit> habits;  ///< Learned from all people whom the sensor saw.
 };
 
-/// Exchanges left and right in the views that have them wrong, sets every view's `facing` to that
-/// of the agreed body, sets the person's sides_confidence, and updates `memory`.  An exchanged view
-/// loses its orientations, because they describe a body that faces the sensor.
+/// Swaps left and right in the views that have them wrong, sets every view's `facing` to that of
+/// the agreed body, sets the person's sides_confidence, and updates `memory`.  A swapped view loses
+/// its orientations, because they describe a body that faces the sensor.
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config);
 

@@ -10,7 +10,7 @@ namespace chorus::facing {
 namespace {
 
 constexpr double kNearest = 0.3;  // [m], horizontal; a person is not nearer to a camera.
-// [m], of size_of() all spans; a person seen from the front has 0.8.
+// [m]; limit of size_of() the spans.  A person seen from the front has 0.8.
 constexpr double kWide = 0.35;
 // Cosine of ray and normal; a flatter ray meets the plane too far away.
 constexpr double kSteepest = 0.1;

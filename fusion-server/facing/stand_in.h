@@ -1,10 +1,10 @@
-// Replaces ray bodies by flat figures while left and right are determined.
+// Replaces ray bodies with flat figures while left and right are determined.
 //
 // Left and right are determined from positions (sides.h).  A camera without depth still shows how a
-// body looks from the camera's place.  So its joints are put on the vertical plane through the
-// person that faces the camera: then their spans are right except for the part along the line of
-// sight. Seen from the side, such a figure is too narrow to decide anything; then the sides stay as
-// the camera gives them.
+// body looks from the camera.  So its joints are put on the vertical plane through the person that
+// faces the camera: their spans are then right except for the part along the line of sight.  Seen
+// from the side, such a figure is too narrow to decide anything, and the sides stay as the camera
+// reports them.
 #pragma once
 
 #include <vector>
@@ -23,9 +23,9 @@ struct Figure {
 /// person stays as it is.
 [[nodiscard]] std::vector<Figure> stand_in(Person& person, const Eigen::Vector3d& core);
 
-/// Turns these views back into rays.  If the sides of a wide figure were exchanged meanwhile, they
-/// stay exchanged.  Changes to single limbs are discarded, because flat limbs are too inaccurate
-/// for them.
+/// Turns these views back into rays.  If left and right of a figure that is not narrow were swapped
+/// in between, they stay swapped.  Changes to single limbs are discarded, because flat limbs are
+/// too inaccurate for them.
 void back_to_rays(Person& person, const std::vector<Figure>& figures);
 
 }  // namespace chorus::facing

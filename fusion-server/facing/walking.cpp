@@ -5,7 +5,7 @@
 namespace chorus::facing {
 namespace {
 
-// Over a longer step, there is no single speed.
+// A longer step does not have a single speed.
 constexpr Duration kMaxStep = std::chrono::milliseconds(300);
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace chorus::fusion {
 namespace {
 
 constexpr double kHabit = 5.0;        // [s] over which the views' habits are learned
-constexpr double kUsualScale = 0.01;  // differences in size that noise alone makes
+constexpr double kUsualScale = 0.01;  // relative differences in size that noise alone causes
 constexpr double kFirstAgreement = 0.25;
 
 /// A mean that follows slowly.
@@ -105,7 +105,7 @@ class BodyFilter final : public Estimator {
     return fused;
   }
 
-  /// Predicted places of the joints that were seen recently.
+  /// Predicted positions of the joints that were seen recently.
   [[nodiscard]] PlacedBody expected_at(Timestamp instant) const {
     PlacedBody body;
     for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -130,7 +130,7 @@ class BodyFilter final : public Estimator {
             true};
   }
 
-  /// What all views have in common is in no view's covariance.
+  /// Adds the errors that all views have in common, which are in no view's covariance.
   void state(FusedJoint& fused, const PlacedJoint& place) const {
     const BodyModel& body = model();
     const double wider = body.agreement > 0 ? agreement_.value / body.agreement : 1.0;
@@ -142,7 +142,7 @@ class BodyFilter final : public Estimator {
     state_covariance(fused, wider * place.covariance + common * Eigen::Matrix3d::Identity());
   }
 
-  std::shared_ptr<const FusionConfig> config_;  ///< The same for all copies.
+  std::shared_ptr<const FusionConfig> config_;  ///< Shared by all copies.
   std::shared_ptr<const ErrorModel> errors_;
   BoneLengths lengths_;
   MisfitSize misfits_;

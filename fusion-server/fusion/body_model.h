@@ -11,8 +11,9 @@ struct BodyModel {
   /// Where the estimate of misfits starts (misfit_size.h).  Standard deviation of the ratio by
   /// which a sensor's whole body is too large or too small.
   double scale = 0.06;
-  /// How far it is turned about the vertical axis when seen from the side [rad]: zero up to
-  /// `turn_from`, in full from `turn_full` on; both are angles between frontal and side-on.
+  /// Standard deviation of the turn of a sensor's whole body about the vertical axis, when seen
+  /// from the side [rad]: zero up to `turn_from`, in full from `turn_full` on; both are angles
+  /// between frontal and side-on.
   double turn = deg(20);
   double turn_from = deg(40);
   double turn_full = deg(90);

@@ -1,4 +1,4 @@
-// Moves joints to where the lengths of their bones fit: the body as a tree.
+// Moves joints so that the lengths of the bones fit: the body as a tree.
 //
 //   min  sum_j |x_j - z_j|^2_S_j + sum_b (|x_c - x_p| - L_b)^2 / s_b^2        docs/papers/body.md
 //   (4)
@@ -13,7 +13,7 @@
 
 namespace chorus::fusion {
 
-/// Where a joint is, according to the views of one instant or to everything known.
+/// Position of a joint, according to the views of one instant or to everything known.
 struct PlacedJoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< [m^2], positive definite if placed.
@@ -28,8 +28,8 @@ struct HeldBone {
 };
 using HeldBones = std::array<HeldBone, kBones.size()>;  ///< In the order of kBones.
 
-/// Joints without a place stay without; their bones, and bones of unknown length, have no effect.
-/// Two rounds of Gauss-Newton suffice for a body that nearly fits, one for a start.
+/// Joints without a position stay without one; their bones, and bones of unknown length, have no
+/// effect.  Two rounds of Gauss-Newton suffice for a body that nearly fits, one as a start.
 [[nodiscard]] PlacedBody hold_bones(const PlacedBody& seen, const HeldBones& bones, int rounds = 2);
 
 }  // namespace chorus::fusion

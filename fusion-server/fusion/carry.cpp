@@ -6,7 +6,7 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kDrift = 0.4;  // [m/s] per axis, by which somebody goes another way than expected
+constexpr double kDrift = 0.4;  // [m/s] per axis: how fast somebody departs from the expected path
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// A body that nobody sees any more, where the person is expected.
+// A body that no sensor sees any more, placed where the person is expected.
 #pragma once
 
 #include "fusion-server/flow.h"

@@ -9,7 +9,7 @@ namespace {
 constexpr double kMinSigma =
     1e-4;  ///< [m], [rad]; prevents a division by zero if the configuration is careless
 constexpr double kMinFactor = 1.0;  ///< an inferred joint is never better than a tracked one
-constexpr double kMinRay = 1e-3;    ///< [m]; nearer to the eye a joint has no line of sight
+constexpr double kMinRay = 1e-3;    ///< [m]; closer to the eye, a joint has no line of sight
 
 double usable(double sigma, double factor) {
   return sigma > kMinSigma ? sigma * factor : kMinSigma * factor;
@@ -20,7 +20,7 @@ double factor_of(const Joint& joint, const NoiseModel& noise) {
   return inferred ? std::max(kMinFactor, noise.inferred_factor) : kMinFactor;
 }
 
-/// Across the ray from its direction; along it just as large, because only the part across is used.
+/// Isotropic, although only the part across the ray is used.
 Eigen::Matrix3d ray_covariance(const Joint& joint, const NoiseModel& noise) {
   const double sigma = usable(noise.ray, factor_of(joint, noise));
   return sigma * sigma * Eigen::Matrix3d::Identity();

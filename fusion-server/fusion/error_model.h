@@ -18,7 +18,7 @@ class ErrorModel {
   virtual ~ErrorModel() = default;
   /// Covariance of the joint's position [m^2], or of its ray's direction [rad^2], in world axes.  A
   /// position's is positive definite; a direction's need not be, because only its part across the
-  /// ray counts.  Call it only for joints that are given in the view.
+  /// ray counts.  Call this only for joints that have a position or direction in the view.
   [[nodiscard]] virtual Eigen::Matrix3d covariance(const SensorView& view, JointId joint) const = 0;
 };
 

@@ -25,16 +25,16 @@ class Memory {
   Memory& operator=(Memory&&) noexcept = default;
   ~Memory() = default;
 
-  /// One body per person, in the order of `people`, each fused by method_for() it.  Somebody whom
-  /// nobody sees is carried: predicted by a method that does, else moved as they last were.  When
-  /// the configuration changes, all memory is cleared.
+  /// One body per person, in the order of `people`, each fused by method_for() it.  A person whom
+  /// no sensor sees is carried: predicted if the method can do that, otherwise moved in their last
+  /// pose.  When the configuration changes, all memory is cleared.
   [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
                                             const Instant& instant, const FusionConfig& config);
   /// Forgets people who are no longer tracked.
   void keep_only(const std::set<PersonId>& tracked);
 
  private:
-  /// As it was when somebody saw it.
+  /// The last body that a sensor saw.
   struct Last {
     FusedBody body;
     Timestamp at;

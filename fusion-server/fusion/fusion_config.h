@@ -14,8 +14,8 @@ namespace chorus::fusion {
 enum class Method {
   /// Weighted mean by Eqs. (1)-(3), orientation by LERP; if all weights are zero: decision 0007.
   Otto,
-  Mean,             ///< Unweighted mean of the seen joints.
-  BestView,         ///< Only the view of highest weight; in a tie, that with more tracked joints.
+  Mean,      ///< Unweighted mean of the seen joints.
+  BestView,  ///< Only the view of highest weight; of equal ones, that with more tracked joints.
   InverseVariance,  ///< Anisotropic inverse variance along and across the line of sight, robust.
   BestSkeleton,     ///< One view alone; switches only after `hysteresis`.  Has memory.
   JointCounting,    ///< Only the view with the most tracked joints.
@@ -32,15 +32,15 @@ struct FusionConfig {
   double zero_weight_floor = 0.02;
   NoiseModel noise;  ///< For sensors without an entry of their own.
   std::map<SensorId, NoiseModel> sensor_noise;
-  PoseError pose_error;         ///< InverseVariance: part of the covariance it states.
+  PoseError pose_error;         ///< InverseVariance: part of the covariance that it states.
   double common_sigma = 0.004;  ///< Error common to all sensors [m]; added to stated variances.
   double huber = 1.5;  ///< [standard deviations]; robust loss: InverseVariance, PointsAndRays.
   /// BestSkeleton, Substitution: how long another view must be better before it takes over.
   Duration hysteresis = std::chrono::milliseconds(300);
   /// OttoKalman: standard deviation of a view of weight 1 [m].
   double kalman_sigma = 0.020;
-  /// OttoKalman: how long a joint that nobody sees is predicted.  PointsAndRays: how long the last
-  /// place of a joint that only one ray shows limits its depth.
+  /// OttoKalman: how long a joint that no sensor sees is predicted.  PointsAndRays: how long a
+  /// joint's last position limits its depth when only one ray shows it.
   Duration kalman_coast = std::chrono::milliseconds(300);
 
   /// PointsAndRays: a joint that its rays determine less precisely than this is left out [m].

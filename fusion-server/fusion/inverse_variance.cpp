@@ -11,17 +11,17 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr int kIterations = 8;     // the Huber re-weighting converges in 4-6
-constexpr double kSettled = 1e-6;  // [m]
+constexpr int kHuberIterations = 8;     // the Huber re-weighting converges in 4-6
+constexpr double kHuberSettled = 1e-6;  // [m]
 
-struct Estimate {
+struct WeightedMean {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
 };
 
-Estimate solve(std::span<const JointView> views, std::span<const Eigen::Matrix3d> information,
-               std::span<const double> trust) {
-  Estimate estimate;
+WeightedMean solve(std::span<const JointView> views, std::span<const Eigen::Matrix3d> information,
+                   std::span<const double> trust) {
+  WeightedMean estimate;
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {
     estimate.information += trust[i] * information[i];
@@ -46,7 +46,7 @@ Eigen::Matrix3d stated(std::span<const JointView> views, std::span<const double>
 }
 
 FusedJoint finish(std::span<const JointView> views, std::span<const double> trust,
-                  const Estimate& estimate) {
+                  const WeightedMean& estimate) {
   FusedJoint fused;
   fused.joint.position = estimate.position;
   fused.joint.state = JointState::Inferred;
@@ -71,14 +71,14 @@ FusedJoint inverse_variance(std::span<const JointView> views, double huber) {
   std::vector<Eigen::Matrix3d> information;
   for (const JointView& s : views) information.push_back(s.covariance.inverse());
   std::vector<double> trust(views.size(), 1.0);
-  Estimate estimate = solve(views, information, trust);
-  for (int i = 0; i < kIterations; ++i) {
+  WeightedMean estimate = solve(views, information, trust);
+  for (int i = 0; i < kHuberIterations; ++i) {
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Eigen::Vector3d off = views[k].joint.position - estimate.position;
       trust[k] = huber_weight(std::sqrt(off.dot(information[k] * off)), huber);
     }
-    const Estimate next = solve(views, information, trust);
-    const bool settled = (next.position - estimate.position).norm() < kSettled;
+    const WeightedMean next = solve(views, information, trust);
+    const bool settled = (next.position - estimate.position).norm() < kHuberSettled;
     estimate = next;
     if (settled) break;
   }

@@ -11,13 +11,13 @@ namespace chorus::fusion {
 
 using JointFilters = std::array<PointFilter, kJointCount>;
 
-/// Whether the joint is on the body's centre axis.
+/// True if the joint is on the body's centre axis.
 [[nodiscard]] bool in_trunk(JointId joint);
 
 /// Spectral density of a joint's white-noise acceleration: 3 for trunk, 40 for limbs [m^2 / s^3].
 [[nodiscard]] double process_density(JointId joint);
 
-/// One filter per joint, still without measurements, each with its joint's process density.
+/// One filter per joint, without measurements yet, each with its joint's process density.
 [[nodiscard]] JointFilters joint_filters();
 
 /// Writes a fused joint into the body.

@@ -17,8 +17,9 @@ struct JointView {
   double weight = 0.0;  ///< Weight of the view, Eqs. (1)-(3); >= 0.
   /// From the error model: of a point's position [m^2], or of a ray's direction [rad^2].
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  double pose_variance = 0.0;     ///< Of its additional pose error, per axis [m^2] (pose_error.h).
-  std::uint64_t contributor = 0;  ///< The sensor's bit in FusedBody::contributors.
+  /// Variance of its additional pose error, per axis [m^2] (pose_error.h).
+  double pose_variance = 0.0;
+  std::uint64_t contributor = 0;                  ///< The sensor's bit in FusedBody::contributors.
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Position of the sensor [m].
   std::size_t view = 0;                           ///< Its index in Person::views.
 };
@@ -29,7 +30,7 @@ struct FusedJoint {
   std::uint64_t contributors = 0;
 };
 
-/// One joint from every view of a person that measured a point for it; rays are left out.  Weights
+/// One joint in every view of a person that measured a point for it; rays are left out.  Weights
 /// that are NaN become zero.
 [[nodiscard]] std::vector<JointView> joint_views_of(JointId joint, const Person& person,
                                                     const std::vector<SensorId>& sensors,

@@ -13,7 +13,8 @@
 namespace chorus::fusion {
 namespace {
 
-/// Highest weight first, then most tracked joints, then smallest sensor id: order never matters.
+/// Highest weight first, then most tracked joints, then smallest sensor id: the order of the views
+/// never matters.
 Person heaviest_view_of(const Person& person) {
   const auto heavier = [](const SensorView& a, const SensorView& b) {
     const double weight_a = Weight::clamped(a.weight).value();
@@ -80,7 +81,7 @@ class JointWise final : public Estimator {
     return fused;
   }
 
-  std::shared_ptr<const FusionConfig> config_;  ///< The same for all copies.
+  std::shared_ptr<const FusionConfig> config_;  ///< Shared by all copies.
   std::shared_ptr<const ErrorModel> errors_;
 };
 

@@ -18,14 +18,14 @@ constexpr int kIterations = 20;
 constexpr double kSettled = 1e-6;           // [m]
 constexpr double kFar = 5.0;                // [standard deviations] beyond this, influence fades
 constexpr double kContradicts = 3.0;        // [standard deviations] beyond it, try other starts
-constexpr std::size_t kMaxStarts = 12;      // views of which pairs are formed
+constexpr std::size_t kMaxStarts = 12;      // views from which pairs are formed
 constexpr double kNearest = 0.1;            // [m] a nearer joint counts as behind the camera
 constexpr double kFirstRange = 3.0;         // [m] assumed range of a ray while it is unknown
 constexpr double kMinAngle = 1e-5;          // [rad] no camera is more precise
-constexpr double kLeastInformation = 1e-2;  // [1/m^2] less along any axis counts as none: 10 m
-constexpr double kScalePrior = 4.0;         // of "the scale is one", in views or degrees of freedom
-constexpr std::size_t kManyViews = 4;       // from this many on, a median estimates the scale
-constexpr double kMedianOf2 = 1.3863;       // median of chi^2 with two degrees of freedom
+constexpr double kLeastInformation = 1e-2;  // [1/m^2] (10 m); less along any axis counts as none
+constexpr double kScalePrior = 4.0;  // weight of "the scale is one", in views or degrees of freedom
+constexpr std::size_t kManyViews = 4;  // from this many on, a median estimates the scale
+constexpr double kMedianOf2 = 1.3863;  // median of chi^2 with two degrees of freedom
 constexpr double kMedianOf3 = 2.3660;
 
 /// A view as a point with an information matrix; for a ray the information along it is zero.
@@ -134,7 +134,7 @@ double loss_at(const Terms& terms, const Eigen::Vector3d& point) {
   return loss;
 }
 
-/// Where all views together put the joint; the ranges of the rays are refined twice.
+/// The joint's position according to all views together; the ranges of the rays are refined twice.
 std::optional<Eigen::Vector3d> plain_start(const Terms& terms, std::span<const double> trust) {
   std::optional<Eigen::Vector3d> point;
   for (int round = 0; round < 3; ++round) {

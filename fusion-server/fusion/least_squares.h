@@ -1,8 +1,8 @@
 // Robust least squares over the points and rays of one joint.
 //
-// A point z constrains all three axes, with its covariance Sigma.  A ray from an eye along the
-// unit
+// A point z constrains all three axes, with its covariance Sigma.  A ray from an eye along the unit
 // direction d constrains the two axes across it: at range r = d . (p - eye) its direction's
+// covariance C [rad^2] becomes r^2 C [m^2].
 //   p = argmin sum_i rho(|p - z_i|_Sigma_i)
 // solved by Gauss-Newton with re-weighting.  The influence of a measurement grows like Huber's up
 // to `huber`, then stays constant, and fades beyond kFar.  That is not convex: where measurements

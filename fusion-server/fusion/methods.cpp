@@ -26,9 +26,9 @@ constexpr std::array kMethods{
     MethodRow{Method::BodyFilter, "body-filter", body_filter},
 };
 
-/// A point whose depth is hardly known: what a camera without depth makes of a landmark.
+/// True for a point whose depth is hardly known, as from a camera that guesses depth.
 bool nearly_a_ray(const Joint& joint) {
-  constexpr double kElongated = 3.0;  // of the standard deviations along and across
+  constexpr double kElongated = 3.0;  // ratio of the standard deviations along and across
   if (!joint.covariance.known()) return false;
   const Eigen::Matrix3d covariance = joint.covariance.matrix();
   const double along = largest_sigma(covariance) * largest_sigma(covariance);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPrior = 1.0;        // [s] of evidence that the configured sizes are worth
 constexpr double kMemory = 5.0;       // [s]
-constexpr double kLongest = 0.1;      // [s] the most that an instant counts for, after a gap
+constexpr double kLongestGap = 0.1;   // [s] the most that an instant counts for, after a gap
 constexpr double kLeastSideOn = 0.3;  // a view nearer to frontal says nothing about turns
 constexpr double kLeastVariance = 1e-16;
 
@@ -37,7 +37,7 @@ void MisfitSize::learn(std::span<const Misfit> misfits, double passed, const Bod
     turns += each.turn * each.turn + each.turn_variance;
     turned += each.side_on * each.side_on;
   }
-  const double time = std::clamp(passed, 0.0, kLongest);
+  const double time = std::clamp(passed, 0.0, kLongestGap);
   scale_.learn(scales, views, time, model.scale);
   turn_.learn(turns, turned, time, model.turn);
 }

@@ -1,9 +1,9 @@
-// How large the misfits of the views of one person are (view_misfit.h), found while they are seen.
+// The sizes of the misfits of one person's views (view_misfit.h), estimated while the person is
+// seen.
 //
-// A sensor that has every body right should not be allowed a misfit, because that gives away what
-// it knows of size and direction.  So the configured sizes are only where the estimate starts.  By
-// EM, over all views, with the expectation of a misfit's square being its own square and its
-// variance:
+// If a sensor has every body right, allowing it a misfit would waste what it measures of size and
+// direction.  So the configured sizes are only the start of the estimate.  It is EM over all views,
+// where the expected square of a misfit is its own square plus its variance:
 //   sigma^2 = mean (m^2 + var m),   faded over some seconds                   docs/papers/body.md
 //   (13)
 #pragma once
@@ -19,11 +19,11 @@ class MisfitSize {
  public:
   /// Takes the misfits of an instant, `passed` [s] after the previous one.
   void learn(std::span<const Misfit> misfits, double passed, const BodyModel& model);
-  /// The model with the sizes found so far; what is switched off stays so.
+  /// The model with the sizes found so far; parts that are switched off stay off.
   [[nodiscard]] BodyModel found(BodyModel model) const;
 
  private:
-  /// A mean square, started from a size that counts as much as `kPrior`.
+  /// A mean square whose start value counts for `kPrior`.
   struct Square {
     double weight = 0.0;  ///< [s]
     double value = 0.0;

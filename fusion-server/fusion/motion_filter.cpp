@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fusion-server/fusion/point_filter.h"
+
 namespace chorus::fusion {
 namespace {
 
-constexpr double kFirstSpeed = 1.0;   // [m/s] standard deviation of a velocity not yet measured
 constexpr double kRests = 0.5;        // [s] mean time that a point stays at rest, or in motion
-constexpr double kLeastShare = 1e-3;  // a model's least probability: none is ever excluded
+constexpr double kLeastShare = 1e-3;  // smallest probability of a model: neither is ever excluded
 constexpr double kReach = 3.5;        // [standard deviations] farther measurements are clipped
-constexpr double kAxes = 3.0;
+constexpr double kDimensions = 3.0;
 constexpr double kSlowing = 0.4;  // [s] time constant of the decay of an unseen point's speed
 
 }  // namespace
@@ -47,7 +48,7 @@ void MotionFilter::mix(Models& models, double passed) {
     Eigen::Matrix2d spread;
     spread << apart.squaredNorm(), apart.dot(faster), apart.dot(faster), faster.squaredNorm();
     model.covariance = (1.0 - came) * before[to].covariance + came * before[from].covariance +
-                       came * (1.0 - came) / kAxes * spread;
+                       came * (1.0 - came) / kDimensions * spread;
   }
 }
 
@@ -69,7 +70,7 @@ double MotionFilter::correct(Model& model, const Eigen::Vector3d& position, doub
   model.position += gain.x() * off;
   model.velocity += gain.y() * off;
   model.covariance = (model.covariance - gain * model.covariance.row(0)).eval();
-  return -0.5 * (kAxes * std::log(expected) + off.squaredNorm() / expected);
+  return -0.5 * (kDimensions * std::log(expected) + off.squaredNorm() / expected);
 }
 
 void MotionFilter::update(Timestamp instant, const Eigen::Vector3d& position, double variance) {
@@ -95,7 +96,8 @@ void MotionFilter::update(Timestamp instant, const Eigen::Vector3d& position, do
 std::optional<MotionFilter::Motion> MotionFilter::at(Timestamp instant) const {
   if (!updated_) return std::nullopt;
   const double passed = std::max(0.0, seconds(instant - *updated_));
-  const double way = kSlowing * (1.0 - std::exp(-passed / kSlowing));  // [s] at full speed
+  // [s] that it would take at full speed.
+  const double way = kSlowing * (1.0 - std::exp(-passed / kSlowing));
   Motion motion;
   for (const Model& model : models_) {
     motion.position += model.share * (model.position + way * model.velocity);
@@ -105,8 +107,8 @@ std::optional<MotionFilter::Motion> MotionFilter::at(Timestamp instant) const {
     Model later = model;
     predict(later, passed);
     const Eigen::Vector3d place = model.position + way * model.velocity;
-    motion.variance +=
-        model.share * (later.covariance(0, 0) + (place - motion.position).squaredNorm() / kAxes);
+    motion.variance += model.share * (later.covariance(0, 0) +
+                                      (place - motion.position).squaredNorm() / kDimensions);
   }
   return motion;
 }

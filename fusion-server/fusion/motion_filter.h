@@ -16,7 +16,7 @@ namespace chorus::fusion {
 
 class MotionFilter {
  public:
-  /// After a longer time without measurements the point starts anew.
+  /// After a longer time without measurements the filter starts over.
   static constexpr Duration kForgotten = std::chrono::milliseconds(1000);
 
   struct Densities {
@@ -26,14 +26,14 @@ class MotionFilter {
   struct Motion {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-    double variance = 0.0;  ///< Of the position, per axis [m^2].
+    double variance = 0.0;  ///< Variance of the position, per axis [m^2].
   };
 
   explicit MotionFilter(const Densities& densities);
 
   /// Takes a measurement at `instant`, later than all before, with `variance` per axis [m^2].
   void update(Timestamp instant, const Eigen::Vector3d& position, double variance);
-  /// Predicted motion; none before the first update.  Its speed decays in the course of a second.
+  /// Predicted motion; none before the first update.  Its speed decays within about a second.
   [[nodiscard]] std::optional<Motion> at(Timestamp instant) const;
   [[nodiscard]] const std::optional<Timestamp>& updated() const { return updated_; }
 

@@ -6,8 +6,8 @@
 
 namespace chorus::fusion {
 
-/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m, mostly slow errors that
-/// are equal in all directions; a camera whose landmarks are accurate to 26 mm at 3 m.
+/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m, with mostly slow errors
+/// that are equal in all directions; a camera whose landmarks are accurate to 26 mm at 3 m.
 struct NoiseModel {
   double along = 0.015;
   double across = 0.015;

@@ -1,8 +1,8 @@
 // A Kalman filter per joint with Otto's weights in R: R = sigma^2 / (w + 0.02), w of Eqs. (1)-(3).
 //
 // Otto et al. 5.2.5 name the Kalman filter as the next step after the weighted mean and leave its
-// open.  A joint that nobody sees is predicted for FusionConfig::kalman_coast; during that time it
-// is Inferred and has no contributors.
+// design open.  A joint that no sensor sees is predicted for FusionConfig::kalman_coast; during
+// that time it is Inferred and has no contributors.
 #pragma once
 
 #include <memory>

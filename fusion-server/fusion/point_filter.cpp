@@ -5,8 +5,6 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kFirstSpeed = 1.0;  // [m/s] standard deviation of a velocity not yet measured
-
 /// Covariance P of position and velocity after dt seconds of process noise.
 Eigen::Matrix2d spread_after(const Eigen::Matrix2d& covariance, double dt, double density) {
   Eigen::Matrix2d step;

@@ -13,10 +13,13 @@
 
 namespace chorus::fusion {
 
+/// [m/s] standard deviation of a velocity not yet measured.
+inline constexpr double kFirstSpeed = 1.0;
+
 /// Accepts measurements at any times, in order.
 class PointFilter {
  public:
-  /// After a longer time without measurements the point starts anew.
+  /// After a longer time without measurements the filter starts over.
   static constexpr Duration kForgotten = std::chrono::milliseconds(500);
 
   explicit PointFilter(double density) : density_(density) {}  ///< [m^2 / s^3]

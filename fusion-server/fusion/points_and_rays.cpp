@@ -86,7 +86,7 @@ class PointsAndRays final : public Estimator {
     return fused;
   }
 
-  std::shared_ptr<const FusionConfig> config_;  ///< The same for all copies.
+  std::shared_ptr<const FusionConfig> config_;  ///< Shared by all copies.
   std::shared_ptr<const ErrorModel> errors_;
   JointFilters filters_ = joint_filters();
   std::array<std::optional<Timestamp>, kJointCount> seen_;

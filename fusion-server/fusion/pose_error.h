@@ -1,5 +1,5 @@
 // Error of a tracked pose beyond its sensor's noise: it changes slowly and grows towards the ends
-// of the limbs.  It affects no position, only the covariances that are stated.
+// of the limbs.  It does not affect positions, only the stated covariances.
 #pragma once
 
 #include "common/body/skeleton.h"

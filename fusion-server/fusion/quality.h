@@ -10,7 +10,7 @@
 
 namespace chorus::fusion {
 
-/// Which bearing Eq. (3) takes: the paper's text says that of the centre-axis joints.
+/// Which bearing Eq. (3) uses; according to the paper's text, that of the centre-axis joints.
 enum class BearingOf { Neck, CentreAxis };
 
 /// Where each heuristic is 1 and where it reaches zero; the published values by default.
@@ -24,14 +24,14 @@ struct QualityLimits {
   bool operator==(const QualityLimits&) const = default;
 };
 
-/// Eq. (1): 1 - (d - 2.5 m)^2 for 1.5 m < d <= 3.5 m, else 0.  Continuous at both ends.
+/// Eq. (1): 1 - (d - 2.5 m)^2 for 1.5 m < d <= 3.5 m, otherwise 0.  Continuous at both ends.
 [[nodiscard]] Weight distance_weight(double distance, const QualityLimits& = {}) noexcept;
 
-/// Eq. (2): 1 - |phi| / 30 deg for |phi| <= 30 deg, else 0.  So a rear view (|phi| > 90 deg) is
-/// zero.
+/// Eq. (2): 1 - |phi| / 30 deg for |phi| <= 30 deg, otherwise 0.  So a rear view (|phi| > 90 deg)
+/// is zero.
 [[nodiscard]] Weight facing_weight(double facing, const QualityLimits& = {}) noexcept;
 
-/// Eq. (3): 1 - |alpha| / 25 deg for |alpha| <= 25 deg, else 0.
+/// Eq. (3): 1 - |alpha| / 25 deg for |alpha| <= 25 deg, otherwise 0.
 [[nodiscard]] Weight bearing_weight(double bearing, const QualityLimits& = {}) noexcept;
 
 /// Product of Eqs. (1)-(3).  The paper says only that the weights "can be integrated"; taking the

@@ -15,7 +15,7 @@ namespace {
 
 using Ranked = std::vector<const SensorView*>;
 
-/// Best first; among equals the smallest sensor id.
+/// Best first; of equal ones, the smallest sensor id first.
 template <class Score>
 Ranked ranked(const Person& person, const Score& score) {
   Ranked views;
@@ -47,7 +47,7 @@ class OneView {
   std::unique_ptr<Estimator> mean_;
 };
 
-/// Which sensor is trusted, and since when another one looked better.
+/// Which sensor is used, and since when another one has been better.
 class Choice {
  public:
   explicit Choice(Duration hysteresis) : hysteresis_(hysteresis) {}
@@ -125,7 +125,7 @@ class Substitution final : public BestSkeleton {
     return joint.seen() && joint.state == JointState::Tracked;
   }
 
-  /// Joints that the body does not have tracked and the view does.
+  /// Takes from the view the joints that it tracks and the body does not.
   void substitute(FusedBody& body, const SensorView& view, const Instant& instant) {
     std::optional<FusedBody> other;
     for (std::size_t i = 0; i < kJointCount; ++i) {

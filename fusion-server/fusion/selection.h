@@ -1,12 +1,10 @@
 // The methods that trust one view at a time, as Otto et al. 2.4 list them.
 //
-// best-skeleton: the view of the highest score (view_score.h), whole.  It changes hands only after
-// another has been better for FusionConfig::hysteresis, or when it is gone, so that the body does
-// not flicker between two equal views.
-// joint-counting: the view with the most tracked joints, whole.
-// substitution: the best skeleton, but a joint that it does not track comes from the best view that
-// tracks it.
-// Of equals the least sensor id is taken.
+// best-skeleton: the view of the highest score (view_score.h), whole.  It changes only after
+// another view has been better for FusionConfig::hysteresis, or when it is gone, so that the body
+// does not flicker between two equal views. joint-counting: the view with the most tracked joints,
+// whole. substitution: the best skeleton, but a joint that it does not track comes from the best
+// view that tracks it.  Of equal views, that with the smallest sensor id is taken.
 #pragma once
 
 #include <memory>

@@ -15,7 +15,7 @@ constexpr int kWeighings = 2;       // the same, starting from the previous roun
 
 Eigen::Matrix3d round_covariance(double variance) { return variance * Eigen::Matrix3d::Identity(); }
 
-/// Pose error as the weights have it.
+/// Variance of the pose error that goes into the weights [m^2].
 double weighed_pose(const FusionConfig& config, JointId joint, JointState state) {
   const double tracked = pose_variance(config.pose_error, joint, JointState::Tracked);
   const BodyModel& body = config.body;

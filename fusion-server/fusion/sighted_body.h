@@ -25,17 +25,18 @@ class SightedBody {
   SightedBody(const Person& person, const Instant& instant, const ErrorModel& errors,
               const FusionConfig& config, const Biases& biases);
 
-  /// Solves for everything; `model` has the sizes of misfits found so far; bones of known length
-  /// keep it.  `expected`: predicted places, which limit the depth of joints shown by too few rays.
+  /// Solves for everything.  `model` contains the sizes of misfits found so far; bones of known
+  /// length keep it.  `expected`: predicted positions, which limit the depth of joints shown by too
+  /// few rays.
   void settle(const HeldBones& bones, const PlacedBody& expected, const BodyModel& model);
 
   /// The joints according to the corrected views, without the constraint of the bones.
   [[nodiscard]] const PlacedBody& placed() const { return placed_; }
-  /// What the views say about how uncertain a joint's place is.  Bones do not count: the views that
-  /// measure a joint also measured its bones, and may agree on wrong lengths.
+  /// Covariance of a joint's position according to the views.  The bones' lengths are not used,
+  /// because they were learned from the same views, which may agree on wrong lengths.
   [[nodiscard]] Eigen::Matrix3d stated(std::size_t joint) const;
   [[nodiscard]] const std::vector<Misfit>& misfits() const { return misfits_; }
-  /// Whether the views alone determine the joint's place.
+  /// True if the views alone determine the joint's position.
   [[nodiscard]] bool determined(std::size_t joint) const;
   /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last time
   /// and with the person `turned` [rad] since.

@@ -63,7 +63,7 @@ Eigen::Matrix<double, 3, 2> slopes_at(std::size_t joint, const Centres& at) {
   return slopes;
 }
 
-/// A misfit undone: the sines once for all joints.
+/// Undoes a misfit; computes the sines once for all joints.
 struct Mending {
   explicit Mending(const Misfit& misfit)
       : scale(misfit.scale), sine(std::sin(misfit.turn)), cosine(std::cos(misfit.turn)) {}
@@ -84,7 +84,7 @@ Eigen::Vector3d mended_at(std::size_t joint, const SeenBody& seen, const Centres
   return place - mending.scale * (at.body[joint].position - at.middle);
 }
 
-/// Angle between the direction of sight and frontal, from the front or the rear alike [rad].
+/// Angle between the line of sight and the nearest frontal direction, front or rear [rad].
 double side_on(const SeenBody& seen, const Centres& at) {
   const PlacedJoint& left = at.body[index_of(ShoulderLeft)];
   const PlacedJoint& right = at.body[index_of(ShoulderRight)];

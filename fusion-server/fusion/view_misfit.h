@@ -21,7 +21,7 @@ namespace chorus::fusion {
 struct SeenBody {
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Position of the sensor [m].
   std::array<Eigen::Vector3d, kJointCount> place{};
-  /// Inverse covariance [1/m^2]; zero: not seen as a point.
+  /// Inverse covariance [1/m^2]; zero: the joint is not seen as a point.
   std::array<Eigen::Matrix3d, kJointCount> information;
 
   SeenBody() { information.fill(Eigen::Matrix3d::Zero()); }
@@ -31,20 +31,20 @@ struct SeenBody {
 struct Misfit {
   double scale = 0.0;
   double turn = 0.0;            ///< About +y [rad].
-  double scale_variance = 0.0;  ///< Of what was found; 0: nothing was.
+  double scale_variance = 0.0;  ///< Variance of the found scale; 0: nothing was found.
   double turn_variance = 0.0;   ///< [rad^2]
-  double side_on = 0.0;         ///< Seen frontally: 0; from the side: 1; see BodyModel::turn_from.
+  double side_on = 0.0;         ///< 0 if seen frontally, 1 from the side; see BodyModel::turn_from.
 };
 
 /// Mean of the core joints that have a place; none without any.
 [[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const PlacedBody& body);
 
-/// The most likely misfit, given the places of the joints, by one step from `before`; robust
+/// The most likely misfit, given the positions of the joints, by one step from `before`; robust
 /// against outlying joints.
 [[nodiscard]] Misfit misfit_of(const SeenBody& seen, const PlacedBody& body, const Misfit& before,
                                const BodyModel& model);
 
-/// The view's positions without the misfit.
+/// The view's positions, corrected for the misfit.
 [[nodiscard]] std::array<Eigen::Vector3d, kJointCount> mended(const SeenBody& seen,
                                                               const PlacedBody& body,
                                                               const Misfit& misfit);

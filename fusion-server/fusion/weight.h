@@ -1,4 +1,4 @@
-// A weight in [0, 1]: created only by clamping, closed under products; zero means "ignore".
+// A weight in [0, 1]: created only by clamping, and closed under products; zero means "ignore".
 #pragma once
 
 namespace chorus::fusion {

@@ -73,7 +73,7 @@ Eigen::Vector3d origin_of(const Segment& segment, const outlet::TrackerBody& bod
     return body[outlet::nearest_tracked(body, id)].position;
   };
   const bool both = body[segment.from].tracked && body[segment.to].tracked;
-  // A place beyond a joint requires that both joints are seen.
+  // A point beyond a joint requires that both joints are seen.
   const double share = both ? segment.share : std::min(segment.share, 1.0);
   return (1.0 - share) * place(segment.from) + share * place(segment.to);
 }

@@ -18,8 +18,7 @@ namespace {
 using net::error_code;
 using net::udp;
 
-/// Has room for frames of six persons for all clients, in case this thread does not run for a
-/// while.
+/// Room for frames of six persons for all clients, in case this thread does not run for a while.
 constexpr int kSendBuffer = 1 << 20;
 
 Address address_of(const udp::endpoint& endpoint) {

@@ -20,7 +20,7 @@ struct ServerOptions {
   std::uint16_t command_port = 1510;  ///< 0: any free port.
   net::AllowList allow = {};  ///< Hosts that are answered; other hosts can still join the group.
   int multicast_hops = 1;
-  DeskOptions desk;                    ///< Its `info` tells clients where frames are sent.
+  DeskOptions desk;                    ///< Its `info` states where frames are sent.
   std::shared_ptr<const Clock> clock;  ///< Gives the time in answers to echo requests.
 };
 

@@ -23,7 +23,7 @@ struct Content {
   bool trackers = false;  ///< Adds /VMC/Ext/Tra/Pos.
 };
 
-/// The datagrams of one frame.  Without a body (nullptr) they only say that nobody is tracked.
+/// The datagrams of one frame.  Without a body (nullptr) they only state that nobody is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody* body,
                                                     const Content& content);
 

@@ -12,7 +12,7 @@ namespace chorus::vmc {
 
 namespace {
 
-outlet::DatagramStream stream_of(const outlet::PersonTargets& person, bool trackers) {
+outlet::DatagramStream vmc_stream_of(const outlet::PersonTargets& person, bool trackers) {
   const auto slot = static_cast<std::size_t>(person.slot);
   std::optional<Timestamp> first;
   return {
@@ -36,9 +36,9 @@ void read_settings(ConfigReader& reader, Settings& out) {
 Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
                                                     const outlet::OutletContext& /*context*/) {
   std::vector<outlet::DatagramStream> streams{
-      stream_of({settings.slot, settings.targets}, settings.trackers)};
+      vmc_stream_of({settings.slot, settings.targets}, settings.trackers)};
   for (const outlet::PersonTargets& person : settings.persons)
-    streams.push_back(stream_of(person, settings.trackers));
+    streams.push_back(vmc_stream_of(person, settings.trackers));
   return outlet::open_datagram_outlet("vmc", std::move(streams));
 }
 

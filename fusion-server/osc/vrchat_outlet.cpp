@@ -10,7 +10,7 @@ namespace chorus::vrchat {
 
 namespace {
 
-outlet::DatagramStream stream_of(const outlet::PersonTargets& person, bool head) {
+outlet::DatagramStream vrchat_stream_of(const outlet::PersonTargets& person, bool head) {
   const auto slot = static_cast<std::size_t>(person.slot);
   return {person.targets, [slot, head](const outlet::TrackerFrame& frame) {
             const outlet::TrackerBody* body = outlet::in_slot(frame, slot);
@@ -30,9 +30,9 @@ void read_settings(ConfigReader& reader, Settings& out) {
 Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
                                                     const outlet::OutletContext& /*context*/) {
   std::vector<outlet::DatagramStream> streams{
-      stream_of({settings.slot, settings.targets}, settings.head)};
+      vrchat_stream_of({settings.slot, settings.targets}, settings.head)};
   for (const outlet::PersonTargets& person : settings.persons)
-    streams.push_back(stream_of(person, settings.head));
+    streams.push_back(vrchat_stream_of(person, settings.head));
   return outlet::open_datagram_outlet("vrchat", std::move(streams));
 }
 

@@ -14,7 +14,7 @@
 
 namespace chorus::outlet {
 
-/// Encodes and sends synchronously, always on the same thread; it may take its time.
+/// Encodes and sends synchronously, always on the same thread; it may be slow.
 class Outlet {
  public:
   virtual ~Outlet() = default;

@@ -13,7 +13,7 @@ namespace chorus::outlet {
 namespace {
 
 constexpr Duration kMaxPrediction = std::chrono::milliseconds(50);
-/// After a longer gap, the velocities start anew.
+/// After a longer gap, the velocities start over.
 constexpr Duration kMaxStep = std::chrono::milliseconds(250);
 /// Exponential smoothing of the velocities: the weight of the newest difference.
 constexpr double kNewest = 0.5;

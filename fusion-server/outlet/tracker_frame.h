@@ -13,7 +13,7 @@
 
 namespace chorus::outlet {
 
-/// Most slots that may be configured.
+/// Largest number of slots that may be configured.
 inline constexpr int kMaxSlots = 20;
 
 struct TrackerJoint {
@@ -39,7 +39,7 @@ struct TrackerBody {
 struct TrackerFrame {
   std::uint64_t sequence = 0;  ///< Protocols with 32-bit counters send it modulo 2^32.
   Timestamp instant;           ///< Time of the poses: the fused instant, or later if predicted.
-  std::size_t slots = 0;       ///< Most persons that are sent.
+  std::size_t slots = 0;       ///< Largest number of persons that are sent.
   std::vector<TrackerBody> bodies;  ///< Ordered by slot.
 };
 

@@ -1,7 +1,7 @@
 // All outputs except REST, as the configuration section "outputs" enables them.
 //
-// There is one folder per protocol: NAME_encoder.h makes bytes from a TrackerFrame (pure),
-// NAME_outlet.h has a thin sender, its settings and its factory.  outputs.cpp is the only list of
+// There is one folder per protocol: NAME_encoder.h converts a TrackerFrame to bytes (pure);
+// NAME_outlet.h has a thin sender, its settings and its factory. outputs.cpp is the only list of
 // the protocols.
 #pragma once
 

@@ -13,7 +13,8 @@
 namespace chorus::pipeline {
 namespace {
 
-// [Hz]; a higher output rate must be a mistake in the configuration.
+// [Hz]; a rate beyond these must be a mistake, and the instants of a slower one overflow.
+constexpr double kSlowest = 0.001;
 constexpr double kFastest = 1000.0;
 
 /// The output instants, integer multiples of 1 / rate; long double keeps them exact to the
@@ -38,9 +39,9 @@ class Grid {
 };
 
 Result<void> check_rate(const OfflineConfig& config) {
-  if (config.rate_hz > 0 && config.rate_hz <= kFastest) return {};
+  if (config.rate_hz >= kSlowest && config.rate_hz <= kFastest) return {};
   return fail(ErrorCode::InvalidArgument, "rate_hz",
-              fmt::format("the output rate must be above 0 and at most {} Hz", kFastest));
+              fmt::format("the output rate must be from {} to {} Hz", kSlowest, kFastest));
 }
 
 tl::unexpected<Error> no_frame() {

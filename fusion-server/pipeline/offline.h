@@ -32,14 +32,14 @@ struct OfflineInput {
 /// Takes each snapshot; an error stops the fusion.
 using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 
-/// Registers the sensors from the first minutes in which one person is seen alone.  If sensors have
-/// no place then, uses more such minutes, until all have one or the recordings end.  Conflict, with
-/// reasons, when no registration is found.
+/// Registers the sensors from the first minutes in which one person is seen alone.  If some sensors
+/// have no place then, it uses more such minutes, until all have one or the recordings end.
+/// Conflict, with reasons, when no registration is found.
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
-/// Fuses every instant that any sensor covers; keeps only a few seconds of frames in memory.  Adds
-/// to the capture times what the registration says about the sensors' clocks.
+/// Fuses every instant that any sensor covers; keeps only a few seconds of frames in memory.
+/// Corrects the capture times by the clock offsets in the registration.
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 

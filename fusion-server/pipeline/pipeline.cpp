@@ -42,7 +42,7 @@ std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& historie
   return aligned;
 }
 
-/// 5.2.2: how the body stands relative to its sensor, still in sensor space.
+/// 5.2.2: the body's position and facing relative to its sensor, still in sensor space.
 SensorView view_of(const AlignedSensor& from, const BodyFrame& body,
                    const fusion::QualityLimits& limits) {
   const facing::Standing seen = facing::standing_of(body);
@@ -97,7 +97,7 @@ associate::Scene scene_of(const Inputs& in, const std::vector<AlignedSensor>& al
           observers_of(aligned, registration)};
 }
 
-/// Everybody who is still tracked, seen now or not.
+/// All people who are still tracked, whether seen now or not.
 std::set<PersonId> ids_of(const associate::Tracks& tracks) {
   std::set<PersonId> ids;
   for (const associate::Track& track : tracks.people) ids.insert(track.id);
@@ -153,7 +153,7 @@ std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
   return listed;
 }
 
-/// Removes bodies without joints: somebody whom only single rays show soon has no joints left.
+/// Removes bodies without joints, as of a person whom only single rays have shown for a while.
 void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Person>& people) {
   const auto of_rays = [](const SensorView& view) { return has_rays_alone(view.skeleton.joints); };
   std::erase_if(bodies, [&](const FusedBody& body) {

@@ -14,6 +14,9 @@ namespace {
 constexpr Duration kAhead = std::chrono::seconds(5);
 /// Twice what 64 sensors that see 12 people each deliver in kAhead; needs about 500 MB.
 constexpr std::size_t kMaxWaiting = 64 * 12 * 300;
+
+/// In bodies: a frame without any needs memory, too.
+std::size_t weight_of(const SensorFrame& frame) { return 1 + frame.bodies.size(); }
 constexpr std::size_t kNoLane = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
@@ -34,7 +37,8 @@ Result<void> RecordedFrames::read_one(std::size_t number) {
     return {};
   }
   const auto clock = clocks_.find((*frame)->sensor);
-  if (clock != clocks_.end()) move_in_time(**frame, clock->second.added);
+  if (clock != clocks_.end() && holds_for(clock->second, (*frame)->clock_sigma))
+    move_in_time(**frame, clock->second.added);
   lane.newest = std::max(lane.newest, (*frame)->captured);
   newest_ = std::max(newest_, lane.newest);
   const auto [entry, fresh] = streams_.try_emplace((*frame)->sensor);
@@ -46,9 +50,9 @@ Result<void> RecordedFrames::read_one(std::size_t number) {
                             "recording: name one of them",
                             entry->first.str(), lanes_[stream.lane].from.name));
   }
-  bodies_ += (*frame)->bodies.size();
+  waiting_ += weight_of(**frame);
   stream.waiting.push_back(std::move(**frame));
-  if (bodies_ <= kMaxWaiting) return {};
+  if (waiting_ <= kMaxWaiting) return {};
   return fail(ErrorCode::TooLarge, lane.from.name,
               "the clocks of its sensors are too far apart to be fused; record them one by one, or "
               "give their hosts the right time");
@@ -92,7 +96,7 @@ Result<std::optional<Timestamp>> RecordedFrames::next_after(Timestamp instant) {
     found = waiting_after(instant);
   }
   if (!found) return found;
-  // A frame of another sensor may have been captured earlier, but recorded later.
+  // A frame of another sensor may have been captured earlier but recorded later.
   if (auto ok = read_to(*found); !ok) return pass(ok);
   return waiting_after(instant);
 }
@@ -103,7 +107,7 @@ void RecordedFrames::advance(Timestamp instant, Histories& histories) {
     while (!stream.waiting.empty() && (!history.newest() || *history.newest() < instant)) {
       SensorFrame frame = std::move(stream.waiting.front());
       stream.waiting.pop_front();
-      bodies_ -= frame.bodies.size();
+      waiting_ -= weight_of(frame);
       stream.played = frame.captured;
       // The time at which a file is read says nothing about how its frames arrived.
       frame.received = Timestamp{};
@@ -122,7 +126,7 @@ std::vector<SensorFrame> RecordedFrames::take_waiting() {
     std::ranges::move(stream.waiting, std::back_inserter(all));
     stream.waiting.clear();
   }
-  bodies_ = 0;
+  waiting_ = 0;
   return all;
 }
 

@@ -25,7 +25,7 @@ struct FrameLane {
 class RecordedFrames {
  public:
   /// `sensors`: the sensors known in advance; others are added with their first frame.  `clocks`:
-  /// what was found about the sensors' clocks; it is added to their capture times.
+  /// the clock offsets of sensors, which are added to their capture times.
   RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors,
                  std::map<SensorId, ClockOffset> clocks = {});
 
@@ -64,7 +64,7 @@ class RecordedFrames {
   std::vector<Lane> lanes_;
   std::map<SensorId, ClockOffset> clocks_;
   std::map<SensorId, Stream> streams_;
-  std::size_t bodies_ = 0;  ///< Number of bodies in the waiting frames.
+  std::size_t waiting_ = 0;  ///< Number of waiting frames and of bodies in them.
   Timestamp newest_ = Timestamp::min();
 };
 

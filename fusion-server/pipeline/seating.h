@@ -1,6 +1,7 @@
 // Seats people in numbered slots, once for all outputs.
 //
-// A plain value without clock, thread or socket: the instants tell how long a person was absent.
+// A plain value without clock, thread or socket: the instants determine how long a person was
+// absent.
 #pragma once
 
 #include <optional>
@@ -21,7 +22,7 @@ struct SeatingConfig {
 /// An absent person's slot stays reserved while the person may return.  Meanwhile a newcomer gets a
 /// higher slot, and moves to the reserved one if nobody returns: the newcomer may be the same
 /// person with a new id, and a protocol with one slot would otherwise show nobody any more.  When
-/// the clock is set back by more than the time for which slots are reserved, seating starts anew,
+/// the clock is set back by more than the time for which slots are reserved, seating starts over,
 /// as association does.
 class Seating {
  public:
@@ -35,7 +36,7 @@ class Seating {
     PersonId person;
     Timestamp seen;
     bool absent = false;
-    /// The person's own slot, or a lower one whose person was absent when this one arrived.
+    /// The person's own slot, or a lower one whose person was absent when this person arrived.
     std::size_t waits_for = 0;
   };
 

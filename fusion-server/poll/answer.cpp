@@ -7,6 +7,10 @@
 #include <string_view>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
+#include "common/base/json.h"
+#include "common/base/parse.h"
 #include "common/http/status.h"
 #include "common/resource/floor_plane_resource.h"
 
@@ -85,6 +89,29 @@ std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response
   const auto floor = resource::read_floor_plane(response.body, *format);
   if (!floor) return std::nullopt;
   return *floor;
+}
+
+std::optional<NtpStatus> read_clock_answer(const http::ClientResponse& response) {
+  constexpr JsonLimits kClockLimits{4096, 4};
+  if (response.status != http::status::kOk) return std::nullopt;
+  const auto document = parse_json(response.body, kClockLimits);
+  if (!document || !document->is_object()) return std::nullopt;
+  const auto synchronised = document->find("synchronised");
+  if (synchronised == document->end() || !synchronised->is_boolean()) return std::nullopt;
+  const auto duration = [&](const char* key) {
+    const auto found = document->find(key);
+    if (found == document->end()) return Duration{0};
+    if (found->is_number_integer()) return Duration(found->get<std::int64_t>());
+    if (!found->is_string()) return Duration{0};
+    std::string_view digits = found->get_ref<const std::string&>();
+    return Duration(take_number<std::int64_t>(digits).value_or(0));
+  };
+  NtpStatus host;
+  host.synchronised = synchronised->get<bool>();
+  host.offset = duration("offsetNanoseconds");
+  host.max_error = duration("maxErrorNanoseconds");
+  host.est_error = duration("estimatedErrorNanoseconds");
+  return host;
 }
 
 std::optional<ClockExchange> exchange_of(const http::ClientResponse& response) {

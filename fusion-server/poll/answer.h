@@ -8,6 +8,7 @@
 #include "common/resource/frame_resource.h"
 #include "common/sensor/sensor_frame.h"
 #include "common/time/clock_estimate.h"
+#include "common/time/ntp_status.h"
 #include "fusion-server/poll/poll_fsm.h"
 
 namespace chorus::poll {
@@ -18,8 +19,8 @@ struct FrameAnswer {
 };
 
 /// Reads the answer to a request for a frame.  Its event is Unreadable for a content type that is
-/// no frame, an unreadable frame, or a frame of another sensor.  A frame in world space may have
-/// any source, because fusion servers can be chained.
+/// not a frame's, an unreadable frame, or a frame of another sensor.  A frame in world space may
+/// have any source, because fusion servers can be chained.
 [[nodiscard]] FrameAnswer read_frame_answer(const http::ClientResponse& response,
                                             const SensorId& expected);
 
@@ -31,11 +32,14 @@ struct FrameAnswer {
 /// Reads the answer of /floor-plane; none when it is not a floor plane.
 [[nodiscard]] std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response);
 
+/// Reads the answer of /clock, in JSON: what the host says of its own clock; none when it is none.
+[[nodiscard]] std::optional<NtpStatus> read_clock_answer(const http::ClientResponse& response);
+
 /// The four time stamps of the exchange; none if the answer has no Chorus-Clock header.
 [[nodiscard]] std::optional<ClockExchange> exchange_of(const http::ClientResponse& response);
 
-/// The frame with its times moved to our clock as `clock` says, and with its floor; in world space
-/// that is y = 0.
+/// The frame with its times corrected to our clock by `clock`, and with its floor, which is y = 0
+/// in world space.
 [[nodiscard]] SensorFrame place_in_time(const resource::FrameResource& frame,
                                         const SensorId& sensor, Timestamp received,
                                         const std::optional<ClockEstimate>& clock,

@@ -18,8 +18,8 @@ class Backfill {
   /// The oldest missing frame that is still worth a request; it is then taken off the list.
   [[nodiscard]] std::optional<std::uint64_t> next(Duration now);
 
-  /// Call this with the outcome of the request.  A sensor that keeps no frames is soon not asked
-  /// any more.
+  /// Call this with the outcome of the request.  A sensor that does not keep frames is soon no
+  /// longer asked.
   void answered(bool there);
 
   [[nodiscard]] bool empty() const noexcept { return missing_.empty(); }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxHeld = 10;
 constexpr std::string_view kAccept = "text/turtle, application/json;q=0.9";
+constexpr std::string_view kAcceptClock = "application/json";
 constexpr std::string_view kAcceptStream =
     "text/event-stream, text/turtle;q=0.9, application/json;q=0.8";
 
@@ -127,7 +128,7 @@ void Follower::act(const Send& send) {
   http::ClientRequest request;
   request.target = url_.target + target_of(send);
   request.headers = authorization_of(sensor_);
-  if (send.resource != Resource::Clock) request.headers.emplace_back("Accept", kAccept);
+  request.headers.emplace_back("Accept", send.resource == Resource::Clock ? kAcceptClock : kAccept);
   if (!send.etag.empty()) request.headers.emplace_back("If-None-Match", send.etag);
   if (send.wait > Duration{0}) {
     const auto wait = std::chrono::ceil<std::chrono::seconds>(send.wait);
@@ -194,6 +195,7 @@ void Follower::take(Result<http::ClientResponse> response, const Send& asked) {
       ClockAnswered answer;
       if (clock && exchange_of(*response)) answer.uncertainty = clock->uncertainty;
       answer.doubtful = clock_.doubtful();
+      if (auto host = read_clock_answer(*response)) host_ = *host;
       return feed(answer);
     }
     case Resource::Frame:
@@ -212,7 +214,8 @@ void Follower::take_frame(const http::ClientResponse& response, Resource asked) 
   if (answered_) {
     if (auto error = untimely_now(*answered_)) {
       answer.event = Unreadable{std::move(*error)};
-      ++refused_;
+      const SensorFrame late = placed(*answered_);
+      ++(late.captured > late.received ? early_ : stale_);
     }
   }
   if (auto* good = std::get_if<FrameAnswered>(&answer.event)) good->rest = rest;
@@ -285,9 +288,11 @@ void Follower::publish_state() {
   report_.state = fsm_.state();
   report_.last_error = fsm_.last_error();
   report_.failures = fsm_.failures();
-  report_.refused = refused_;
+  report_.early = early_;
+  report_.stale = stale_;
   report_.streaming = fsm_.streaming();
   report_.clock = clock_.at(received_);
+  report_.host = host_;
 }
 
 void Follower::tell(const Notice& notice) const {

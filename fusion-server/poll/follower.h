@@ -69,11 +69,13 @@ class Follower : public std::enable_shared_from_this<Follower> {
   AgeWatch ages_;
   std::minstd_rand random_;
   bool stopped_ = false;
-  std::uint64_t refused_ = 0;
+  std::uint64_t early_ = 0;
+  std::uint64_t stale_ = 0;
   /// True if the stream was not read for some time: then only its newest event is worth reading.
   bool rested_ = false;
   Timestamp received_{};
   std::optional<FloorPlane> floor_;
+  std::optional<NtpStatus> host_;
   std::optional<Arrival> answered_;  ///< The frame in the answer or event that is being handled.
   std::deque<Arrival> held_;         ///< Frames held back until their sensor's clock is known.
   mutable std::mutex mutex_;

@@ -7,9 +7,9 @@ namespace {
 
 constexpr Duration kWindow = std::chrono::seconds(2);
 constexpr Duration kMinSpan = std::chrono::milliseconds(500);
-/// After a longer pause, the rate starts anew.
+/// After a longer pause, the rate starts over.
 constexpr Duration kPause = std::chrono::seconds(1);
-/// Half a minute; after a longer gap, counting starts anew.
+/// Half a minute; after a longer gap, counting starts over.
 constexpr std::uint64_t kMaxGap = 900;
 
 constexpr std::size_t kAges = 32;

@@ -19,7 +19,7 @@ struct PollTimings {
   Duration wait = std::chrono::seconds(2);
   /// An answer that comes later than `wait` + this counts as a failure.
   Duration answer_slack = std::chrono::seconds(1);
-  /// Least time between two requests, whatever the answers.
+  /// Shortest time between two requests, whatever the answers.
   Duration min_interval = std::chrono::milliseconds(4);
   /// Pause after an answer that came at once with nothing new.
   Duration idle_interval = std::chrono::milliseconds(10);
@@ -61,7 +61,7 @@ struct KeptAnswered {
   Duration rest{0};
 };
 struct ClockAnswered {
-  /// Of the current clock estimate; none: the sensor does not send its time.
+  /// Uncertainty of the current clock estimate; none: the sensor does not send its time.
   std::optional<Duration> uncertainty = {};
   bool doubtful = false;  ///< True if the answer contradicts the estimate: ask again at once.
 };
@@ -110,7 +110,7 @@ struct Notice {
 struct Step {
   std::optional<Action> action = {};  ///< None: the current request or sleep continues.
   bool deliver = false;               ///< True if the frame just received is new: deliver it.
-  bool late = false;                  ///< True if a newer frame has been delivered already.
+  bool late = false;                  ///< True if a newer frame has already been delivered.
   StreamOrder stream = StreamOrder::None;
   std::optional<Notice> notice = {};
 };

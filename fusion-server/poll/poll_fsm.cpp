@@ -124,8 +124,8 @@ Step PollFsm::beside_stream(const FrameAnswered& answer, Duration now) {
   return step;
 }
 
-/// True if this frame was requested in addition to the stream and taken.  Such frames are forgotten
-/// once the stream has passed them.
+/// True if this frame was requested in addition to the stream and delivered.  Such frames are
+/// forgotten once the stream has passed them.
 bool PollFsm::was_taken_beside(Timestamp captured) {
   const bool taken = std::ranges::find(taken_beside_, captured) != taken_beside_.end();
   std::erase_if(taken_beside_, [&](Timestamp each) { return each <= captured; });
@@ -193,7 +193,7 @@ Step PollFsm::on(const StreamFrame& frame, Duration now, double) {
   streamed_at_ = now;
   backfill_.saw(frame.sequence, now);
   rhythm_.saw(now);
-  if (frame.odd) taken_beside_.clear();  // If its clock was set, times start anew.
+  if (frame.odd) taken_beside_.clear();  // If its clock was set, earlier times have no meaning.
   const bool taken = was_taken_beside(frame.captured);
   step.deliver = !taken && frame.captured != last_captured_;
   step.late = !taken_beside_.empty();

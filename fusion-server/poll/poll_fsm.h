@@ -2,13 +2,13 @@
 // action.
 //
 // At first it uses long polling (If-None-Match + Prefer: wait), which every sensor answers, and
-// which shows what is wrong with a service that is no sensor.  Once frames come, it opens an event
-// stream in addition.  When the stream delivers, it replaces polling; then requests are used only
-// for the clock, now and then for the floor plane, for frames that the stream left out, and for the
-// newest frame if lost packets hold the stream up.  When a stream ends, falls silent or is refused,
-// polling continues.  If nothing answers, it waits with a jittered exponential back-off.  Time and
-// randomness are arguments; the Asio shell (follower.h) carries out the actions and returns the
-// answers.
+// which shows what is wrong with a service that is not a sensor.  Once frames come, it opens an
+// event stream in addition.  When the stream delivers, it replaces polling; then requests are used
+// only for the clock, now and then for the floor plane, for frames that the stream left out, and
+// for the newest frame if lost packets hold the stream up.  When a stream ends, falls silent or is
+// refused, polling continues.  If nothing answers, it waits with a jittered exponential back-off.
+// Time and randomness are arguments; the Asio shell (follower.h) carries out the actions and
+// returns the answers.
 #pragma once
 
 #include <cstdint>

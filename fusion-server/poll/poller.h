@@ -17,6 +17,7 @@
 #include "common/sensor/sensor_frame.h"
 #include "common/time/clock.h"
 #include "common/time/clock_estimate.h"
+#include "common/time/ntp_status.h"
 #include "common/tls/credentials.h"
 #include "fusion-server/poll/poll_fsm.h"
 
@@ -47,9 +48,11 @@ struct PollReport {
   std::optional<Timestamp> newest;  ///< Capture time of the newest frame, by our clock.
   double rate_hz = 0.0;             ///< Frames per second that arrived in the last two seconds.
   std::optional<ClockEstimate> clock;
+  std::optional<NtpStatus> host;  ///< What its host says of its own clock.
   std::uint64_t frames = 0;
-  std::uint64_t missed = 0;   ///< Gaps in the sensor's sequence that were not filled.
-  std::uint64_t refused = 0;  ///< Frames with an implausible time.
+  std::uint64_t missed = 0;  ///< Gaps in the sensor's sequence that were not filled.
+  std::uint64_t early = 0;   ///< Frames refused because their time is ahead of ours ...
+  std::uint64_t stale = 0;   ///< ... or far behind.
   std::uint64_t failures = 0;
 };
 

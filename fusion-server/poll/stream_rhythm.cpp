@@ -7,7 +7,7 @@
 namespace chorus::poll {
 namespace {
 
-// Frames closer together were held up together.
+// Frames closer together than this were held up together.
 constexpr Duration kShortest = std::chrono::milliseconds(5);
 constexpr Duration kLeastPatience = std::chrono::milliseconds(60);
 constexpr Duration kRemembered = std::chrono::seconds(60);

@@ -8,46 +8,29 @@
 #include "common/base/median.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/registration/block_variance.h"
-#include "fusion-server/registration/floor_prior.h"
-#include "fusion-server/registration/pairs.h"
-#include "fusion-server/registration/point_elimination.h"
 #include "fusion-server/registration/tukey.h"
 #include "fusion-server/registration/view_bias.h"
+#include "fusion-server/registration/walk_points.h"
 
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kMaxPoints = 1500;      // of the walk; successive ones are redundant
-constexpr std::size_t kPointsEach = 100;      // of many sensors: each overlap needs its own
 constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
-constexpr double kSettled = 1e-6;    // [rad], [m]
-constexpr double kMinScale = 0.02;   // in standard deviations
+constexpr int kScaleRounds = 2;                // of Tukey's scale
+constexpr double kSettled = 1e-6;              // [rad], [m]
+constexpr double kNearly = 1e-4;               // ... before the scale is read again
+constexpr std::size_t kBiasTerms = 1'000'000;  // of many sensors a part tells what bias does
 constexpr double kRidge = 1e-6;      // holds the state in directions that nothing observes
 constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
 constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
-constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its say
+constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependent = 1.2;   // [1/s] of real joints, whose errors last
-constexpr double kPriorFreedom = 3.0;  // what that is worth: as much as one sensor's own blocks
-constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and place along the floor
+constexpr double kIndependent = 1.2;   // [1/s] independent measurements: a joint's errors last
+constexpr double kPriorFreedom = 3.0;  // what that counts for: as much as a sensor's own blocks
+constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
 constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
-
-/// A sensor during the adjustment.
-struct Station {
-  SensorId id;
-  const Walker* walker = nullptr;
-  Eigen::Isometry3d level_from_sensor = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
-  FloorPrior floor = {};  ///< How well its own floor is known; zero: not at all.
-  bool master = false;
-  bool fixed = false;  ///< Has too few common points.
-
-  [[nodiscard]] Eigen::Isometry3d world_from_sensor() const {
-    return world_from_level * level_from_sensor;
-  }
-};
 
 std::vector<Station> stations_of(const Places& places, const Walkers& walkers, bool use_floor) {
   std::vector<Station> stations;
@@ -68,68 +51,9 @@ std::vector<Station> stations_of(const Places& places, const Walkers& walkers, b
   return stations;
 }
 
-/// A slot at one instant.
-struct Point {
-  double time = 0.0;  ///< Since the first instant [s].
-  PointMeasurements seen;
-};
-
-/// Adds the slots that several sensors saw at one instant.
-void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
-                 const std::vector<Station>& stations, std::span<const Slot> slots, double time,
-                 std::vector<Point>& points) {
-  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    Point point{time, {}};
-    for (std::size_t i = 0; i < stations.size(); ++i) {
-      if (!moments[i] || !moments[i]->frame.has(slot)) continue;
-      const Eigen::Vector3d& x = moments[i]->frame.points[slot];
-      const Eigen::Isometry3d& turn = stations[i].level_from_sensor;
-      point.seen.push_back({i, turn * x, turn.linear() * x.normalized(), slots[slot].sigma});
-    }
-    if (point.seen.size() > 1) points.push_back(std::move(point));
-  }
-}
-
-/// Each sensor's own instants at which the person had moved, thinned out to save time: every
-/// sensor is included so that no overlap is missed.
-std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::size_t slots) {
-  std::vector<Timestamp> all;
-  for (const Station& station : stations) {
-    for (const TrailFrame& frame : station.walker->trail.frames) {
-      if (frame.moved) all.push_back(frame.captured);
-    }
-  }
-  std::sort(all.begin(), all.end());
-  const std::size_t most = std::max(kMaxPoints, kPointsEach * stations.size());
-  const std::size_t step = std::max<std::size_t>(1, all.size() * slots / most);
-  std::vector<Timestamp> instants;
-  for (std::size_t i = 0; i < all.size(); i += step) instants.push_back(all[i]);
-  return instants;
-}
-
-std::vector<Point> points_of(const std::vector<Station>& stations,
-                             const RegistrationConfig& config) {
-  const auto slots = slots_of(config.joints);
-  std::vector<TrailReader> readers;
-  for (const Station& station : stations) {
-    readers.emplace_back(station.walker->trail, config.max_gap);
-  }
-  std::vector<Point> points;
-  const std::vector<Timestamp> instants = instants_of(stations, slots.size());
-  for (const Timestamp instant : instants) {
-    std::vector<std::optional<TrailMoment>> moments;
-    for (TrailReader& reader : readers) {
-      moments.push_back(reader.at(instant));
-      if (moments.back() && moments.back()->speed > config.max_speed) moments.back().reset();
-    }
-    add_instant(moments, stations, slots, seconds(instant - instants.front()), points);
-  }
-  return points;
-}
-
-void hold_strangers(std::vector<Station>& stations, const std::vector<Point>& points) {
+void hold_strangers(std::vector<Station>& stations, const std::vector<WalkPoint>& points) {
   std::vector<std::size_t> measurements(stations.size(), 0);
-  for (const Point& point : points) {
+  for (const WalkPoint& point : points) {
     for (const PointMeasurement& measured : point.seen) ++measurements[measured.sensor];
   }
   for (std::size_t i = 0; i < stations.size(); ++i) {
@@ -140,7 +64,7 @@ void hold_strangers(std::vector<Station>& stations, const std::vector<Point>& po
 /// The adjustment's state between iterations.
 struct Adjustment {
   std::vector<Station> stations;
-  std::vector<Point> points;
+  std::vector<WalkPoint> points;
   double along_ratio = 1.0;
   double scale = 0.0;  ///< Standard deviation of a point, in units of its sigma.
   double along = 1.0;
@@ -149,7 +73,8 @@ struct Adjustment {
     std::vector<Eigen::Isometry3d> places;
     for (const Station& station : stations) places.push_back(station.world_from_level);
     std::vector<FusedPoint> all;
-    for (const Point& point : points) all.push_back(fuse_point(point.seen, places, along_ratio));
+    for (const WalkPoint& point : points)
+      all.push_back(fuse_point(point.seen, places, along_ratio));
     return all;
   }
   [[nodiscard]] double weight(const FusedPoint& fused) const {
@@ -174,8 +99,7 @@ double floor_misfit(const Station& station) {
          height * height;
 }
 
-/// Tukey's loss of the points, from which their weights are derived, over the variance factor, and
-/// that of the floors.
+/// Tukey's loss of the points, which gives their weights, over the factor; plus that of the floors.
 double cost_of(const Adjustment& adjustment, double factor) {
   const double limit = kTukey * adjustment.scale;
   double cost = 0.0;
@@ -197,7 +121,7 @@ void add_floors(PlaceEquations& equations, const std::vector<Station>& stations)
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!(stations[i].floor.tilt > 0) || stations[i].fixed) continue;
     Normal normal;
-    // A floor is known best right under its own sensor.
+    // A floor is best known right below its own sensor.
     add_prior(normal, stations[i].floor, stations[i].world_from_level, Eigen::Vector3d::Zero());
     const double root = 1.0 / (1.0 + floor_misfit(stations[i]) / (kFarFloor * kFarFloor));
     const auto at = static_cast<Eigen::Index>(6 * i);
@@ -206,7 +130,7 @@ void add_floors(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// The master keeps its place along the floor and the direction in which it looks.
+/// Holds the master's position on the floor, and its yaw.
 void hold_gauge(PlaceEquations& equations, const std::vector<Station>& stations) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!stations[i].master) continue;
@@ -240,7 +164,7 @@ void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// Parameters of all sensors that can move against the master.
+/// The given parameters of all sensors that can move relative to the master.
 std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
                                  std::span<const Eigen::Index> of_each) {
   std::vector<Eigen::Index> all;
@@ -251,7 +175,7 @@ std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
   return all;
 }
 
-/// Variance of a measurement, in units of its own.
+/// Actual variance of a measurement, in units of its stated one.
 struct Misfit {
   double squares = 0.0;
   double freedom = 0.0;
@@ -267,7 +191,7 @@ struct Misfit {
   }
 };
 
-/// All joints of a second or so err alike: the walk is worth as many points.
+/// The expected factor: a joint's error lasts for about a second, so few points are independent.
 BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) {
   const double independent = std::max(1.0, kIndependent * adjustment.points.back().time);
   const double variance =
@@ -275,7 +199,7 @@ BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) 
   return {variance * std::max(1.0, misfit.weights / independent), kPriorFreedom};
 }
 
-/// The equations of the walk alone, whose points count as many times as they are independent.
+/// The equations of the walk alone, with its points weighted by how independent they are.
 PlaceEquations walk_equations(Adjustment& adjustment) {
   const Eigen::Index size = adjustment.size();
   BlockScores blocks(adjustment.points.back().time);
@@ -320,7 +244,7 @@ PlaceEquations equations_of(Adjustment& adjustment) {
   return equations;
 }
 
-/// Inverse information, where along the floor and upwards have variance factors of their own.
+/// Inverse information, with separate variance factors along the floor and upwards.
 Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
   PlaceEquations equations = walk_equations(adjustment);
   Eigen::VectorXd shrink(adjustment.size());
@@ -335,7 +259,7 @@ Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
 }
 
 /// Does one iteration; false when nothing moves any more.
-bool iterate(Adjustment& adjustment) {
+bool iterate(Adjustment& adjustment, double settled) {
   const PlaceEquations equations = equations_of(adjustment);
   const Eigen::VectorXd motion = equations.information.ldlt().solve(equations.right);
   if (!motion.allFinite()) return false;
@@ -347,32 +271,76 @@ bool iterate(Adjustment& adjustment) {
     step.translation() = own.tail<3>();
     adjustment.stations[i].world_from_level = step * adjustment.stations[i].world_from_level;
   }
-  return motion.norm() > kSettled;
+  return motion.lpNorm<Eigen::Infinity>() > settled;
+}
+
+/// What the bias of all sights does to the places.
+Eigen::MatrixXd bias_covariance(Adjustment& adjustment) {
+  const std::vector<FusedPoint> all = adjustment.fuse_all();
+  const auto ways = ways_of(adjustment.points, all);
+  std::vector<Eigen::Vector3d> eyes;
+  for (const Station& station : adjustment.stations)
+    eyes.push_back(station.world_from_sensor().translation());
+  ViewBias bias(std::move(eyes));
+  std::size_t terms = 0;
+  for (const WalkPoint& point : adjustment.points) terms += point.seen.size() * point.seen.size();
+  const std::size_t step = 1 + terms / kBiasTerms;
+  for (std::size_t k = 0; k < all.size(); k += step) {
+    const double weight = adjustment.weight(all[k]) * static_cast<double>(step);
+    if (weight > 0) bias.add(adjustment.points[k].seen, all[k], weight, ways[k]);
+  }
+  const PlaceEquations equations = equations_of(adjustment);
+  const double factor = std::max(adjustment.along, adjustment.upward);
+  Eigen::MatrixXd gain = equations.information.ldlt().solve(
+      Eigen::MatrixXd::Identity(adjustment.size(), adjustment.size()) / factor);
+  for (std::size_t i = 0; i < adjustment.stations.size(); ++i) {
+    if (adjustment.stations[i].fixed)
+      gain.middleRows<6>(static_cast<Eigen::Index>(6 * i)).setZero();
+  }
+  return gain * bias.scores() * gain.transpose();
 }
 
 Adjusted adjusted(Adjustment& adjustment) {
-  const Eigen::MatrixXd covariance = covariance_of(adjustment);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const FusedPoint& fused : adjustment.fuse_all()) sum += fused.x;
-  const Matrix6 bias = view_bias(sum / static_cast<double>(adjustment.points.size()));
+  const Eigen::MatrixXd covariance = covariance_of(adjustment) + bias_covariance(adjustment);
   Adjusted result;
   for (std::size_t i = 0; i < adjustment.stations.size(); ++i) {
     const Station& station = adjustment.stations[i];
     result.places[station.id] = station.world_from_sensor();
     if (station.fixed) continue;
     const auto at = static_cast<Eigen::Index>(6 * i);
-    Matrix6& own = result.covariances[station.id];
-    own = covariance.block<6, 6>(at, at);
-    if (!station.master) own += bias;
+    result.covariances[station.id] = covariance.block<6, 6>(at, at);
   }
   return result;
 }
 
-/// Chains of pairs are robust: who ends far from them was led away by wrong sights.
+/// True if no sensor ends far from its chain, which is robust: wrong views would have misled it.
 bool near(const Places& start, const Places& end) {
   return std::ranges::all_of(start, [&](const auto& each) {
     return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;
   });
+}
+
+/// Iterates with Tukey's scale of the start, then with that of what was found, so that the end does
+/// not depend on how good the start was.  False if it was stopped.
+bool settle(Adjustment& adjustment, const Stopped& stopped) {
+  for (int round = 0; round < kScaleRounds; ++round) {
+    adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
+    const double settled = round + 1 < kScaleRounds ? kNearly : kSettled;
+    for (int i = 0; i < kIterations && iterate(adjustment, settled); ++i) {
+      if (stopped && stopped()) return false;
+    }
+  }
+  return true;
+}
+
+/// True if the loss did not grow since the start, with the scale and the factors of the end.
+bool fits_better(Adjustment& adjustment, const std::vector<Station>& start) {
+  (void)walk_equations(adjustment);
+  const double factor = std::max(adjustment.along, adjustment.upward);
+  const double after = cost_of(adjustment, factor);
+  Adjustment before = adjustment;
+  before.stations = start;
+  return after <= cost_of(before, factor);
 }
 
 }  // namespace
@@ -385,13 +353,9 @@ std::optional<Adjusted> adjust_together(const Places& places, const Walkers& wal
   if (adjustment.points.empty()) return std::nullopt;
   hold_strangers(adjustment.stations, adjustment.points);
   adjustment.along_ratio = config.along_ratio;
-  adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
-  (void)walk_equations(adjustment);
-  const double factor = std::max(adjustment.along, adjustment.upward);  // the same for both costs
-  const double before = cost_of(adjustment, factor);
-  for (int i = 0; i < kIterations && iterate(adjustment); ++i) {
-  }
-  if (!(cost_of(adjustment, factor) <= before)) return std::nullopt;
+  const std::vector<Station> start = adjustment.stations;
+  if (!settle(adjustment, walkers.stopped)) return std::nullopt;
+  if (!fits_better(adjustment, start)) return std::nullopt;
   Adjusted result = adjusted(adjustment);
   if (!near(places, result.places)) return std::nullopt;
   return result;

@@ -5,9 +5,9 @@
 //
 // with S_ik small across and large along each line of sight, Tukey weights, and each sensor's floor
 // as a prior of its own tilt and height.  Given the places, each x_k is the inverse-variance mean,
-// so only the places are unknown.  What no measurement determines is where the world stands along
-// the floor and which way it is turned: the master's place and direction say that, and nothing else
-// of the master is held.  Derived in docs/papers/registration.md, Section 8.
+// so only the places are unknown.  No measurement determines the world's position along the floor
+// and its yaw.  These are the master's; nothing else of the master is held.  Derived in
+// docs/papers/registration.md, Section 8.
 #pragma once
 
 #include <map>
@@ -26,16 +26,17 @@ struct Walkers {
   SensorId master;
   /// The master's floor where no sensor reports one: a guess, good to 2 deg and 50 mm.
   std::optional<FloorPlane> guessed = {};
+  Stopped stopped = {};  ///< Asked before each iteration.
 };
 
 struct Adjusted {
-  Places places;  ///< The world is level, its origin on the floor.
-  /// Of (omega, tau) applied on the world's side; only of sensors that took part.
+  Places places;  ///< The world is level, with its origin on the floor.
+  /// Covariances of (omega, tau), applied on the world's side; only for sensors that took part.
   std::map<SensorId, Matrix6> covariances;
 };
 
-/// Starts from `places`.  None if nothing was seen together or the result fits the walk and the
-/// floors worse.
+/// Starts from `places`.  None if nothing was seen together, if the result fits the walk and the
+/// floors worse, or if it was stopped.
 [[nodiscard]] std::optional<Adjusted> adjust_together(const Places& places, const Walkers& walkers,
                                                       const RegistrationConfig& config);
 

@@ -8,11 +8,11 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kBlock = 2.0;     // [s] errors of joints last 0.2 to 1 s
-constexpr double kFewest = 4.0;    // blocks of a walk
-constexpr double kShortest = 0.1;  // [s]
-constexpr double kLeast = 1e-6;    // of the factor and of the denominator
-constexpr double kRidge = 1e-9;    // relative, for what no measurement determines
+constexpr double kBlock = 2.0;           // [s] errors of joints last 0.2 to 1 s
+constexpr double kFewest = 4.0;          // blocks of a walk
+constexpr double kShortest = 0.1;        // [s]
+constexpr double kLeast = 1e-6;          // of the factor and of the denominator
+constexpr double kRelativeRidge = 1e-9;  // relative, for what no measurement determines
 
 }  // namespace
 
@@ -30,12 +30,13 @@ double BlockScores::factor(std::span<const Eigen::Index> parameters, const Prior
   const auto count = static_cast<Eigen::Index>(chosen.size());
   if (blocks_.size() < 2 || count == 0) return prior.factor;
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(count, count);
-  Eigen::VectorXd left = Eigen::VectorXd::Zero(count);  // of the scores, where something else pulls
+  // The rest of the scores, where something else pulls on the estimate.
+  Eigen::VectorXd left = Eigen::VectorXd::Zero(count);
   for (const Block& block : blocks_) {
     whole += block.information(chosen, chosen);
     left += block.score(chosen);
   }
-  whole.diagonal().array() += kRidge * whole.diagonal().maxCoeff();
+  whole.diagonal().array() += kRelativeRidge * whole.diagonal().maxCoeff();
   const Eigen::LDLT<Eigen::MatrixXd> solver(whole);
   const Eigen::VectorXd own = solver.solve(left);
   double squares = 0.0;

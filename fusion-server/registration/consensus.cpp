@@ -16,18 +16,14 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kLeastLoop = 0.15;  // [m] triangles that close to within this are closed
-constexpr double kLoopOfRms = 2.0;   // ... or within this much of the residuals of their edges
+constexpr double kLeastLoop = 0.15;  // [m] a triangle counts as closed up to this error
+constexpr double kLoopOfRms = 2.0;   // ... or up to this multiple of its edges' residuals
 constexpr double kLoopTurn = deg(15);
-constexpr double kSameRms = 1e-4;    // [m] no two sensors measure alike to within this
+constexpr double kSameRms = 1e-4;    // [m] two different sensors never agree this closely
 constexpr double kSamePlace = 1e-3;  // [m], [rad]
 
 bool of(const SensorId& sensor, const SensorId& target, const SensorId& source) {
   return sensor == target || sensor == source;
-}
-
-bool joins(const PairwiseRegistration& edge, const SensorId& a, const SensorId& b) {
-  return of(a, edge.target, edge.source) && of(b, edge.target, edge.source) && a != b;
 }
 
 /// to_from_from along an edge, whichever way it was estimated.
@@ -35,12 +31,31 @@ Eigen::Isometry3d along(const PairwiseRegistration& edge, const SensorId& to) {
   return edge.target == to ? edge.target_from_source : edge.target_from_source.inverse();
 }
 
-const PairwiseRegistration* edge_of(const Evidence& evidence, const SensorId& a,
-                                    const SensorId& b) {
-  const auto found = std::ranges::find_if(
-      evidence.edges, [&](const PairwiseRegistration& edge) { return joins(edge, a, b); });
-  return found == evidence.edges.end() ? nullptr : &*found;
-}
+/// The edges by their sensors, the lesser first.
+class EdgeIndex {
+ public:
+  explicit EdgeIndex(const Evidence& evidence) {
+    for (const PairwiseRegistration& edge : evidence.edges)
+      edges_.emplace(std::minmax(edge.target, edge.source), &edge);
+  }
+
+  [[nodiscard]] const PairwiseRegistration* between(const SensorId& a, const SensorId& b) const {
+    const auto found = edges_.find(std::minmax(a, b));
+    return found == edges_.end() ? nullptr : found->second;
+  }
+  /// Those after `sensor` that it has edges with, in ascending order.
+  [[nodiscard]] std::vector<SensorId> after(const SensorId& sensor) const {
+    std::vector<SensorId> others;
+    for (auto at = edges_.lower_bound({sensor, {}}); at != edges_.end(); ++at) {
+      if (at->first.first != sensor) break;
+      others.push_back(at->first.second);
+    }
+    return others;
+  }
+
+ private:
+  std::map<std::pair<SensorId, SensorId>, const PairwiseRegistration*> edges_;
+};
 
 std::set<SensorId> sensors_of(const Evidence& evidence) {
   std::set<SensorId> all;
@@ -49,13 +64,13 @@ std::set<SensorId> sensors_of(const Evidence& evidence) {
   return all;
 }
 
-/// What speaks for and against one sensor.
+/// The evidence for and against one sensor.
 struct Standing {
   int credit = 0;
   int blame = 0;
-  double misfit = 0.0;  ///< Sum over its edges: residual over the share of pairs that agree [m].
+  double misfit = 0.0;  ///< Sum over its edges of residual / share of pairs that agree [m].
   std::set<SensorId> accusers;
-  double widest = 0.0;  ///< Largest loop error [m]; infinite: turned.
+  double widest = 0.0;  ///< Largest loop error [m]; infinite if a loop turns its sensors.
 
   [[nodiscard]] int excess() const { return blame - credit; }
 };
@@ -80,10 +95,10 @@ void count_pairs(const Evidence& evidence, Standings& standings) {
 }
 
 void count_triangle(const std::array<SensorId, 3>& corners, const Evidence& evidence,
-                    Standings& standings) {
-  const PairwiseRegistration* ab = edge_of(evidence, corners[0], corners[1]);
-  const PairwiseRegistration* bc = edge_of(evidence, corners[1], corners[2]);
-  const PairwiseRegistration* ca = edge_of(evidence, corners[2], corners[0]);
+                    const EdgeIndex& edges, Standings& standings) {
+  const PairwiseRegistration* ab = edges.between(corners[0], corners[1]);
+  const PairwiseRegistration* bc = edges.between(corners[1], corners[2]);
+  const PairwiseRegistration* ca = edges.between(corners[2], corners[0]);
   if (ab == nullptr || bc == nullptr || ca == nullptr) return;
   const double off = loop_error(*ab, *bc, *ca, evidence);
   const bool closed = off <= std::max(kLeastLoop, kLoopOfRms * (ab->rms + bc->rms + ca->rms));
@@ -101,18 +116,19 @@ void count_triangle(const std::array<SensorId, 3>& corners, const Evidence& evid
 Standings standings_of(const Evidence& evidence) {
   Standings standings;
   count_pairs(evidence, standings);
-  const std::set<SensorId> all = sensors_of(evidence);
-  for (auto a = all.begin(); a != all.end(); ++a) {
-    for (auto b = std::next(a); b != all.end(); ++b) {
-      if (edge_of(evidence, *a, *b) == nullptr) continue;
-      for (auto c = std::next(b); c != all.end(); ++c)
-        count_triangle({*a, *b, *c}, evidence, standings);
+  const EdgeIndex edges(evidence);
+  for (const SensorId& a : sensors_of(evidence)) {
+    const std::vector<SensorId> others = edges.after(a);
+    for (auto b = others.begin(); b != others.end(); ++b) {
+      for (auto c = std::next(b); c != others.end(); ++c)
+        count_triangle({a, *b, *c}, evidence, edges, standings);
     }
   }
   return standings;
 }
 
-/// Who stands worst; of equals, whose pairs fit worst.  None where there is nothing to blame.
+/// The sensor with the worst evidence; of equal ones, the one whose pairs fit worst.  None if
+/// nothing speaks against any sensor.
 std::optional<SensorId> worst_of(const Standings& standings) {
   const auto key = [](const Standing& standing) {
     const bool convicted = standing.blame > 0 && (standing.excess() >= 0 || standing.widest > 0.0);
@@ -145,7 +161,7 @@ std::string reason_for(const SensorId& sensor, const Standing& standing) {
       sensor.str(), fmt::join(accusers, ", "), by);
 }
 
-/// Two sensors that report the same numbers: the second repeats the first.
+/// A sensor that reports the same numbers as another, that is, a copy.
 std::optional<Outcast> copy_among(const Evidence& evidence) {
   for (const PairwiseRegistration& edge : evidence.edges) {
     const double off = edge.target_from_source.translation().norm() +

@@ -10,7 +10,7 @@
 namespace chorus::registration {
 namespace {
 
-/// Radius over the sigma of the long axis, for a short axis of 0, 0.1, ... 1 times the long one.
+/// 95 % radius / sigma of the long axis, for short axes of 0, 0.1, ... 1 times the long one.
 constexpr std::array kRadii{1.960, 1.963, 1.972, 1.991, 2.021, 2.064,
                             2.121, 2.191, 2.271, 2.357, 2.4477};
 
@@ -18,7 +18,7 @@ constexpr std::array kRadii{1.960, 1.963, 1.972, 1.991, 2.021, 2.064,
 
 double radius_of_95(const Eigen::Matrix2d& covariance) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  constexpr double kRounding = 1e-9;  // of the largest term
+  constexpr double kRounding = 1e-9;  // relative to the largest term
   if (!covariance.allFinite()) return kUnknown;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
   if (axes.eigenvalues()[0] < -kRounding * covariance.cwiseAbs().maxCoeff()) return kUnknown;

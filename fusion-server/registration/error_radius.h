@@ -1,4 +1,4 @@
-// How far off a place is at most, with 95 % probability.
+// The 95 % radius of a place's error.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,11 +6,12 @@
 namespace chorus::registration {
 
 /// Radius of the circle about the mean that holds 95 % of a normal distribution on the plane [m]:
-/// 2.45 sigma for a round one, 1.96 sigma of the long axis for a narrow one.
-/// Infinite for what is no covariance.
+/// 2.45 sigma for a round one, 1.96 sigma of the long axis for a narrow one.  Infinite if the
+/// matrix is not a covariance.
 [[nodiscard]] double radius_of_95(const Eigen::Matrix2d& covariance);
 
-/// The same for the place on the floor, x and z, of a covariance of (turn, place) in world axes.
+/// The same for the position on the floor (x, z), from a covariance of (rotation vector, position)
+/// in world axes.
 [[nodiscard]] double radius_on_floor(const Eigen::Matrix<double, 6, 6>& covariance);
 
 }  // namespace chorus::registration

@@ -17,7 +17,7 @@ constexpr double kFeetBelow = 0.25;    // [m] feet lower than this contradict th
 constexpr double kFeetAbove = 0.60;    // [m] feet that stay higher than this contradict it, too
 constexpr double kLowestShare = 0.10;  // percentile of the feet's heights that counts as the floor
 constexpr double kViewIsVertical =
-    0.05;  // with a smaller horizontal part of the view, the yaw is kept
+    0.05;  // if the horizontal part of the viewing direction is smaller, the yaw is kept
 constexpr double kFarTilt = deg(1.5);      // floors that deviate more from the median are left out
 constexpr double kFarHeight = 0.05;        // [m] the same for heights
 constexpr double kFootJointHeight = 0.05;  // [m] height of the lowest foot joint above the sole

@@ -11,8 +11,8 @@ namespace chorus::registration {
 
 /// A sensor's floor over the whole walk, and the reason if it cannot be used.
 struct WalkFloor {
-  std::optional<FloorPlane> floor;  ///< Sensor space; present only when plausible.
-  std::string objection;  ///< "its floor plane is above the feet", empty when there is none.
+  std::optional<FloorPlane> floor;  ///< Sensor space; present only if plausible.
+  std::string objection;  ///< "its floor plane is above the feet"; empty if there is none.
 };
 
 /// Median of the reported planes.  It is plausible if its normal points up in sensor space, it lies
@@ -29,7 +29,7 @@ struct PlacedFloor {
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Position of the sensor [m].
 };
 
-/// The common floor: the mean of tilts and heights, without floors far from the median.  A floor
+/// The common floor: the mean of tilts and of heights, without floors far from the median.  A floor
 /// plane is wrong by tenths of a degree, which is centimetres at the far side of the room; the mean
 /// of N floors has 1 / sqrt(N) of that error.  `floors` must not be empty.
 [[nodiscard]] FloorPlane common_floor(const std::vector<PlacedFloor>& floors);

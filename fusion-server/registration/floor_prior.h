@@ -29,7 +29,7 @@ struct FloorPrior {
 
 inline constexpr FloorPrior kOneFloor{deg(0.4), mm(10)};
 
-/// The difference of two floors is worse by sqrt(2).
+/// The difference of two floors is less certain by sqrt(2).
 inline constexpr FloorPrior kTwoFloors{kOneFloor.tilt * std::numbers::sqrt2,
                                        kOneFloor.height* std::numbers::sqrt2};
 

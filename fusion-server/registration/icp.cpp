@@ -23,10 +23,11 @@ using Icp = pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, double>;
 
 constexpr int kRefineIterations = 20;
 constexpr int kSeedIterations = 40;
-constexpr int kYawSeeds = 24;            // 15 deg apart
-constexpr float kKeptShare = 0.9F;       // trimmed ICP
-constexpr double kSettled = 1e-9;        // of the last step, in squared metres and as 1 - cos
-constexpr std::size_t kMaxPoints = 300;  // a 10 s walk at 30 Hz; more costs time without benefit
+constexpr int kYawSeeds = 24;         // 15 deg apart
+constexpr float kKeptShare = 0.9F;    // trimmed ICP
+constexpr double kIcpSettled = 1e-9;  // of the last step, in squared metres and as 1 - cos
+constexpr std::size_t kMaxCloudPoints =
+    300;  // a 10 s walk at 30 Hz; more costs time without benefit
 constexpr std::size_t kMinPoints = 10;
 
 /// Finds nearest neighbours among a few hundred points by testing them all: several times faster
@@ -57,13 +58,15 @@ class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
 
  private:
   Eigen::Array<float, Eigen::Dynamic, 3> points_;
-  mutable Eigen::ArrayXf squares_;  ///< Of the last search; one thread uses one ICP.
+  /// Squared distances of the last search; an ICP is used by one thread only.
+  mutable Eigen::ArrayXf squares_;
 };
 
-/// At most kMaxPoints points, evenly chosen.
+/// At most kMaxCloudPoints points, evenly chosen.
 Points::Ptr cloud_of(Cloud points) {
   Points::Ptr cloud(new Points);
-  const std::size_t step = std::max<std::size_t>(1, (points.size() + kMaxPoints - 1) / kMaxPoints);
+  const std::size_t step =
+      std::max<std::size_t>(1, (points.size() + kMaxCloudPoints - 1) / kMaxCloudPoints);
   for (std::size_t i = 0; i < points.size(); i += step) {
     const Eigen::Vector3f p = points[i].cast<float>();
     if (p.allFinite()) cloud->push_back({p.x(), p.y(), p.z()});
@@ -82,8 +85,8 @@ void set_up(Icp& icp, const Points::Ptr& source, const Points::Ptr& target, int 
   icp.setInputSource(source);
   icp.setInputTarget(target);
   icp.setMaximumIterations(iterations);
-  icp.setTransformationEpsilon(kSettled);
-  icp.setEuclideanFitnessEpsilon(kSettled);
+  icp.setTransformationEpsilon(kIcpSettled);
+  icp.setEuclideanFitnessEpsilon(kIcpSettled);
 }
 
 /// Runs from `start`; the residual is the rms of the kept nearest distances.

@@ -25,7 +25,7 @@ struct IcpFit {
 
 /// The published method as far as it is described: levelled clouds without time stamps or an
 /// initial guess.  Tries 24 yaws about the centroids, keeps the best 90 % of the correspondences,
-/// and returns the result of smallest residual.
+/// and returns the result with the smallest residual.
 [[nodiscard]] Result<IcpFit> icp_from_yaw_seeds(Cloud source, Cloud target);
 
 }  // namespace chorus::registration

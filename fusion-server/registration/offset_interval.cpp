@@ -7,7 +7,7 @@ namespace chorus::registration {
 namespace {
 
 constexpr double kChi95 = 3.841;      // chi^2 with one degree of freedom at 95 %
-constexpr double kNear = 0.060;       // [s] around the best offset: one mode
+constexpr double kNear = 0.060;       // [s] offsets this close to the best belong to its mode
 constexpr double kSurelyWorse = 1.0;  // standard deviations
 using Series = std::vector<Eigen::Vector3d>;
 
@@ -17,7 +17,7 @@ double mean_of(const std::vector<Loss>& losses) {
   return sum / static_cast<double>(losses.size());
 }
 
-/// The profile: -2 log L at every offset, with as many independent frames as the best one has.
+/// The profile: -2 log L at every offset, assuming as many independent frames as at the best one.
 class Profile {
  public:
   explicit Profile(const std::vector<OffsetFit>& fits) : fits_(fits) {
@@ -49,11 +49,11 @@ class Profile {
   [[nodiscard]] double bend() const {
     return costs_[best_ - 1] - 2.0 * costs_[best_] + costs_[best_ + 1];
   }
-  /// How much lower the cost may be between two offsets: half a step off its minimum a parabola has
-  /// risen by a quarter of what it rises in a step.
+  /// How much lower the cost may be between two offsets: half a step from its minimum, a parabola
+  /// has risen by a quarter of what it rises in a whole step.
   [[nodiscard]] double between_steps() const { return at_rim() ? 0.0 : 0.125 * bend(); }
 
-  /// Differences of the losses, by frames that both offsets have.
+  /// Differences of the losses over the frames that both offsets have.
   [[nodiscard]] Series differences(const OffsetFit& fit) const {
     const std::vector<Loss>& there = fits_[best_].walk.losses;
     auto other = there.begin();

@@ -1,4 +1,4 @@
-// Which of many offsets the walk does not exclude with 95 % confidence.
+// The offsets that the walk does not exclude with 95 % confidence.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ struct OffsetInterval {
   double high = 0.0;
 };
 
-/// `fits`: at least one, equally spaced.  Near the best, those whose likelihood ratio is
-/// significant are excluded; farther off, where another mode may be, only those that fit worse in
+/// `fits`: at least one, equally spaced.  Near the best, offsets with a significant likelihood
+/// ratio are excluded; farther away, where there may be another mode, only those that fit worse in
 /// more frames than chance allows (Vuong 1989).
 [[nodiscard]] OffsetInterval interval_of(const std::vector<OffsetFit>& fits);
 

@@ -13,14 +13,15 @@ namespace {
 
 using enum JointId;
 
-constexpr std::size_t kSmoothed = 5;      // frames that are averaged, so that no offset
-                                          // interpolates less noise away than another
-constexpr std::size_t kMostFrames = 300;  // of the source: neighbours of a longer walk share noise
-constexpr std::size_t kMinFrames = 30;    // that an offset must leave
-constexpr double kCoarse = 0.020;         // [s]
-constexpr double kFine = 0.002;           // [s]
-constexpr double kOptimism = 1.3;         // errors of simulated walks beside the likelihood's
-constexpr double kErrorTime = 2.0;        // [s] in which a sensor's error is about forgotten
+constexpr std::size_t kSmoothed = 5;  // frames that are averaged, so that no offset
+                                      // interpolates less noise away than another
+// Of the source; in a longer walk, neighbouring frames share noise.
+constexpr std::size_t kMostFrames = 300;
+constexpr std::size_t kMinFrames = 30;  // fewest frames that an offset must leave
+constexpr double kCoarse = 0.020;       // [s]
+constexpr double kFine = 0.002;         // [s]
+constexpr double kOptimism = 1.3;  // errors on simulated walks / errors according to the likelihood
+constexpr double kErrorTime = 2.0;  // [s] after which a sensor's error is nearly independent
 
 struct Sides {
   JointId left;
@@ -50,7 +51,7 @@ TrailFrame mean_of(const std::vector<TrailFrame>& frames, std::size_t first) {
 
 Trail smoothed(const Trail& trail, Duration max_gap) {
   Trail out{trail.sensor, {}};
-  std::size_t whole = 1;  // frames up to this one without a gap
+  std::size_t whole = 1;  // number of frames up to this one without a gap
   for (std::size_t i = 0; i < trail.frames.size(); ++i) {
     const bool follows = i > 0 && trail.frames[i].body == trail.frames[i - 1].body &&
                          trail.frames[i].captured - trail.frames[i - 1].captured <= max_gap;
@@ -97,7 +98,7 @@ void add_points(const TrailFrame& target, const TrailFrame& source, std::size_t 
   for (const Sides& sides : kMirrored) add(sides.left, sides.right);
 }
 
-/// The middle of the points of each frame: with levelled sensors the walk alone is wanted.
+/// The middle of the points of each frame: with levelled sensors, only the walk is needed.
 Points middles_of(const Points& all) {
   Points middles;
   for (std::size_t i = 0; i < all.frame.size();) {
@@ -122,8 +123,8 @@ Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Each point without what its predecessor foretells of it.  A sensor's error changes slowly, so
-/// what is new in a step and a turn says most about time.
+/// Subtracts from each point what its predecessor predicts.  A sensor's error changes slowly, so
+/// the new part of a step or a turn contains most of the information about time.
 Points whitened(const Points& points, const Trail& source) {
   const Eigen::Vector3d target_mean = mean_of(points.target);
   const Eigen::Vector3d source_mean = mean_of(points.source);

@@ -1,8 +1,8 @@
 // How well each offset between two sensors' clocks fits the walk that both saw.
 //
-// For an offset d the source's stamps are moved by d, and the middle of the body's axis is compared
-// at equal times, fitted by yaw and translation (all points of the axis, with six degrees of
-// freedom, where a floor is missing).  Derived in docs/papers/registration.md, Section 10.
+// For an offset d the source's stamps are moved by d.  The middle of the body's axis is then
+// compared at equal times and fitted by yaw and translation (where a floor is missing: all points
+// of the axis, with six degrees of freedom).  Derived in docs/papers/registration.md, Section 10.
 #pragma once
 
 #include <optional>
@@ -19,25 +19,27 @@ struct OffsetFit {
   StudentFit walk;
 };
 
-/// The offset of a pair, from the walk alone.
+/// The offset between a pair's clocks, from the walk alone.
 struct PairOffset {
-  double offset = 0.0;  ///< Added to the source's stamps, they are by the target's clock [s].
-  double sigma = 0.0;   ///< [s]; as large as the search where the walk does not tell.
+  double offset = 0.0;  ///< Target's clock minus the source's: added to the source's stamps [s].
+  /// [s]; as large as the searched range if the walk does not determine the offset.
+  double sigma = 0.0;
 };
 
-/// A walk reduced to what a profile needs.
+/// The walk, reduced to what a profile needs.
 [[nodiscard]] Walker offset_walker(const WalkTrack& walk, const RegistrationConfig& config);
 
 /// Two walks, prepared to be fitted at many offsets.
 class OffsetProfile {
  public:
-  /// Both by offset_walker().  Searches offsets up to `range` [s] to either side.
+  /// Both come from offset_walker().  Searches offsets from -`range` to `range` [s].
   OffsetProfile(const Walker& target, const Walker& source, const RegistrationConfig& config,
                 double range);
 
   /// None when the sensors saw too little of the person together.
   [[nodiscard]] std::optional<PairOffset> best() const;
-  /// Where the source sensor is for the target at this offset [m]; none when too little is left.
+  /// Position of the source sensor in the target's space at this offset [m]; none when too little
+  /// of the walk is left.
   [[nodiscard]] std::optional<Eigen::Vector3d> place_at(double offset) const;
 
  private:

@@ -20,10 +20,10 @@ namespace {
 constexpr double kMinAgreement = 0.3;  // with a smaller fraction of inliers the result is refused
 constexpr double kMinSlimness = 0.01;  // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
 constexpr double kBias = mm(10);       // view-dependent joint bias at 90 deg and beyond
-constexpr std::size_t kMaxPairs = 6000;  // more cost time; successive ones are redundant
-constexpr double kLeastApart = 0.15;     // [m] the halves of a walk may always differ by this
-constexpr double kApartOfRms = 3.0;      // ... or by this much of the residuals
-constexpr double kIcpReach = 0.10;       // [m] a neck point without a partner this near is ignored
+constexpr std::size_t kMaxPairs = 6000;  // more take longer, and successive ones are redundant
+constexpr double kLeastApart = 0.15;     // [m] the two halves of a walk may always differ by this
+constexpr double kApartOfRms = 3.0;      // ... or by this multiple of the residuals
+constexpr double kIcpReach = 0.10;       // [m] a neck point without a partner this close is ignored
 
 /// Both skeletons' spaces levelled to y = 0 if both floors are known; unchanged otherwise.
 struct Levelled {
@@ -62,7 +62,7 @@ Result<void> enough(const Pairing& pairing, const std::string& both,
   return fail(ErrorCode::Unavailable, both, why);
 }
 
-/// Drops whole instants at even distances, never single joints.
+/// Drops whole instants at regular intervals, never single joints.
 std::vector<Pair> thinned(const Pairing& pairing) {
   const std::size_t keep_every = (pairing.pairs.size() + kMaxPairs - 1) / kMaxPairs;
   if (keep_every <= 1) return pairing.pairs;
@@ -82,8 +82,8 @@ void apply(std::vector<Pair>& pairs, const Levelled& levelled) {
   }
 }
 
-/// The extent of the walk: its two largest principal axes, for the slot seen most often (of equals
-/// the first).
+/// The extent of the walk: its two largest principal axes, for the slot seen most often (of equal
+/// ones, the first).
 struct Extent {
   double spread = 0.0;    ///< [m]
   double slimness = 1.0;  ///< lambda2 / lambda1
@@ -173,13 +173,14 @@ std::vector<Pair> half_of(const std::vector<Pair>& pairs, bool second) {
   return half;
 }
 
-/// Each half of the walk must place the other: whoever follows somebody else may fit one stretch of
-/// a walk by chance, hardly two.
+/// The result for each half of the walk must fit the other half.  A sensor that follows somebody
+/// else may fit one part of a walk by chance, but hardly two.
 Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom freedom,
                           const std::string& both, double min_spread) {
   const std::vector<Pair> early = half_of(pairs, false);
   const std::vector<Pair> late = half_of(pairs, true);
-  for (const auto* half : {&early, &late}) {  // a half on one spot cannot place the other
+  // A half in which the person stayed on one spot cannot be used for this.
+  for (const auto* half : {&early, &late}) {
     if (extent_of(*half, std::vector<double>(half->size(), 1.0)).spread < min_spread) return {};
   }
   const auto first = fit_robustly(early, freedom);
@@ -258,9 +259,8 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& cloud) {
   return sum / static_cast<double>(std::max<std::size_t>(1, cloud.size()));
 }
 
-/// Applies the floor's height, pitch and roll afterwards, as the paper's "floor plane estimation
-/// compensates".  ICP has fitted the clouds: their centre stays where ICP put it, whatever tilt is
-/// removed.
+/// Applies the floor's height, pitch and roll afterwards (the paper's "floor plane estimation
+/// compensates").  The centre of the clouds stays where ICP has put it, whatever tilt is removed.
 Eigen::Isometry3d on_the_floor(const Eigen::Isometry3d& level_from_level,
                                const Eigen::Vector3d& middle) {
   Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();

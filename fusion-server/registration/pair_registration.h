@@ -9,7 +9,7 @@
 
 namespace chorus::registration {
 
-/// One sensor's walk, with all that is computed once per sensor.
+/// One sensor's walk, with everything that is computed once per sensor.
 struct Walker {
   Trail trail;
   WalkFloor floor;
@@ -18,7 +18,7 @@ struct Walker {
 [[nodiscard]] Walker walker_of(const WalkTrack& walk, const RegistrationConfig& config);
 
 /// Errors: NotFound, the two sensors never saw the person together; Unavailable, they saw too
-/// little; Conflict, their observations are inconsistent.
+/// little; Conflict, their views are inconsistent.
 [[nodiscard]] Result<PairwiseRegistration> register_walkers(const Walker& target,
                                                             const Walker& source,
                                                             const RegistrationConfig& config);
@@ -26,10 +26,14 @@ struct Walker {
 /// Estimates an edge from two walks.
 using PairEstimator = std::function<Result<PairwiseRegistration>(const Walker&, const Walker&)>;
 
+/// Asked now and then during long work; once it says so, the result is of no use to anybody.
+using Stopped = std::function<bool()>;
+
 /// solve() with another estimator of edges and everything else the same, to compare
 /// estimators.
 [[nodiscard]] Registration solve_with(const PairEstimator& estimate,
                                       const std::vector<WalkTrack>& walk, Timestamp now,
-                                      const RegistrationConfig& config);
+                                      const RegistrationConfig& config,
+                                      const Stopped& stopped = {});
 
 }  // namespace chorus::registration

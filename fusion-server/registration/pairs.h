@@ -1,4 +1,4 @@
-// Time-paired correspondences: where the other sensor saw the same joint at exactly that instant.
+// Time-paired correspondences: where two sensors saw the same joint at exactly the same instant.
 //
 // The target's trail is interpolated at the source's capture times (Otto 5.2.4), so sensors that
 // are not synchronised give simultaneous points. docs/papers/registration.md, Section 2.
@@ -36,20 +36,20 @@ struct Pair {
   Eigen::Vector3d x_in_source;
   Eigen::Vector3d ray_in_target;  ///< Unit line of sight of the target sensor.
   Eigen::Vector3d ray_in_source;
-  double sigma = 0.0;  ///< Of the difference, as given by the slot [m].
+  double sigma = 0.0;  ///< Standard deviation of the difference, from the slot [m].
   std::size_t slot = 0;
   /// Index of the source frame among the paired ones; simultaneous pairs have the same.
   std::size_t instant = 0;
-  double time = 0.0;  ///< Of the instant, since the first frame of the source [s].
+  double time = 0.0;  ///< Time of the instant since the first frame of the source [s].
 };
 
 struct Pairing {
   std::vector<Pair> pairs;
   std::size_t instants = 0;      ///< Source frames for which there are pairs.
   std::size_t together = 0;      ///< Source frames at whose instant the target saw a body, too.
-  std::size_t resting = 0;       ///< ... of these, at which the person had hardly moved.
-  std::size_t too_fast = 0;      ///< ... of these, rejected by max_speed.
-  std::size_t out_of_range = 0;  ///< ... of these, rejected by min_distance or max_distance.
+  std::size_t resting = 0;       ///< Of these, frames at which the person had hardly moved.
+  std::size_t too_fast = 0;      ///< Of these, frames rejected by max_speed.
+  std::size_t out_of_range = 0;  ///< Of these, frames rejected by min_distance or max_distance.
 };
 
 [[nodiscard]] Pairing pair_up(const Trail& target, const Trail& source,

@@ -49,11 +49,13 @@ void add_point(PlaceEquations& equations, const PointMeasurements& measurements,
     equations.right.segment<6>(at) += weight * rows[i].transpose() * (fused.x - fused.seen[i]);
   }
   for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(6 * measurements[i].sensor);
     const Eigen::Matrix<double, 6, 3> left = weight * rows[i].transpose() * fused.covariance;
-    for (std::size_t j = 0; j < measurements.size(); ++j) {
-      equations.information.block<6, 6>(static_cast<Eigen::Index>(6 * measurements[i].sensor),
-                                        static_cast<Eigen::Index>(6 * measurements[j].sensor)) -=
-          left * rows[j];
+    for (std::size_t j = 0; j <= i; ++j) {  // H is symmetric
+      const auto column = static_cast<Eigen::Index>(6 * measurements[j].sensor);
+      const Matrix6 shared = left * rows[j];
+      equations.information.block<6, 6>(row, column) -= shared;
+      if (j < i) equations.information.block<6, 6>(column, row) -= shared.transpose();
     }
   }
 }

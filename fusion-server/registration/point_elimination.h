@@ -23,10 +23,10 @@ struct PointMeasurement {
   std::size_t sensor = 0;  ///< Index into the places.
   Eigen::Vector3d x;       ///< [m]
   Eigen::Vector3d ray;     ///< Unit line of sight.
-  double sigma = 0.0;      ///< Across the line of sight [m].
+  double sigma = 0.0;      ///< Standard deviation across the line of sight [m].
 };
 
-using PointMeasurements = std::vector<PointMeasurement>;  ///< By two or more sensors.
+using PointMeasurements = std::vector<PointMeasurement>;  ///< From two or more sensors.
 
 /// A point according to the present places.
 struct FusedPoint {
@@ -41,7 +41,7 @@ struct FusedPoint {
                                     std::span<const Eigen::Isometry3d> world_from_level,
                                     double along_ratio);
 
-/// A point is trusted or not as a whole: the norm of its worst measurement, in units of sigma.
+/// The norm of the point's worst measurement, in units of sigma; a point is trusted as a whole.
 [[nodiscard]] double worst_norm(const FusedPoint& fused);
 
 /// information * (omega, tau of every sensor) = right.

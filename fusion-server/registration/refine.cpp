@@ -12,11 +12,10 @@
 namespace chorus::registration {
 namespace {
 
-constexpr int kIterations = 15;
-constexpr double kSettled = 1e-7;        // [rad], [m]
+constexpr int kRefiningIterations = 15;
+constexpr double kRefineSettled = 1e-7;  // [rad], [m]
 constexpr double kMaxCorrelated = 0.98;  // a larger rho means "constant error", not "no samples"
 constexpr double kTiny = 1e-12;
-constexpr double kMinScale = 0.02;  // in sigmas; avoids a division by zero for perfect pairs
 constexpr double kAxes = 3.0;
 
 /// One pair at the present pose: its residual and S^-1.
@@ -81,7 +80,7 @@ Eigen::Vector3d centre_of(const std::vector<Pair>& pairs, const std::vector<doub
   return total > 0 ? Eigen::Vector3d(sum / total) : sum;
 }
 
-/// Mean whitened residual of each instant, and the scatter of single pairs.
+/// The mean whitened residual of each instant, and the scatter of single pairs.
 struct Instants {
   std::vector<Eigen::Vector3d> means;
   double squares = 0.0;
@@ -179,7 +178,7 @@ Refined refine(const std::vector<Pair>& pairs, const RobustFit& fit, const Floor
   refined.weights = fit.weights;
   const Eigen::Vector3d centre = centre_of(pairs, fit.weights);
   Matrix6 information = Matrix6::Identity();
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < kRefiningIterations; ++i) {
     const auto residuals = residuals_of(pairs, refined.target_from_source, along_ratio);
     reweigh(residuals, refined);
     refined.inflation = inflation_of(instants_of(pairs, residuals, refined.weights));
@@ -189,7 +188,7 @@ Refined refine(const std::vector<Pair>& pairs, const RobustFit& fit, const Floor
     const Vector6 motion = information.ldlt().solve(normal.right);
     if (!motion.allFinite()) break;
     move(refined, motion);
-    if (motion.norm() < kSettled) break;
+    if (motion.norm() < kRefineSettled) break;
   }
   refined.covariance = information.ldlt().solve(Matrix6::Identity());
   return refined;

@@ -16,10 +16,11 @@ namespace chorus::registration {
 
 struct Refined {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  std::vector<double> weights;           ///< Per pair, in [0, 1]; zero for outliers.
-  Matrix6 covariance = Matrix6::Zero();  ///< Of (omega, tau) applied on the target side.
-  double scale = 1.0;                    ///< Standard deviation of a pair, in units of its sigma.
-  double inflation = 1.0;                ///< Correlation: pairs per independent pair.
+  std::vector<double> weights;  ///< Per pair, in [0, 1]; zero for outliers.
+  /// Covariance of (omega, tau), applied on the target side.
+  Matrix6 covariance = Matrix6::Zero();
+  double scale = 1.0;      ///< Standard deviation of a pair, in units of its sigma.
+  double inflation = 1.0;  ///< Pairs per independent pair; above one because pairs are correlated.
 };
 
 /// Starts from the robust fit.

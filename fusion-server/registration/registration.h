@@ -51,7 +51,7 @@ struct RegistrationConfig {
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
   double good_position = 0.05;
-  double max_position = 0.10;      ///< With a larger one the sensor is refused [m].
+  double max_position = 0.10;      ///< With a larger radius the sensor is refused [m].
   std::optional<SensorId> master;  ///< Default: the sensor with the best connection to all others.
 
   bool operator==(const RegistrationConfig&) const = default;

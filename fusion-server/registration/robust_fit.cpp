@@ -12,7 +12,6 @@ namespace {
 constexpr double kCutoff = 3.0;  // c of Geman-McClure in standard deviations
 constexpr double kAnneal = 1.4;  // mu <- mu / 1.4
 constexpr int kTukeyIterations = 8;
-constexpr double kMinScale = 0.02;  // in sigmas; avoids a division by zero for perfect pairs
 constexpr double kAgreeingShare = 0.5;
 constexpr int kMaxDoublings = 5;
 

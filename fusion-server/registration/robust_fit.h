@@ -1,7 +1,7 @@
 // A robust closed-form rigid fit: graduated non-convexity, then Tukey re-weighting.
 //
-// Needs no initial guess and tolerates more than half of the pairs being wrong incoherently.
-// Derived in docs/papers/registration.md, Section 3.
+// Needs no initial guess, and tolerates more than half of the pairs being wrong, if they are wrong
+// in different ways.  Derived in docs/papers/registration.md, Section 3.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ enum class Freedom {
 struct RobustFit {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
   std::vector<double> weights;  ///< Per pair, in [0, 1]; zero for outliers.
-  double rms = 0.0;             ///< Over the pairs with positive weight [m].
+  double rms = 0.0;             ///< Residual over the pairs with positive weight [m].
   double scale = 0.0;           ///< Per-axis standard deviation in units of the pairs' own sigma.
   std::size_t inliers = 0;
 };

@@ -13,14 +13,15 @@
 #include "fusion-server/registration/consensus.h"
 #include "fusion-server/registration/error_radius.h"
 #include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
 #include "fusion-server/registration/transform_graph.h"
 
 namespace chorus::registration {
 namespace {
 
-constexpr double kMinUpright = 0.0;  // cos of the tilt beyond which a sensor would be upside down
-constexpr double kMinHeight = 0.0;   // [m] a sensor below the floor is a wrong solution
+constexpr double kMinUpright = 0.0;   // cos of the tilt beyond which a sensor would be upside down
+constexpr double kLeastHeight = 0.0;  // [m] a sensor below the floor is a wrong solution
 
 /// Why two sensors have no edge.
 struct Refusal {
@@ -33,18 +34,19 @@ struct Refusal {
 struct Work {
   const std::vector<WalkTrack>& walk;
   const RegistrationConfig& config;
+  const Stopped& stopped;
   std::map<SensorId, Walker> walkers;
   std::map<SensorId, const WalkTrack*> tracks;
   std::vector<Refusal> refusals;
   std::set<SensorId> outcasts;  ///< Sensors that contradict the others; their reason is stated.
   Registration result;
-  bool doubtful = false;  ///< There is a doubt about all places.
+  bool doubtful = false;  ///< True if there is a doubt that concerns all places.
 
   void doubt(std::string reason) {
     doubtful = true;
     note(std::move(reason));
   }
-  /// Says why one sensor has no place; the others stay good.
+  /// Notes why one sensor has no place; the others stay good.
   void refuse(const SensorId& sensor, std::string reason) { doubt(sensor, std::move(reason)); }
   /// Adds a doubt about the place of one sensor; the others stay good.
   void doubt(const SensorId& sensor, std::string reason) {
@@ -68,14 +70,12 @@ void reduce_tracks(Work& work) {
 }
 
 void register_pairs(Work& work, const PairEstimator& estimate) {
-  for (auto target = work.walkers.begin(); target != work.walkers.end(); ++target) {
-    for (auto source = std::next(target); source != work.walkers.end(); ++source) {
-      auto edge = estimate(target->second, source->second);
-      if (edge) {
-        work.result.edges.push_back(std::move(*edge));
-      } else {
-        work.refusals.push_back({target->first, source->first, edge.error()});
-      }
+  for (const auto& [target, source] : partners_of(work.walkers)) {
+    auto edge = estimate(work.walkers.at(target), work.walkers.at(source));
+    if (edge) {
+      work.result.edges.push_back(std::move(*edge));
+    } else {
+      work.refusals.push_back({target, source, edge.error()});
     }
   }
 }
@@ -98,8 +98,8 @@ void refuse_outcasts(Work& work) {
   work.result.edges = std::move(evidence.edges);
 }
 
-/// The sensor that reaches the most others; of equals, the one with the smallest total error, then
-/// with the smallest id.
+/// The sensor that reaches the most others; of equal ones, the one with the smallest total error,
+/// then with the smallest id.
 SensorId best_master(const Work& work) {
   SensorId best;
   std::size_t most = 0;
@@ -150,18 +150,19 @@ std::optional<FloorPlane> floor_in_master(const Work& work,
   return common_floor(floors);
 }
 
-/// The master's floor as the upright body shows it.
+/// The master's floor, guessed from the upright body.
 FloorPlane guessed_floor(Work& work) {
   work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
   return floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
 }
 
-/// "would hang head down" or the like; nothing when the place is possible.
+/// Why a sensor cannot stand there: "would hang head down", "would stand 0.35 m below the floor".
+/// None when it can.
 std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor) {
   if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
   if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";
   const double height = world_from_sensor.translation().y();
-  if (height < kMinHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
+  if (height < kLeastHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
   return std::nullopt;
 }
 
@@ -186,8 +187,8 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   }
   const bool timed = work.config.method == PairMethod::TimedRobust;
   if (chains.size() < 2 || !timed || !work.config.adjust_together) return all;
-  const auto adjusted =
-      adjust_together(places, {work.walkers, work.result.master, guessed}, work.config);
+  const auto adjusted = adjust_together(
+      places, {work.walkers, work.result.master, guessed, work.stopped}, work.config);
   if (!adjusted) return all;
   for (auto& [sensor, place] : all) {
     place.world_from_sensor = adjusted->places.at(sensor);
@@ -217,7 +218,7 @@ void place_sensors(Work& work) {
   }
 }
 
-/// Nothing is accepted that nobody can vouch for.
+/// Refuses sensors whose place is too uncertain.
 void refuse_wide(Work& work) {
   const std::map<SensorId, Extrinsics> all = work.result.sensors;
   for (const auto& [sensor, place] : all) {
@@ -237,8 +238,8 @@ bool linked(const Work& work, const SensorId& sensor) {
   return work.result.sensors.contains(sensor);
 }
 
-/// Says why this sensor is left out: the reasons of its pairs with linked sensors, where several
-/// "never together" are combined.
+/// Notes why this sensor is left out: the reasons of its pairs with linked sensors; several "never
+/// together" are combined.
 void explain_unlinked(Work& work, const SensorId& sensor) {
   if (!work.result.verdicts[sensor].reasons.empty()) return;
   std::vector<std::string> strangers;
@@ -324,7 +325,8 @@ void judge_accuracy(Work& work) {
   }
 }
 
-/// Sets the verdict of each sensor by the doubts about it, and that of all placed ones together.
+/// Sets the verdict of each sensor according to the doubts about it, and that of all placed sensors
+/// together.
 void pass_sentence(Work& work) {
   work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
   for (const auto& [sensor, walker] : work.walkers) {
@@ -362,8 +364,8 @@ void judge(Work& work) {
 }  // namespace
 
 Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTrack>& walk,
-                        Timestamp now, const RegistrationConfig& config) {
-  Work work{walk, config, {}, {}, {}, {}, {}, false};
+                        Timestamp now, const RegistrationConfig& config, const Stopped& stopped) {
+  Work work{walk, config, stopped, {}, {}, {}, {}, {}, false};
   work.result.solved = now;
   reduce_tracks(work);
   const bool silent =

@@ -9,15 +9,15 @@ namespace chorus::registration {
 namespace {
 
 constexpr double kFreedom = 4.0;  // heavy tails for a few wrong frames
-constexpr double kAxes = 3.0;
-constexpr int kIterations = 12;
-constexpr double kMinScale = 0.001;  // [m]
+constexpr double kDimensions = 3.0;
+constexpr int kFitIterations = 12;
+constexpr double kMinDeviation = 0.001;  // [m]
 constexpr double kUncorrelated = 0.05;
 
 struct Residuals {
   std::vector<Eigen::Vector3d> off;
   std::vector<double> weights;
-  double variance = 1.0;  ///< Per axis [m^2].
+  double variance = 1.0;  ///< Variance per axis [m^2].
 
   explicit Residuals(std::size_t count) : off(count), weights(count, 1.0) {}
 
@@ -25,14 +25,15 @@ struct Residuals {
   void reweigh() {
     double squares = 0.0;
     for (std::size_t i = 0; i < off.size(); ++i) squares += weights[i] * off[i].squaredNorm();
-    variance = std::max(kMinScale * kMinScale, squares / (kAxes * static_cast<double>(off.size())));
+    variance = std::max(kMinDeviation * kMinDeviation,
+                        squares / (kDimensions * static_cast<double>(off.size())));
     for (std::size_t i = 0; i < off.size(); ++i)
-      weights[i] = (kFreedom + kAxes) / (kFreedom + off[i].squaredNorm() / variance);
+      weights[i] = (kFreedom + kDimensions) / (kFreedom + off[i].squaredNorm() / variance);
   }
 
   [[nodiscard]] double loss(std::size_t i) const {
-    return kAxes * std::log(variance) +
-           (kFreedom + kAxes) * std::log1p(off[i].squaredNorm() / (kFreedom * variance));
+    return kDimensions * std::log(variance) +
+           (kFreedom + kDimensions) * std::log1p(off[i].squaredNorm() / (kFreedom * variance));
   }
 };
 
@@ -74,7 +75,7 @@ double inflation_of(const std::vector<Eigen::Vector3d>& series) {
 std::optional<StudentFit> fit_place(const Points& points, bool levelled) {
   Residuals residuals(points.target.size());
   StudentFit fit;
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < kFitIterations; ++i) {
     const auto rigid = levelled ? fit_yaw(points.source, points.target, residuals.weights)
                                 : fit_rigid(points.source, points.target, residuals.weights);
     if (!rigid) return std::nullopt;

@@ -14,7 +14,7 @@ namespace chorus::registration {
 struct Points {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;
-  std::vector<std::size_t> frame;  ///< Of the source.
+  std::vector<std::size_t> frame;  ///< Frame of the source that each point belongs to.
 };
 
 /// One frame's -2 log likelihood.
@@ -26,15 +26,16 @@ struct Loss {
 /// How well something fits.
 struct StudentFit {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  std::vector<Loss> losses;  ///< In order of frames.
-  double inflation = 1.0;    ///< Correlation: frames per independent frame.
+  std::vector<Loss> losses;  ///< One per frame, in order.
+  /// Frames per independent frame; above one because frames are correlated.
+  double inflation = 1.0;
 };
 
 /// Yaw and translation, or six degrees of freedom if not levelled.
 [[nodiscard]] std::optional<StudentFit> fit_place(const Points& points, bool levelled);
 
-/// Values per independent value: the sum of the autocorrelation over all lags, up to the first
-/// where it is about zero.
+/// Number of values per independent value: the sum of the autocorrelation over all lags, up to the
+/// first at which it is about zero.
 [[nodiscard]] double inflation_of(const std::vector<Eigen::Vector3d>& series);
 
 }  // namespace chorus::registration

@@ -15,20 +15,21 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kKnown = 0.002;       // [s] a pair known this well is not searched: 2 mm of walk
+// [s] a pair known this well is not searched; corresponds to 2 mm of walk.
+constexpr double kKnown = 0.002;
 constexpr double kMostSearched = 1.1;  // [s]
 constexpr double kSearchSigmas = 4.0;
 constexpr double kLeastSigma = 0.001;  // [s] of a pair: what views differ in is no time
 constexpr double kExact = 1e-4;        // [s] a clock that is known exactly
 constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less and less
-constexpr int kIterations = 10;
+constexpr int kSolveIterations = 10;
 constexpr double kMaxSpread = 0.05;  // [m] of the place, over what is open of the offset
 
-/// One pair's measurement: offset of source minus that of target.
+/// What one pair measures: the correction of the source's stamps minus that of the target's.
 struct Measured {
   std::size_t target;
   std::size_t source;
-  double range;                      ///< That was searched to either side [s].
+  double range;                      ///< Offsets from -range to +range were searched [s].
   std::optional<PairOffset> offset;  ///< None: it saw too little.
 };
 
@@ -36,6 +37,7 @@ struct Network {
   std::vector<SensorId> sensors;
   std::vector<Walker> walkers;
   std::vector<double> priors;  ///< Sigma of each clock [s].
+  std::vector<std::optional<Duration>> least_ages;
   std::vector<Measured> pairs;
   Eigen::VectorXd offsets;
   Eigen::MatrixXd covariance;
@@ -51,7 +53,7 @@ struct Network {
   static Eigen::Index at(std::size_t sensor) { return static_cast<Eigen::Index>(sensor); }
 };
 
-/// The sigma that half of the frames state at most.
+/// The median of the sigmas that the frames state.
 double prior_of(const WalkTrack& track) {
   if (track.frames.empty()) return kExact;
   std::vector<double> stated;
@@ -60,20 +62,34 @@ double prior_of(const WalkTrack& track) {
   return std::max(kExact, median(std::move(stated)));
 }
 
+/// The shortest time from a frame's capture, by its stamp, to its receipt.
+std::optional<Duration> least_age_of(const WalkTrack& track) {
+  std::optional<Duration> least;
+  for (const SensorFrame& frame : track.frames) {
+    if (frame.received == Timestamp{}) continue;
+    const Duration age = frame.received - frame.captured;
+    least = std::min(least.value_or(age), age);
+  }
+  return least;
+}
+
 /// The pairs that are worth a search, each searched.
-void measure(Network& network, const RegistrationConfig& config,
-             const std::function<bool()>& stopped) {
+void measure(Network& network, const RegistrationConfig& config, const PairSearch& search) {
   const std::vector<Walker>& walkers = network.walkers;
   for (std::size_t target = 0; target < walkers.size(); ++target) {
     for (std::size_t source = target + 1; source < walkers.size(); ++source) {
       const double sigma = std::hypot(network.priors[target], network.priors[source]);
       if (sigma < kKnown) continue;
-      if (stopped && stopped()) return;
       const double range = std::min(kMostSearched, kSearchSigmas * sigma);
-      const OffsetProfile profile(walkers[target], walkers[source], config, range);
-      network.pairs.push_back({target, source, range, profile.best()});
+      network.pairs.push_back({target, source, range, std::nullopt});
     }
   }
+  search.for_each(network.pairs.size(), [&](std::size_t i) {
+    if (search.stopped()) return;
+    Measured& pair = network.pairs[i];
+    pair.offset =
+        OffsetProfile(walkers[pair.target], walkers[pair.source], config, pair.range).best();
+  });
 }
 
 double weight_of(const Network& network, const Measured& pair) {
@@ -84,7 +100,8 @@ double weight_of(const Network& network, const Measured& pair) {
   return 1.0 / (sigma * sigma) / (1.0 + off * off);
 }
 
-/// One step of re-weighted least squares over all pairs and priors; the first has all weights.
+/// One step of re-weighted least squares over all pairs and priors; in the first step all weights
+/// are one.
 void solve(Network& network) {
   const auto size = Network::at(network.sensors.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
@@ -107,8 +124,8 @@ void solve(Network& network) {
   network.offsets = network.covariance * right;
 }
 
-/// How far the source's place moves while the offset goes through what is open of it [m]; infinite
-/// when that cannot be seen.
+/// How far the source's place moves over the offsets that remain possible [m]; infinite if that
+/// cannot be determined.
 double place_spread(const Network& network, const Measured& pair,
                     const RegistrationConfig& config) {
   const double middle = network.between(pair);
@@ -137,6 +154,22 @@ Error cannot_tell(const SensorId& target, const SensorId& source) {
                       both)};
 }
 
+/// Names the pairs whose place depends on what is open of their offset.
+void mark_open(const Network& network, const RegistrationConfig& config, const PairSearch& search,
+               WalkClocks& clocks) {
+  std::vector<double> spreads(network.pairs.size(), 0.0);
+  search.for_each(spreads.size(), [&](std::size_t i) {
+    if (!search.stopped()) spreads[i] = place_spread(network, network.pairs[i], config);
+  });
+  for (std::size_t i = 0; i < spreads.size(); ++i) {
+    if (spreads[i] <= kMaxSpread) continue;
+    const Measured& pair = network.pairs[i];
+    const SensorId& target = network.sensors[pair.target];
+    const SensorId& source = network.sensors[pair.source];
+    clocks.open.emplace(std::pair{target, source}, cannot_tell(target, source));
+  }
+}
+
 /// All offsets against the clock that is known best, of equals the first.
 std::map<SensorId, ClockOffset> against_the_best(const Network& network) {
   const auto least = std::ranges::min_element(network.priors);
@@ -145,7 +178,8 @@ std::map<SensorId, ClockOffset> against_the_best(const Network& network) {
   for (std::size_t i = 0; i < network.sensors.size(); ++i) {
     const double added = network.offsets[Network::at(i)] - network.offsets[Network::at(best)];
     offsets[network.sensors[i]] = {from_seconds(added),
-                                   from_seconds(network.sigma_between(best, i))};
+                                   from_seconds(network.sigma_between(best, i)),
+                                   from_seconds(network.priors[i]), network.least_ages[i]};
   }
   return offsets;
 }
@@ -158,7 +192,7 @@ bool all_known(const std::vector<WalkTrack>& walk) {
 }  // namespace
 
 WalkClocks clocks_of(const std::vector<WalkTrack>& walk, const RegistrationConfig& config,
-                     const std::function<bool()>& stopped) {
+                     const PairSearch& search) {
   WalkClocks clocks;
   if (config.method == PairMethod::IcpOnly || all_known(walk)) return clocks;
   Network network;
@@ -167,18 +201,13 @@ WalkClocks clocks_of(const std::vector<WalkTrack>& walk, const RegistrationConfi
     if (std::ranges::find(network.sensors, track.sensor) != network.sensors.end()) continue;
     network.sensors.push_back(track.sensor);
     network.priors.push_back(prior_of(track));
+    network.least_ages.push_back(least_age_of(track));
     network.walkers.push_back(offset_walker(track, config));
   }
-  measure(network, config, stopped);
-  for (int i = 0; i < kIterations; ++i) solve(network);
+  measure(network, config, search);
+  for (int i = 0; i < kSolveIterations; ++i) solve(network);
   clocks.offsets = against_the_best(network);
-  for (const Measured& pair : network.pairs) {
-    if (stopped && stopped()) break;
-    if (place_spread(network, pair, config) <= kMaxSpread) continue;
-    const SensorId& target = network.sensors[pair.target];
-    const SensorId& source = network.sensors[pair.source];
-    clocks.open.emplace(std::pair{target, source}, cannot_tell(target, source));
-  }
+  mark_open(network, config, search, clocks);
   return clocks;
 }
 

@@ -1,11 +1,12 @@
-// The walk by one clock: how far the sensors' clocks differ, seen from the motion.
+// Finds from the motion how far the sensors' clocks differ.
 //
 // Every pair of sensors whose clocks are not known measures their offset (offset_profile.h); what
 // each clock states about itself is the prior.  Weighted least squares over the network of all
-// pairs gives one offset per sensor.  A pair is refused when the walk leaves its place open within
-// what the network leaves open of its offset.  Derived in docs/papers/registration.md, Section 10.
+// pairs gives one offset per sensor.  A pair is refused if its place varies too much over the
+// offsets that the network does not exclude.  Derived in docs/papers/registration.md, Section 10.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -18,24 +19,33 @@ namespace chorus::registration {
 
 /// What the walk says about the clocks.
 struct WalkClocks {
-  /// For every sensor that sent frames, if some clock is not known: all against the one that is
-  /// known best.  Empty when all are known.
+  /// One for every sensor that sent frames, relative to the clock that is known best.  Empty if all
+  /// clocks are known.
   std::map<SensorId, ClockOffset> offsets;
-  /// Target and source of pairs whose place depends on an offset that the walk leaves open, and
-  /// why.
+  /// Target and source of the pairs whose place depends on an offset that the walk does not
+  /// determine, with the reason.
   std::map<std::pair<SensorId, SensorId>, Error> open;
 };
 
-/// `stopped` is asked between pairs; once it says so, the rest is not measured and the result is of
-/// no use.
+/// How the pairs are searched: they do not depend on one another.
+struct PairSearch {
+  /// Asked before each pair; once it says so, the rest is not searched, and the result is of no
+  /// use.
+  std::function<bool()> stopped = [] { return false; };
+  /// Calls work(i) for each i below `count`, in any order and on any thread.
+  std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)> for_each =
+      [](std::size_t count, const std::function<void(std::size_t)>& work) {
+        for (std::size_t i = 0; i < count; ++i) work(i);
+      };
+};
+
 [[nodiscard]] WalkClocks clocks_of(const std::vector<WalkTrack>& walk,
-                                   const RegistrationConfig& config,
-                                   const std::function<bool()>& stopped = {});
+                                   const RegistrationConfig& config, const PairSearch& search = {});
 
 /// Moves every stamp to the common clock.
 void bring_in_step(std::vector<WalkTrack>& walk, const WalkClocks& clocks);
 
-/// The same estimator, but pairs whose clocks are open are refused.
+/// The same estimator, but it refuses pairs whose clock offset is undetermined.
 [[nodiscard]] PairEstimator unless_open(PairEstimator estimate, const WalkClocks& clocks);
 
 }  // namespace chorus::registration

@@ -11,7 +11,7 @@
 namespace chorus::registration {
 
 /// A joint, or the midpoint of two.  The midpoint of a mirror pair does not depend on which side
-/// the sensor calls left, so it is not affected by exchanged sides.
+/// the sensor calls left, so it is not affected by swapped sides.
 struct Slot {
   JointId first;
   JointId second;
@@ -27,7 +27,7 @@ struct TrailFrame {
   std::array<Eigen::Vector3d, kJointCount> points;  ///< By slot; defined where `seen` has the bit.
   std::uint32_t seen = 0;
   /// At least 12 mm away from the last such frame.  While a person rests, the error of a joint
-  /// lasts, too: many frames, one measurement.
+  /// persists, too, so many frames amount to one measurement.
   bool moved = true;
 
   [[nodiscard]] bool has(std::size_t slot) const { return (seen >> slot & 1U) != 0; }

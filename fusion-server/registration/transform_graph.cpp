@@ -9,7 +9,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kEdgeFloor = 0.002;  // [m] least error per hop, however long the walk
+constexpr double kEdgeFloor = 0.002;  // [m] smallest error per hop, however long the walk
 constexpr double kLever = 2.5;        // [m] sensor to walk; the best distance of Otto Eq. (1)
 constexpr double kMinSpread = 0.01;   // [m]
 
@@ -29,14 +29,13 @@ Hop reversed(const PairwiseRegistration& edge) {
           edge_error(edge)};
 }
 
-std::vector<Hop> hops_from(const SensorId& sensor, const std::vector<PairwiseRegistration>& edges) {
-  std::vector<Hop> hops;
+/// What each sensor is joined with.
+std::map<SensorId, std::vector<Hop>> hops_of(const std::vector<PairwiseRegistration>& edges) {
+  std::map<SensorId, std::vector<Hop>> hops;
   for (const PairwiseRegistration& edge : edges) {
-    if (edge.target == sensor) {
-      hops.push_back({edge.source, edge.target_from_source, edge.covariance, edge_error(edge)});
-    } else if (edge.source == sensor) {
-      hops.push_back(reversed(edge));
-    }
+    hops[edge.target].push_back(
+        {edge.source, edge.target_from_source, edge.covariance, edge_error(edge)});
+    hops[edge.source].push_back(reversed(edge));
   }
   return hops;
 }
@@ -61,6 +60,7 @@ double edge_error(const PairwiseRegistration& edge) {
 
 std::map<SensorId, Chain> best_chains(const SensorId& master,
                                       const std::vector<PairwiseRegistration>& edges) {
+  std::map<SensorId, std::vector<Hop>> hops = hops_of(edges);
   std::map<SensorId, Chain> best;
   std::set<std::pair<double, SensorId>> open;
   best[master].sensors = {master};
@@ -69,7 +69,7 @@ std::map<SensorId, Chain> best_chains(const SensorId& master,
     const SensorId sensor = open.begin()->second;
     open.erase(open.begin());
     const Chain chain = best[sensor];
-    for (const Hop& hop : hops_from(sensor, edges)) {
+    for (const Hop& hop : hops[sensor]) {
       const auto known = best.find(hop.to);
       const double error = chain.error + hop.error;
       if (known != best.end() && known->second.error <= error) continue;

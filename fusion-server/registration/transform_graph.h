@@ -19,12 +19,12 @@ struct Chain {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// Contains reachable sensors only; the master has the identity and a chain of itself.
+/// Contains reachable sensors only; the master has the identity, and itself as its chain.
 [[nodiscard]] std::map<SensorId, Chain> best_chains(const SensorId& master,
                                                     const std::vector<PairwiseRegistration>& edges);
 
-/// Cost of an edge in the graph: rms / sqrt(inliers) plus a constant, so that of equal chains the
-/// shorter one wins [m].
+/// Cost of an edge in the graph: rms / sqrt(inliers) plus a constant, so that among equal chains
+/// the shorter one wins [m].
 [[nodiscard]] double edge_error(const PairwiseRegistration& edge);
 
 }  // namespace chorus::registration

@@ -3,11 +3,14 @@
 
 namespace chorus::registration {
 
-/// In standard deviations; gives 95 % efficiency for a Gaussian.
+/// In standard deviations; has 95 % efficiency for Gaussian errors.
 inline constexpr double kTukey = 4.685;
 
 /// Median of the norm of a 3-D standard Gaussian.
 inline constexpr double kMedianToSigma = 1.538;
+
+/// Least scale, in sigmas; avoids a division by zero for perfect pairs.
+inline constexpr double kMinScale = 0.02;
 
 /// Weight in [0, 1] of a residual; `squared_ratio` is (residual / (kTukey * scale))^2.
 [[nodiscard]] constexpr double tukey_weight(double squared_ratio) noexcept {

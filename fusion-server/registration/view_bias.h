@@ -1,13 +1,39 @@
 // What no length of walk shows about two sensors: joints lie differently in a body that is seen
-// from elsewhere (docs/papers/registration.md, Section 8).
+// from elsewhere.
+//
+// The error of a sight is, besides noise, a function of the angle phi between the way the person
+// walks and the direction to the sensor,
+//   b(phi) = c_0 + c_1 cos phi + c_2 sin phi + c_3 cos 2 phi + c_4 sin 2 phi,
+// each c of which has a part along the view, aside and upwards, and each sensor its own.  They are
+// not estimated, but considered (Schmidt 1966): with g = G c in the scores of the walk, an estimate
+// P g has the further covariance
+//   P (sum sigma^2 G G^T) P^T.
+// Where the person turns as the place changes, a walk cannot tell b from a turned sensor, and
+// P G is large; the residuals show nothing of it.  docs/papers/registration.md, Section 8.
 #pragma once
 
-#include "fusion-server/registration/adjoint.h"
+#include <optional>
+
+#include "fusion-server/registration/point_elimination.h"
 
 namespace chorus::registration {
 
-/// Covariance of (omega, tau) between two sensors, in world axes about the world's origin: 4 mm and
-/// 0.07 deg of yaw for each, at the middle of the walk.
-[[nodiscard]] Matrix6 view_bias(const Eigen::Vector3d& middle_in_world);
+/// Collects the scores that unit coefficients of the bias would cause.
+class ViewBias {
+ public:
+  explicit ViewBias(std::vector<Eigen::Vector3d> eyes);
+
+  /// One point as the adjustment counts it.  `walking`: which way the person goes there, world;
+  /// None: unknown, then only c_0 is counted.
+  void add(const PointMeasurements& measurements, const FusedPoint& fused, double weight,
+           const std::optional<Eigen::Vector3d>& walking);
+
+  /// sum sigma^2 G G^T, of (omega, tau) of every sensor.
+  [[nodiscard]] Eigen::MatrixXd scores() const;
+
+ private:
+  std::vector<Eigen::Vector3d> eyes_;     ///< Of the sensors [m].
+  std::vector<Eigen::MatrixXd> effects_;  ///< G of each sensor.
+};
 
 }  // namespace chorus::registration

@@ -7,6 +7,20 @@ using Metric = service::MetricsText::Metric;
 
 double number(std::uint64_t count) { return static_cast<double>(count); }
 
+void add_fates(service::MetricsText& out, const SensorStatus& s) {
+  const FrameFates& f = s.fates;
+  for (const auto& [fate, count] : {std::pair{"late", f.late},
+                                    {"doubled", f.doubled},
+                                    {"early", f.early},
+                                    {"backwards", f.backwards},
+                                    {"stale", f.stale},
+                                    {"clock-set-back", f.restarts}}) {
+    out.counter({"chorus_frames_untimely_total",
+                 "Frames whose time was not as it should be, by what became of them."},
+                number(count), {{"sensor", s.id.str()}, {"fate", fate}});
+  }
+}
+
 void add_sensor(service::MetricsText& out, const SensorStatus& s) {
   const service::Labels labels{{"sensor", s.id.str()}};
   out.gauge({"chorus_sensor_up", "1 while the sensor delivers frames."},
@@ -15,9 +29,9 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
     out.gauge({"chorus_frame_age_seconds", "Age of the sensor's newest frame."}, seconds(*s.age),
               labels);
   }
-  if (s.clock_offset) {
-    out.gauge({"chorus_clock_offset_seconds", "Our clock minus the sensor's."},
-              seconds(*s.clock_offset), labels);
+  if (const auto offset = total_offset(s)) {
+    out.gauge({"chorus_clock_offset_seconds", "Our clock minus the sensor's."}, seconds(*offset),
+              labels);
   }
   out.gauge({"chorus_view_weight", "Largest weight of the sensor's views."}, s.weight, labels);
   out.gauge({"chorus_sensor_share", "Fused joints of the last second the sensor contributed to."},
@@ -36,6 +50,7 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
   out.counter(
       {"chorus_frames_refused_total", "Frames that went back in time or came from the future."},
       number(s.refused), labels);
+  add_fates(out, s);
   out.counter({"chorus_poll_failures_total", "Requests without a usable answer."},
               number(s.failures), labels);
 }

@@ -74,7 +74,7 @@ RegistrationResources::RegistrationResources(service::Serving serving, Registrat
 void RegistrationResources::publish(const Registration& registration,
                                     const RegistrationProgress& progress) {
   const std::scoped_lock lock(mutex_);
-  if (progress.commands < asked_) return;  // from before what we have promised
+  if (progress.commands < asked_) return;  // older than what we have promised
   registration_ = registration;
   progress_ = progress;
   show();

@@ -1,5 +1,5 @@
-// /registration and its sessions over HTTP: GET reads, POST starts a session or moves the world's
-// origin or goes back to the registration before, DELETE forgets the registration or cancels a
+// /registration and its sessions over HTTP: GET reads, POST starts a session, moves the world's
+// origin, or goes back to the previous registration; DELETE forgets the registration or cancels a
 // session.
 #pragma once
 
@@ -19,8 +19,9 @@ namespace chorus::rest {
 inline constexpr double kMinSession = 8.0;
 inline constexpr double kMaxSession = 300.0;
 
-/// Requests by the routes to the owner of the registration; they must only be posted.  `ticket`
-/// counts the requests: RegistrationProgress::commands says how many have been carried out.
+/// Requests by the routes to the owner of the registration.  They must only post a task and return.
+/// `ticket` counts the requests: RegistrationProgress::commands says how many have been carried
+/// out.
 struct RegistrationControl {
   std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;

@@ -1,6 +1,8 @@
 #include "fusion-server/rest/sensor_resources.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "common/base/log.h"
@@ -11,6 +13,36 @@ namespace chorus::rest {
 namespace {
 
 double milliseconds_of(Duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
+
+std::array<std::pair<std::string_view, std::uint64_t>, 6> counted(const FrameFates& fates) {
+  return {{{"framesLate", fates.late},
+           {"framesDoubled", fates.doubled},
+           {"framesEarly", fates.early},
+           {"framesBackwards", fates.backwards},
+           {"framesStale", fates.stale},
+           {"clockRestarts", fates.restarts}}};
+}
+
+/// The clock of the sensor's host: by how much it is off, who told so, and what it says of itself.
+void add_clock(resource::Node& node, const SensorStatus& sensor) {
+  auto& out = node.properties;
+  const auto put = [&](const char* key, Duration value) {
+    out.emplace_back(key, resource::Decimal{milliseconds_of(value), 3});
+  };
+  if (const auto offset = total_offset(sensor)) put("clockOffsetMilliseconds", *offset);
+  if (sensor.walked_offset) {
+    put("clockUncertaintyMilliseconds", 2 * sensor.walked_sigma.value_or(Duration{0}));
+    put("clockFromWalkMilliseconds", *sensor.walked_offset);
+  } else if (sensor.clock_uncertainty) {
+    put("clockUncertaintyMilliseconds", *sensor.clock_uncertainty);
+  }
+  if (sensor.clock_uncertainty || sensor.walked_offset)
+    out.emplace_back("clockCorrected", sensor.clock_corrected || sensor.walked_offset);
+  if (!sensor.host) return;
+  out.emplace_back("hostSynchronised", sensor.host->synchronised);
+  put("hostEstimatedErrorMilliseconds", sensor.host->est_error);
+  put("hostMaximumErrorMilliseconds", sensor.host->max_error);
+}
 
 }  // namespace
 
@@ -29,17 +61,13 @@ resource::Node sensor_node(const SensorStatus& sensor, std::string id) {
   out.emplace_back("share", Decimal{sensor.share, 3});
   out.emplace_back("shareAfterwards", Decimal{sensor.share_afterwards, 3});
   out.emplace_back("awaited", Decimal{sensor.awaited, 3});
-  if (sensor.clock_offset) {
-    out.emplace_back("clockOffsetMilliseconds", Decimal{milliseconds_of(*sensor.clock_offset), 3});
-  }
-  if (sensor.clock_uncertainty) {
-    out.emplace_back("clockUncertaintyMilliseconds",
-                     Decimal{milliseconds_of(*sensor.clock_uncertainty), 3});
-    out.emplace_back("clockCorrected", sensor.clock_corrected);
-  }
+  add_clock(node, sensor);
   out.emplace_back("framesReceived", static_cast<std::int64_t>(sensor.frames));
   out.emplace_back("framesMissed", static_cast<std::int64_t>(sensor.missed));
   out.emplace_back("framesRefused", static_cast<std::int64_t>(sensor.refused));
+  for (const auto& [key, count] : counted(sensor.fates)) {
+    if (count > 0) out.emplace_back(std::string(key), static_cast<std::int64_t>(count));
+  }
   if (sensor.shift) out.emplace_back("displacedMillimetres", Decimal{to_mm(*sensor.shift), 1});
   if (!sensor.alarm.empty()) out.emplace_back("alarm", sensor.alarm);
   if (!sensor.last_error.empty()) out.emplace_back("lastError", sensor.last_error);

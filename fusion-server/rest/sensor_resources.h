@@ -28,7 +28,7 @@ class SensorResources {
   void publish(const std::vector<SensorStatus>& sensors);
   /// Publishes a frame as the sensor sent it: in its own space, by its own clock.
   void relay(const SensorId& sensor, resource::FramePtr frame);
-  /// Publishes its floor plane, in its own space; none: it has reported none.
+  /// Publishes its floor plane, in its own space; none if it has not reported any.
   void floor(const SensorId& sensor, const std::optional<FloorPlane>& floor);
 
   void add_routes(http::Router& router);

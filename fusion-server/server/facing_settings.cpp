@@ -4,7 +4,6 @@ namespace chorus::server {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 constexpr double kMaxLogOdds = 20.0;
 constexpr double kMaxRate = 100.0;   // [1/s]
@@ -69,7 +68,7 @@ void read_facing(ConfigReader reader, facing::SidesConfig& out) {
   reader.read("change_log_odds", out.change_odds, 0.0, kMaxLogOdds);
   reader.read("smoothing_s", out.smoothing, 0.0, 10.0);
   reader.read("learn_from", out.learn_from, 0.5, 1.0);
-  reader.read_s("forget_s", out.forget, milliseconds(1), seconds(60));
+  reader.read_s("forget_s", out.forget, milliseconds(1), std::chrono::seconds(60));
 }
 
 }  // namespace chorus::server

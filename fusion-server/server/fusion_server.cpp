@@ -348,8 +348,7 @@ bool FusionServer::alive() {
 
 void FusionServer::stop() {
   Impl& s = *impl_;
-  // In the order of the data: first clients can ask nothing more, then no frames arrive, then the
-  // pipeline ends.
+  // First no more requests, then no more frames, then the end of the pipeline.
   if (s.http) s.http->stop();
   if (s.poller) s.poller->stop();
   s.loop.reset();

@@ -14,7 +14,6 @@ namespace chorus::server {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 void read_noise(ConfigReader& reader, fusion::NoiseModel& out) {
   reader.read("along_m", out.along, 1e-4, 1.0);
@@ -64,27 +63,29 @@ tls::Trust read_trust(ConfigReader poll) {
 }
 
 void read_poll(ConfigReader reader, poll::PollTimings& out) {
-  reader.read_s("wait_s", out.wait, seconds(1), seconds(30));
-  reader.read_ms("answer_slack_ms", out.answer_slack, milliseconds(50), seconds(30));
-  reader.read_ms("min_interval_ms", out.min_interval, milliseconds(1), seconds(1));
-  reader.read_ms("first_backoff_ms", out.first_backoff, milliseconds(10), seconds(10));
-  reader.read_ms("max_backoff_ms", out.max_backoff, milliseconds(100), seconds(600));
+  reader.read_s("wait_s", out.wait, std::chrono::seconds(1), std::chrono::seconds(30));
+  reader.read_ms("answer_slack_ms", out.answer_slack, milliseconds(50), std::chrono::seconds(30));
+  reader.read_ms("min_interval_ms", out.min_interval, milliseconds(1), std::chrono::seconds(1));
+  reader.read_ms("first_backoff_ms", out.first_backoff, milliseconds(10), std::chrono::seconds(10));
+  reader.read_ms("max_backoff_ms", out.max_backoff, milliseconds(100), std::chrono::seconds(600));
   reader.read("stream", out.stream);
-  reader.read_s("floor_interval_s", out.floor_interval, seconds(1), seconds(3600));
+  reader.read_s("floor_interval_s", out.floor_interval, std::chrono::seconds(1),
+                std::chrono::seconds(3600));
 }
 
 void read_output(ConfigReader reader, FusionSettings& out) {
   reader.read("rate_hz", out.live.output.rate_hz, 1, 240);
   reader.read_ms("alignment_delay_ms", out.live.output.alignment_delay, milliseconds(0),
-                 seconds(2));
-  reader.read_s("history_s", out.at_start.history, seconds(1), seconds(120));
+                 std::chrono::seconds(2));
+  reader.read_s("history_s", out.at_start.history, std::chrono::seconds(1),
+                std::chrono::seconds(120));
 }
 
 void read_align(ConfigReader reader, align::AlignConfig& out) {
-  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(2));
-  reader.read_ms("patience_ms", out.patience, milliseconds(1), seconds(5));
-  reader.read_ms("unsteady_ms", out.unsteady, milliseconds(0), seconds(5));
-  reader.read_ms("slowest_ms", out.slowest, milliseconds(0), seconds(3));
+  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), std::chrono::seconds(2));
+  reader.read_ms("patience_ms", out.patience, milliseconds(1), std::chrono::seconds(5));
+  reader.read_ms("unsteady_ms", out.unsteady, milliseconds(0), std::chrono::seconds(5));
+  reader.read_ms("slowest_ms", out.slowest, milliseconds(0), std::chrono::seconds(3));
   reader.read("max_speed_m_s", out.max_speed, 0.1, 1000.0);
 }
 
@@ -104,18 +105,19 @@ void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read("cluster_m", out.cluster, 0.05, 10.0);
   reader.read("ray_cluster_m", out.ray_cluster, 0.001, 10.0);
   reader.read("confirm_frames", out.confirm_frames, 1, 1000);
-  reader.read_s("coast_s", out.coast, seconds(0), seconds(60));
-  reader.read_s("carry_s", out.carry, seconds(0), seconds(60));
-  reader.read_s("slow_down_s", out.slow_down, seconds(0), seconds(60));
-  reader.read_s("remember_s", out.remember, seconds(0), seconds(3600));
-  reader.read_s("recognise_s", out.recognise, seconds(0), seconds(60));
-  reader.read_s("question_s", out.question, seconds(0), seconds(60));
+  reader.read_s("coast_s", out.coast, std::chrono::seconds(0), std::chrono::seconds(60));
+  reader.read_s("carry_s", out.carry, std::chrono::seconds(0), std::chrono::seconds(60));
+  reader.read_s("slow_down_s", out.slow_down, std::chrono::seconds(0), std::chrono::seconds(60));
+  reader.read_s("remember_s", out.remember, std::chrono::seconds(0), std::chrono::seconds(3600));
+  reader.read_s("recognise_s", out.recognise, std::chrono::seconds(0), std::chrono::seconds(60));
+  reader.read_s("question_s", out.question, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read("merge_frames", out.merge_frames, 1, 1000);
-  reader.read_s("alone_s", out.alone, seconds(0), seconds(60));
+  reader.read_s("alone_s", out.alone, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read_deg("look_angle_deg", out.look_angle, 1.0, 90.0);
   reader.read("look_range_m", out.look_range, 0.5, 100.0);
   reader.read("max_range_m", out.bodies.max_range, 1.0, 1000.0);
-  reader.read_s("frozen_s", out.bodies.max_frozen, seconds(0), seconds(3600));
+  reader.read_s("frozen_s", out.bodies.max_frozen, std::chrono::seconds(0),
+                std::chrono::seconds(3600));
 }
 
 void read_pose_error(ConfigReader reader, fusion::PoseError& out) {
@@ -134,9 +136,10 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read_deg("turn_from_deg", out.turn_from, 0.0, 90.0);
   reader.read_deg("turn_full_deg", out.turn_full, 0.0, 90.0);
   reader.read("bone_m", out.bone, 0.0, 1.0);
-  reader.read_s("bone_memory_s", out.bone_memory, seconds(1), seconds(3600));
+  reader.read_s("bone_memory_s", out.bone_memory, std::chrono::seconds(1),
+                std::chrono::seconds(3600));
   reader.read("bias_rate_hz", out.bias_rate, 0.0, 30.0);
-  reader.read_ms("bias_memory_ms", out.bias_memory, milliseconds(1), seconds(10));
+  reader.read_ms("bias_memory_ms", out.bias_memory, milliseconds(1), std::chrono::seconds(10));
   reader.read_deg("bias_turn_deg", out.bias_turn, 1.0, 360.0);
   reader.read("pose", out.pose, 0.0, 10.0);
   reader.read("inferred_factor", out.inferred, 1.0, 100.0);
@@ -147,7 +150,7 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read("white", out.white, 1e-3, 1.0);
   reader.read("proportion", out.proportion, 0.0, 10.0);
   reader.read("agreement", out.agreement, 0.0, 10.0);
-  reader.read_ms("carry_ms", out.carry, milliseconds(0), seconds(1));
+  reader.read_ms("carry_ms", out.carry, milliseconds(0), std::chrono::seconds(1));
 }
 
 void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
@@ -159,9 +162,9 @@ void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   reader.read("zero_weight_floor", out.zero_weight_floor, 0.0, 1.0);
   reader.read("common_sigma_m", out.common_sigma, 0.0, 1.0);
   reader.read("huber", out.huber, 0.1, 100.0);
-  reader.read_ms("hysteresis_ms", out.hysteresis, milliseconds(0), seconds(10));
+  reader.read_ms("hysteresis_ms", out.hysteresis, milliseconds(0), std::chrono::seconds(10));
   reader.read("kalman_sigma_m", out.kalman_sigma, 1e-4, 1.0);
-  reader.read_ms("kalman_coast_ms", out.kalman_coast, milliseconds(0), seconds(10));
+  reader.read_ms("kalman_coast_ms", out.kalman_coast, milliseconds(0), std::chrono::seconds(10));
   reader.read("max_sigma_m", out.max_sigma, 1e-3, 100.0);
   read_pose_error(reader.child("pose_error"), out.pose_error);
   read_body(reader.child("body"), out.body);
@@ -181,7 +184,7 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read("use_floor", out.use_floor);
   reader.read("along_ratio", out.along_ratio, 1.0, 100.0);
   reader.read("adjust_together", out.adjust_together);
-  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(1));
+  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), std::chrono::seconds(1));
   reader.read("min_distance_m", out.min_distance, 0.0, 20.0);
   reader.read("max_distance_m", out.max_distance, 0.1, 50.0);
   reader.read("max_speed_m_s", out.max_speed, 0.1, 20.0);
@@ -193,7 +196,8 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read("good_rms_m", out.good_rms, 0.001, 5.0);
   reader.read("good_position_m", out.good_position, 0.001, 5.0);
   reader.read("max_position_m", out.max_position, 0.001, 5.0);
-  reader.read_s("good_duration_s", out.good_duration, seconds(1), seconds(300));
+  reader.read_s("good_duration_s", out.good_duration, std::chrono::seconds(1),
+                std::chrono::seconds(300));
 }
 
 void read_watch(ConfigReader reader, watch::WatchConfig& out) {
@@ -209,8 +213,11 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
   double target = chorus::seconds(live.session.target);
   reader.read("seconds", target, rest::kMinSession, rest::kMaxSession);
   live.session.target = from_seconds(target);
-  reader.read_s("first_solve_s", live.session.first_solve, seconds(2), seconds(60));
-  reader.read_s("solve_every_s", live.session.solve_every, seconds(1), seconds(60));
+  reader.read("target_m", live.session.target_radius, 0.0, 1.0);
+  reader.read_s("first_solve_s", live.session.first_solve, std::chrono::seconds(2),
+                std::chrono::seconds(60));
+  reader.read_s("solve_every_s", live.session.solve_every, std::chrono::seconds(1),
+                std::chrono::seconds(60));
   reader.read("file", at_start.registration_file);
   std::string master;
   reader.read("master", master);

@@ -22,8 +22,8 @@ constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
 
-/// Bounds [s]: around one frame interval, around the alignment delay, and values that should never
-/// occur.
+/// Upper bounds [s]: around one frame interval, around the alignment delay, and values that should
+/// never occur.
 const std::vector<double> kAgeBounds{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.5};
 
 std::string joined(const std::vector<std::string>& reasons) {
@@ -94,7 +94,7 @@ void PipelineLoop::turn() {
 }
 
 /// Takes the frames that have arrived, or waits for the first.  With many sensors a frame arrives
-/// every other millisecond; frames are collected, so that not each of them wakes this thread.
+/// every other millisecond, so frames are collected instead of waking this thread for each.
 void PipelineLoop::gather(Duration idle) {
   const auto since = std::chrono::steady_clock::now() - gathered_at_;
   if (since < kGathering) {
@@ -128,7 +128,8 @@ void PipelineLoop::start_session(const StartSession& wish) {
   obeyed_ = wish.ticket;
   const Timestamp now = options_.clock->now();
   const auto progress = core_.progress(now);
-  // The session that ran when the client asked may have ended; then that session is the answer.
+  // The session that ran when the client asked may have ended; then that session counts as the
+  // requested one.
   const bool over =
       wish.session < progress.next_session &&
       !(running(progress.sessions.front()) && progress.sessions.front().id == wish.session);
@@ -218,7 +219,8 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   SensorStatus status;
   status.id = report.sensor.id;
   status.url = report.sensor.url;
-  if (report.newest) status.age = now - *report.newest;
+  const auto walked = core_.walked_clock(report.sensor.id);
+  if (report.newest) status.age = now - *report.newest - (walked ? walked->added : Duration{0});
   const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
@@ -229,7 +231,10 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   status.frames = report.frames;
   status.missed = report.missed;
   status.failures = report.failures;
-  status.refused = core_.refused(report.sensor.id) + report.refused;
+  status.fates = core_.fates(report.sensor.id);
+  status.fates.early += report.early;
+  status.fates.stale += report.stale;
+  status.refused = refused(status.fates);
   const core::Share share = core_.share(report.sensor.id);
   status.share = share.in_time;
   status.share_afterwards = share.afterwards;
@@ -239,6 +244,11 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
     status.clock_uncertainty = report.clock->uncertainty;
     status.clock_corrected = correction(report.clock) != Duration{0};
   }
+  if (walked && walked->added != Duration{0}) {
+    status.walked_offset = walked->added;
+    status.walked_sigma = walked->sigma;
+  }
+  status.host = report.host;
   const auto& reports = core_.reports();
   const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {
     return r.sensor == report.sensor.id;
@@ -250,7 +260,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   return status;
 }
 
-/// Stores that a sensor has lost its place, and says so; the sensor needs another one.
+/// Stores and logs that a sensor has lost its place.
 void PipelineLoop::note_displaced() {
   if (core_.displaced() == displaced_) return;
   displaced_ = core_.displaced();

@@ -1,7 +1,7 @@
 // Passes the fusion server's data to the current recording, if there is one.
 //
-// It does not wait, encode or access the disk: the recorder does that on its own thread, and counts
-// what it has to drop (common/record/recorder.h).
+// It does not wait, encode or access the disk.  The recorder does that on its own thread, and
+// counts what it has to drop (common/record/recorder.h).
 #pragma once
 
 #include <memory>

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
 
 namespace chorus::server {
@@ -63,10 +64,8 @@ void on_all_cores(std::size_t count, const Work& work) {
 
 std::vector<Pair> pairs_of(const std::map<SensorId, Walker>& walkers) {
   std::vector<Pair> pairs;
-  for (auto target = walkers.begin(); target != walkers.end(); ++target) {
-    for (auto source = std::next(target); source != walkers.end(); ++source)
-      pairs.push_back({&target->second, &source->second, std::nullopt});
-  }
+  for (const auto& [target, source] : registration::partners_of(walkers))
+    pairs.push_back({&walkers.at(target), &walkers.at(source), std::nullopt});
   return pairs;
 }
 
@@ -82,8 +81,10 @@ std::map<SensorId, Walker> walkers_of(const std::vector<WalkTrack>& walk,
 
 Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
   std::vector<WalkTrack> walk = core::assembled(job.walk);
-  const registration::WalkClocks clocks =
-      registration::clocks_of(walk, job.config, [&] { return job.stop.stop_requested(); });
+  const registration::PairSearch search{
+      [&] { return job.stop.stop_requested(); },
+      [](std::size_t count, const auto& work) { on_all_cores(count, work); }};
+  const registration::WalkClocks clocks = registration::clocks_of(walk, job.config, search);
   registration::bring_in_step(walk, clocks);
   const auto walkers = walkers_of(walk, job.config);
   std::vector<Pair> pairs = pairs_of(walkers);
@@ -99,8 +100,8 @@ Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
     if (found != solved.end() && found->second->edge) return *found->second->edge;
     return Result<PairwiseRegistration>(fail(ErrorCode::Unavailable, "registration", "given up"));
   };
-  Registration found =
-      registration::solve_with(registration::unless_open(look_up, clocks), walk, now, job.config);
+  Registration found = registration::solve_with(registration::unless_open(look_up, clocks), walk,
+                                                now, job.config, stopped);
   found.clocks = clocks.offsets;
   return found;
 }

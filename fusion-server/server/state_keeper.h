@@ -18,13 +18,13 @@ namespace chorus::server {
 
 class StateKeeper {
  public:
-  /// `trouble`: an error that is known already (the folder cannot be used); empty if there is none.
+  /// `trouble`: an error that is already known (the folder cannot be used); empty if there is none.
   StateKeeper(RegistrationStore store, std::string trouble);
 
   void keep(Worker& worker, const Registration& registration,
             const std::optional<Registration>& earlier = {});
   void forget(Worker& worker);
-  /// Notes that person ids from `next` on are free; may be called repeatedly.
+  /// Notes that person ids are free from `next` on; may be called repeatedly.
   void people(Worker& worker, std::uint64_t next);
 
   [[nodiscard]] StorageStatus status() const;

@@ -28,7 +28,7 @@ class SharedSegment {
  private:
   explicit SharedSegment(int held) : held_(held) {}
 
-  int held_;  ///< Tells other Chorus programs that the key is in use.
+  int held_;  ///< Shows other Chorus programs that the key is in use.
   int id_ = -1;
   std::span<char> bytes_;
 };

@@ -19,7 +19,8 @@
 namespace chorus::vrpn {
 
 struct GateLimits {
-  std::size_t most_under_way = 32;  ///< Most connections being established at the same time.
+  /// Largest number of connections being established at the same time.
+  std::size_t most_under_way = 32;
   net::Allowance all{32.0, 64.0};
   std::size_t most_of_source = 8;  ///< The same for one address.
   net::Allowance source{16.0, 32.0};

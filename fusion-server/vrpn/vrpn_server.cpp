@@ -21,7 +21,7 @@ using net::udp;
 constexpr std::chrono::milliseconds kSweepInterval{250};
 constexpr std::chrono::milliseconds kConnectTime{2000};
 constexpr int kPortAttempts = 16;
-constexpr std::size_t kMaxRequest = 512;
+constexpr std::size_t kRequestBuffer = 512;
 
 /// The address as clients write it: IPv4 in dotted form, even if it comes from an IPv6 socket.
 std::string text_of(const asio::ip::address& address) {
@@ -82,7 +82,7 @@ struct Server::Impl {
   RateReport turned_away{"VRPN client turned away"};
   ServerCounters counters;
   RequestGate gate;
-  std::array<char, kMaxRequest> request{};
+  std::array<char, kRequestBuffer> request{};
   udp::endpoint requester;
   std::vector<std::shared_ptr<Attempt>> attempts;
   std::unordered_map<const Connection*, Client> clients;

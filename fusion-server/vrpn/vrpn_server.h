@@ -18,7 +18,7 @@ struct ServerOptions {
   std::uint16_t port = 3883;  ///< For TCP and UDP; 0: any port that is free for both.
   net::AllowList allow = {};  ///< Hosts that are served.
   std::size_t max_clients = 128;
-  std::size_t max_clients_per_address = 64;  ///< So that one host cannot take all places.
+  std::size_t max_clients_per_address = 64;  ///< Limited, so that one host cannot take all places.
   ClientLimits limits = {};
   std::shared_ptr<const Clock> clock;  ///< Gives the time in answers to pings.
 };
@@ -35,7 +35,7 @@ class Server {
   /// Sends the reports to all clients.  Never waits: if the next frame comes before this one was
   /// taken, this one is dropped and counted.  Always call it from the same thread.
   void publish(std::shared_ptr<const Reports> reports);
-  /// The counters dropped, failed, refused, clients.  May be called from any thread.
+  /// Only `dropped`, `failed`, `refused` and `clients` are counted.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A joint, or the mid-point of a mirror pair, and what it weighs.
+/// A joint, or the midpoint of a mirror pair, and its weight.
 struct Point {
   JointId first;
   JointId second;
@@ -54,7 +54,7 @@ double middle(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Coordinate by coordinate.  There must be at least one point.
+/// The median of each coordinate.  There must be at least one point.
 Vector3d middle(const std::vector<Vector3d>& points) {
   Vector3d out;
   for (int axis = 0; axis < 3; ++axis) {
@@ -65,7 +65,8 @@ Vector3d middle(const std::vector<Vector3d>& points) {
   return out;
 }
 
-/// Where the person's front points, horizontally, from all views; zero if none shows the shoulders.
+/// Horizontal direction in which the person faces, from all views; zero if none shows the
+/// shoulders.
 Vector3d front_of(const Person& person) {
   Vector3d across = Vector3d::Zero();
   for (const SensorView& view : person.views) {
@@ -97,7 +98,7 @@ std::optional<Vector3d> apart_from(const std::vector<Points>& views, std::size_t
   return sum / weight;
 }
 
-/// Turns a difference in world space into one along the axes of Residual.
+/// Converts a difference in world space to the axes of Residual.
 Residual seen_from(const SensorView& view, const Vector3d& place, const Vector3d& front,
                    const Vector3d& apart) {
   Vector3d way = place - view.eye;
@@ -135,7 +136,7 @@ std::optional<Vector3d> middle_of(const Person& person) {
 
 Person seen_clearly(const Person& person, const std::vector<Vector3d>& others) {
   constexpr double kNear = 1.0;   // [m]
-  constexpr double kClose = 0.3;  // [rad]; at 3 m about a body's width to each side
+  constexpr double kClose = 0.3;  // [rad]; at 3 m, about a body's width to each side
   Person out = person;
   const auto place = middle_of(person);
   if (!place) return out;

@@ -1,4 +1,4 @@
-// How far from where the other sensors see a person one sensor sees them.
+// The distance between where one sensor and the other sensors see the same person.
 #pragma once
 
 #include <set>
@@ -13,25 +13,25 @@ namespace chorus::watch {
 /// One sensor, one person, one instant.
 struct Residual {
   SensorId sensor;
-  std::set<SensorId> others;  ///< They saw the person too.
-  /// This sensor's view minus that of the others, mean over the body [m], along the axes: away
-  /// from this sensor, horizontally; across that, +y turned towards it (up x away); up.
+  std::set<SensorId> others;  ///< The other sensors that saw the person.
+  /// This sensor's view minus that of the others, mean over the body [m], along three axes:
+  /// horizontally away from this sensor; horizontally across that (up x away); up.
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();
   double distance = 0.0;   ///< From the sensor to the person, horizontally [m].
   double direction = 0.0;  ///< The same as an angle: atan2(x, z) in world [rad].
-  double front = 0.0;      ///< From the direction to the sensor to the person's front [rad].
+  double front = 0.0;      ///< Angle from the direction to the sensor to the person's front [rad].
 };
 
 /// The middle of a person's trunk, median over the views; none if no view shows it.
 [[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const Person& person);
 
-/// The person with those views only in which nobody else stands near them or near the line of
-/// sight: a sensor mixes up people who hide one another.  `others`: the middles of all other
-/// people.
+/// The person with only those views in which nobody else stands near them or near the line of
+/// sight, because a sensor mixes up people who hide one another.  `others`: the middles of all
+/// other people.
 [[nodiscard]] Person seen_clearly(const Person& person, const std::vector<Eigen::Vector3d>& others);
 
 /// One residual for each sensor that sees the trunk of this person together with another sensor.
-/// Uses points that exchanging left and right does not affect; rays are left out.
+/// Uses points that swapping left and right does not affect; rays are left out.
 [[nodiscard]] std::vector<Residual> residuals_of(const Person& person);
 
 }  // namespace chorus::watch

@@ -9,20 +9,21 @@
 namespace chorus::watch {
 namespace {
 
-/// How far means of windows scatter before any was seen [m], and the number of them this counts as.
+/// Prior standard deviation of window means [m], and the number of windows that it counts as.
 constexpr double kFirstSigma = 0.010;
 constexpr double kFirstWeight = 60.0;
-/// Scatter is remembered for about so many blocks, half an hour of walking.
+/// Scatter is remembered for about this many blocks, half an hour of walking.
 constexpr double kMostWeight = 3600.0;
 
-/// A block that is farther off than this counts as this far [m].
+/// A block that is farther off than this counts as being this far off [m].
 constexpr double kMostNews = 0.1;
 /// Part of the shift that each half of a window must show.
 constexpr double kLasting = 0.5;
 
 struct Mean {
   Eigen::Vector3d news = Eigen::Vector3d::Zero();
-  Eigen::Vector3d limited = Eigen::Vector3d::Zero();  ///< The same of blocks cut to kMostNews.
+  /// The same, with each block limited to kMostNews.
+  Eigen::Vector3d limited = Eigen::Vector3d::Zero();
   Rows rows = Rows::Zero();
   std::set<SensorId> others;
 };
@@ -45,7 +46,7 @@ Mean mean_of(Blocks begin, Blocks end, const StandingError& usual) {
   return mean;
 }
 
-/// Whether both halves are shifted the same way.
+/// True if both halves are shifted in the same direction.
 bool lasts(Blocks begin, Blocks end, const StandingError& usual, const Eigen::Vector3d& shift) {
   const auto middle = begin + (end - begin) / 2;
   const double whole = shift.squaredNorm();
@@ -74,7 +75,7 @@ Shift ShiftTest::test(const std::deque<Block>& recent, const StandingError& usua
     const double sigmas = std::sqrt(std::max(0.0, e.dot(spread.ldlt().solve(e))));
     if (sigmas < learn_below) {
       const double keep = std::min(1.0, kMostWeight / (scatter.weight + 1.0));
-      // Only this part of it is the scatter's; the rest is that of not knowing the usual error.
+      // Only this part is due to scatter; the rest is the uncertainty of the usual error.
       const double part = own.trace() / spread.trace();
       scatter.squares = keep * (scatter.squares + part * e * e.transpose());
       scatter.weight = keep * (scatter.weight + 1.0);

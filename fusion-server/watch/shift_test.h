@@ -1,4 +1,4 @@
-// Whether the last seconds of a sensor's residuals differ from what is usual for it.
+// Tests whether a sensor's residuals of the last seconds differ from what is usual for it.
 //
 // For each of several window lengths the mean of the last blocks is compared with how such means
 // have scattered so far; nothing is assumed about how long errors last (docs/papers/watch.md (2)).
@@ -18,9 +18,9 @@ inline constexpr std::size_t kLongestWindow = kWindows.back();
 struct Shift {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Beyond the usual [m]; axes of Residual.
   double sigmas = 0.0;                             ///< Mahalanobis distance of `mean`.
-  bool lasting = false;                            ///< In both halves of the window alike.
-  Timestamp since;                                 ///< Begin of the window.
-  std::set<SensorId> others;                       ///< Those that it was compared with.
+  bool lasting = false;                            ///< True if both halves of the window show it.
+  Timestamp since;                                 ///< Beginning of the window.
+  std::set<SensorId> others;                       ///< The sensors that it was compared with.
 };
 
 class ShiftTest {

@@ -9,7 +9,7 @@
 namespace chorus::watch {
 namespace {
 
-/// Standard deviations before anything was seen: what a registration errs by, and a tracker.
+/// Prior standard deviations: the usual errors of a registration and of a tracker.
 Parameters first_sigmas() {
   constexpr double kYaw = deg(0.6);
   constexpr double kPlace = 0.025;
@@ -28,7 +28,7 @@ Parameters steps() {
   return sigmas;
 }
 
-// Of a block's mean [m]; wide, because errors last longer than a block.
+// Standard deviation of a block's mean [m]; wide, because errors last longer than a block.
 constexpr double kBlockSigma = 0.018;
 constexpr double kOutlier = 3.0;  // [sigma]
 

@@ -1,5 +1,5 @@
-// What one sensor is always off by: the error of its registered place, and the errors of tracking
-// that depend on how a person stands to it.
+// The constant error of one sensor: that of its registered place, and the errors of tracking that
+// depend on a person's orientation towards it.
 //
 // A Kalman filter over ten numbers that change slowly (docs/papers/watch.md (1)):
 //   away   = x sin d + z cos d + a0 + a1 cos f + a2 cos 2f
@@ -16,7 +16,8 @@ namespace chorus::watch {
 
 /// Order: yaw [rad]; x, y, z [m]; a0, a1, a2; b1, b2; c1 [m].
 inline constexpr int kParameters = 10;
-inline constexpr int kRigid = 4;  ///< The first four are the place; the others are the tracker's.
+/// The first four are errors of the place, the others of the tracker.
+inline constexpr int kRigid = 4;
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Rows = Eigen::Matrix<double, 3, kParameters>;
 
@@ -41,11 +42,11 @@ class StandingError {
   [[nodiscard]] Eigen::Vector3d news(const Block& block) const {
     return block.apart - block.rows * state_;
   }
-  /// Covariance of what the usual error is at these rows.
+  /// Covariance of the usual error at these rows.
   [[nodiscard]] Eigen::Matrix3d uncertainty(const Rows& rows) const {
     return rows * covariance_ * rows.transpose();
   }
-  /// What the place alone is off by, as seen at these rows: mean and covariance.
+  /// The error of the place alone at these rows: mean and covariance.
   [[nodiscard]] Eigen::Vector3d of_place(const Rows& rows) const;
   [[nodiscard]] Eigen::Matrix3d uncertainty_of_place(const Rows& rows) const;
 

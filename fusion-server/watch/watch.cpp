@@ -9,14 +9,15 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Duration kEvery = milliseconds(90);    // errors of the next frame are much the same
+constexpr Duration kEvery = milliseconds(90);    // successive frames have nearly the same errors
 constexpr Duration kBlock = milliseconds(500);   // length of a block
 constexpr Duration kStale = milliseconds(1500);  // a block that takes longer is given up
 constexpr std::size_t kLeast = 3;                // residuals in a block
-constexpr Duration kBreak = milliseconds(400);   // a person unseen for longer begins anew
+constexpr Duration kBreak = milliseconds(400);   // after a longer gap, a person starts over
 constexpr double kSmoothing = 0.5;               // [s]
 constexpr double kWalking = 0.25;                // [m/s]
-/// A sensor that was moved itself also pulls what the others are compared with.
+/// The largest shift must exceed the others by this factor, because a moved sensor also shifts what
+/// the others are compared with.
 constexpr double kClearly = 1.3;
 
 Block block_of(const std::vector<Residual>& residuals, Timestamp began) {
@@ -67,7 +68,7 @@ bool Watch::walks(const Person& person, Timestamp instant) {
     walker = {*middle, instant};
     return false;
   }
-  // A person at constant speed v is v * kSmoothing ahead of their smoothed place.
+  // A person at constant speed v is v * kSmoothing ahead of their smoothed position.
   Eigen::Vector3d ahead = *middle - walker.smoothed;
   walker.smoothed += (1.0 - std::exp(-seconds(passed) / kSmoothing)) * ahead;
   walker.seen = instant;

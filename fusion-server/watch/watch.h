@@ -1,7 +1,8 @@
-// Notices that a sensor was moved, from where it sees people in everyday use beside the others.
+// Detects that a sensor was moved, by comparing where it and the other sensors see people in
+// everyday use.
 //
 // Pure: views of people go in, instant by instant; findings come out.  Only people who walk count:
-// the error of somebody who stands still lasts, and tells nothing new.
+// the error of somebody who stands still is constant and contains nothing new.
 #pragma once
 
 #include <deque>
@@ -20,7 +21,7 @@ struct Finding {
   /// Only these two saw people together: one of them was moved, and it cannot be told which.
   std::optional<SensorId> or_else;
   double shift = 0.0;    ///< Distance between where it and where the others see people [m].
-  bool drifted = false;  ///< It has been so for minutes; else it began lately.
+  bool drifted = false;  ///< True if it has lasted for minutes, false if it began recently.
   Timestamp since;       ///< When it began, or was first certain.
 };
 
@@ -31,22 +32,24 @@ class Watch {
 
   /// The sensor that stands out most at present; none when none does.
   [[nodiscard]] std::optional<Finding> finding() const;
-  /// How far from the others this sensor sees people now, beyond what is usual for it [m]; none
-  /// until somebody has walked for a while.
+  /// Distance between where this sensor and the others see the same people now, less what is usual
+  /// for this sensor [m]; none until somebody has walked for a while.
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const;
 
-  /// Forgets all that is usual: it was learned beside sensors of which one has another place now.
+  /// Forgets what is usual for each sensor.  Call this when a sensor has a new place, because it
+  /// was learned relative to that sensor, too.
   void forget();
 
  private:
   struct Watched {
-    std::vector<Residual> open;  ///< Of the block that is being filled.
+    std::vector<Residual> open;  ///< Residuals of the block that is being filled.
     Timestamp began;
-    std::deque<Block> recent;  ///< Not yet learned from, so that a shift is compared with before.
+    /// Not yet learned from, so that a shift is compared with the time before it.
+    std::deque<Block> recent;
     StandingError usual;
     ShiftTest test;
     Shift shift;
-    double drift = 0.0;  ///< Of the place alone [m]; 0: not significant.
+    double drift = 0.0;  ///< Error of the place alone [m]; 0: not significant.
   };
   struct Walker {
     Eigen::Vector3d smoothed = Eigen::Vector3d::Zero();

@@ -7,7 +7,7 @@ struct WatchConfig {
   bool enabled = false;
   /// People must appear displaced by this much before a sensor counts as moved [m] ...
   double least_shift = 0.03;
-  /// ... and by so many standard deviations of what is usual for that sensor.
+  /// ... and by this many standard deviations of what is usual for that sensor.
   double least_sigmas = 6.0;
   /// A place that is off by this much for minutes counts as drifted [m].
   double least_drift = 0.06;

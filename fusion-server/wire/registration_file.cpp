@@ -23,8 +23,11 @@ constexpr double kMaxPlace = 1000.0;    // [m]
 constexpr double kMaxNormError = 0.01;  // Tolerates quaternions that were rounded to a few digits.
 constexpr const char* kClockOffset = "clockOffsetMilliseconds";
 constexpr const char* kClockUncertainty = "clockUncertaintyMilliseconds";
+constexpr const char* kClockStated = "clockStatedMilliseconds";
+constexpr const char* kClockLeastAge = "clockLeastAgeMilliseconds";
 constexpr double kMillisecond = 1e3;
 constexpr double kMaxClockOffset = 4e3;  // [ms]
+constexpr double kMaxClockAge = 60e3;    // [ms]
 
 Error wrong(std::string where, std::string what) {
   return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
@@ -53,6 +56,8 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
           {"rotation", std::move(rotation)},
           {"error", place.error},
           {"chain", names_of(place.chain)},
+          {"nextChain", names_of(place.next_chain)},
+          {"nextError", place.next_error},
           {"covariance", std::move(covariance)}};
 }
 
@@ -90,16 +95,17 @@ Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) 
   return pose;
 }
 
-Result<std::vector<SensorId>> ids_of(const json& object, const std::string& where) {
+Result<std::vector<SensorId>> ids_of(const json& object, const std::string& where,
+                                     const std::string& key) {
   std::vector<SensorId> ids;
-  const auto it = object.find("chain");
+  const auto it = object.find(key);
   if (it == object.end()) return ids;
   if (!it->is_array() || it->size() > kMaxSensors) {
-    return tl::unexpected(wrong(where + ".chain", "a list of sensor names is wanted"));
+    return tl::unexpected(wrong(where + "." + key, "a list of sensor names is wanted"));
   }
   for (const json& entry : *it) {
     auto id = SensorId::parse(entry.is_string() ? entry.get<std::string>() : "");
-    if (!id) return tl::unexpected(wrong(where + ".chain", id.error().message));
+    if (!id) return tl::unexpected(wrong(where + "." + key, id.error().message));
     ids.push_back(std::move(*id));
   }
   return ids;
@@ -161,12 +167,18 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   if (!pose) return pass(pose);
   if (auto ok = read_rotation(object, where, *pose); !ok) return pass(ok);
   out.world_from_sensor = *pose;
-  auto chain = ids_of(object, where);
+  auto chain = ids_of(object, where, "chain");
   if (!chain) return pass(chain);
   out.chain = std::move(*chain);
+  auto next = ids_of(object, where, "nextChain");
+  if (!next) return pass(next);
+  out.next_chain = std::move(*next);
   const auto error = number(object, where, "error", kMaxPlace, 0.0);
+  const auto next_error = number(object, where, "nextError", kMaxPlace, 0.0);
   if (!error) return pass(error);
+  if (!next_error) return pass(next_error);
   out.error = *error;
+  out.next_error = *next_error;
   if (auto ok = read_matrix(object, where, "covariance", out.covariance); !ok) return pass(ok);
   return out;
 }
@@ -179,14 +191,36 @@ Result<void> read_clock(const json& object, const std::string& where, const Sens
   const auto sigma = number(object, where, kClockUncertainty, kMaxClockOffset, 0.0);
   if (!added) return pass(added);
   if (!sigma) return pass(sigma);
-  out.clocks[sensor] = {from_seconds(*added / kMillisecond),
-                        from_seconds(std::abs(*sigma) / kMillisecond)};
+  ClockOffset& clock = out.clocks[sensor];
+  clock.added = from_seconds(*added / kMillisecond);
+  clock.sigma = from_seconds(std::abs(*sigma) / kMillisecond);
+  const double unknown = kMillisecond * kUnknownClock;
+  const auto stated = number(object, where, kClockStated, kMaxClockOffset, unknown);
+  if (!stated) return pass(stated);
+  clock.stated = from_seconds(std::abs(*stated) / kMillisecond);
+  if (!object.contains(kClockLeastAge)) return {};
+  const auto age = number(object, where, kClockLeastAge, kMaxClockAge);
+  if (!age) return pass(age);
+  clock.least_age = from_seconds(*age / kMillisecond);
   return {};
 }
 
 void add_clock(json& object, const ClockOffset& clock) {
   object[kClockOffset] = kMillisecond * seconds(clock.added);
   object[kClockUncertainty] = kMillisecond * seconds(clock.sigma);
+  object[kClockStated] = kMillisecond * seconds(clock.stated);
+  if (clock.least_age) object[kClockLeastAge] = kMillisecond * seconds(*clock.least_age);
+}
+
+json edge_json(const PairwiseRegistration& edge) {
+  json object{{"target", edge.target.str()},
+              {"source", edge.source.str()},
+              {"rms", edge.rms},
+              {"pairs", edge.pairs},
+              {"inliers", edge.inliers}};
+  if (edge.apart) object["apart"] = *edge.apart;
+  if (edge.loop) object["loopError"] = *edge.loop;
+  return object;
 }
 
 Result<PairwiseRegistration> edge_of(const json& object) {
@@ -204,6 +238,12 @@ Result<PairwiseRegistration> edge_of(const json& object) {
   if (!rms) return pass(rms);
   if (!pairs) return pass(pairs);
   if (!inliers) return pass(inliers);
+  for (const auto& [key, out] : {std::pair{"apart", &edge.apart}, {"loopError", &edge.loop}}) {
+    if (!object.contains(key)) continue;
+    const auto value = number(object, "edges", key, kMaxPlace);
+    if (!value) return pass(value);
+    *out = *value;
+  }
   edge.rms = *rms;
   edge.pairs = static_cast<std::size_t>(std::max(0.0, *pairs));
   edge.inliers = static_cast<std::size_t>(std::max(0.0, *inliers));
@@ -314,11 +354,7 @@ std::string write_registration(const Registration& registration) {
   }
   json edges = json::array();
   for (const PairwiseRegistration& edge : registration.edges) {
-    edges.push_back({{"target", edge.target.str()},
-                     {"source", edge.source.str()},
-                     {"rms", edge.rms},
-                     {"pairs", edge.pairs},
-                     {"inliers", edge.inliers}});
+    edges.push_back(edge_json(edge));
   }
   const json root{{"@type", "Registration"},
                   {"version", registration.version},

@@ -1,6 +1,7 @@
 #include "fusion-server/wire/registration_nodes.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace chorus::wire {
@@ -48,6 +49,10 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   put("qw", q.w(), kRotationDigits);
   put("error", place.error, kPlaceDigits);
   node.properties.emplace_back("chain", names_of(place.chain));
+  if (!place.next_chain.empty()) {
+    node.properties.emplace_back("nextChain", names_of(place.next_chain));
+    put("nextError", place.next_error, kPlaceDigits);
+  }
   if (!place.covariance.isZero(0.0))  // All zero means that the covariance is unknown.
     node.properties.emplace_back("covariance", decimals_of(place.covariance));
   return node;
@@ -58,9 +63,9 @@ void add_clock(Node& node, const Registration& registration, const SensorId& id)
   const auto clock = registration.clocks.find(id);
   if (clock == registration.clocks.end()) return;
   constexpr int kDigits = 3;
-  constexpr double kMillisecond = 1e3;
+  constexpr double kPerSecond = 1e3;
   const auto put = [&](const char* key, Duration value) {
-    node.properties.emplace_back(key, Decimal{kMillisecond * seconds(value), kDigits});
+    node.properties.emplace_back(key, Decimal{kPerSecond * seconds(value), kDigits});
   };
   put("clockOffsetMilliseconds", clock->second.added);
   put("clockUncertaintyMilliseconds", clock->second.sigma);
@@ -68,13 +73,16 @@ void add_clock(Node& node, const Registration& registration, const SensorId& id)
 
 Node edge_node(const PairwiseRegistration& edge) {
   constexpr int kDigits = 4;
-  return {"_",
-          {"RegistrationEdge"},
-          {{"target", edge.target.str()},
-           {"source", edge.source.str()},
-           {"rms", Decimal{edge.rms, kDigits}},
-           {"pairs", static_cast<std::int64_t>(edge.pairs)},
-           {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
+  Node node{"_",
+            {"RegistrationEdge"},
+            {{"target", edge.target.str()},
+             {"source", edge.source.str()},
+             {"rms", Decimal{edge.rms, kDigits}},
+             {"pairs", static_cast<std::int64_t>(edge.pairs)},
+             {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
+  if (edge.apart) node.properties.emplace_back("apart", Decimal{*edge.apart, kDigits});
+  if (edge.loop) node.properties.emplace_back("loopError", Decimal{*edge.loop, kDigits});
+  return node;
 }
 
 /// The newest session; its state is "idle" unless it is running.
@@ -95,6 +103,13 @@ Node newest_session(const RegistrationProgress& progress) {
   return node;
 }
 
+/// The last few sessions, newest first.
+std::vector<resource::Ref> session_refs(const RegistrationProgress& progress) {
+  std::vector<resource::Ref> refs;
+  for (const SessionStatus& session : progress.sessions) refs.push_back({session_path(session.id)});
+  return refs;
+}
+
 /// What each two sensors saw together.
 std::vector<Node> pair_nodes(const SessionStatus& session) {
   constexpr int kDigits = 3;
@@ -107,6 +122,19 @@ std::vector<Node> pair_nodes(const SessionStatus& session) {
                       {"sightings", static_cast<std::int64_t>(pair.sightings)},
                       {"spread", Decimal{pair.spread, kDigits}},
                       {"expectedRadius", Decimal{pair.expected, kDigits}}}});
+  }
+  return nodes;
+}
+
+/// How well the walk places each sensor so far.
+std::vector<Node> accuracy_nodes(const SessionStatus& session) {
+  constexpr int kDigits = 3;
+  std::vector<Node> nodes;
+  for (const SensorAccuracy& own : session.accuracy) {
+    Node node{"_", {"SensorAccuracy"}, {{"sensorId", own.sensor.str()}}};
+    if (own.radius && std::isfinite(*own.radius))
+      node.properties.emplace_back("expectedRadius", Decimal{*own.radius, kDigits});
+    nodes.push_back(std::move(node));
   }
   return nodes;
 }
@@ -135,7 +163,7 @@ void add_storage(Node& node, const StorageStatus& storage) {
                                    : storage.trouble);
 }
 
-/// What an undo goes back to.
+/// The registration that an undo goes back to.
 Node earlier_node(const Registration& registration) {
   return {"_",
           {"EarlierRegistration"},
@@ -211,6 +239,12 @@ Node session_node(const SessionStatus& session, const std::vector<std::string>& 
   out.emplace_back("adopted", session.adopted);
   out.emplace_back("reasons", session.reasons);
   if (running(session)) out.emplace_back("awaits", awaits);
+  if (session.target_radius > 0) {
+    constexpr int kRadiusDigits = 3;
+    out.emplace_back("targetRadius", Decimal{session.target_radius, kRadiusDigits});
+    out.emplace_back("targetReached", session.reached);
+  }
+  out.emplace_back("accuracy", accuracy_nodes(session));
   out.emplace_back("coverage", pair_nodes(session));
   out.emplace_back("floorCells", cell_nodes(session));
   out.emplace_back("registration", resource::Ref{"/registration"});
@@ -231,6 +265,7 @@ Node registration_node(const Registration& registration, const RegistrationProgr
   if (progress.earlier) node.properties.emplace_back("earlier", earlier_node(*progress.earlier));
   add_storage(node, progress.storage);
   node.properties.emplace_back("session", newest_session(progress));
+  node.properties.emplace_back("sessions", session_refs(progress));
   std::vector<Node> sensors;
   for (const auto& [id, place] : registration.sensors) {
     sensors.push_back(sensor_node(id, place));

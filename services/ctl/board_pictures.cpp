@@ -28,7 +28,7 @@ bool is_photo(const fs::path& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-/// Folders replaced by the photos in them, in the order of their names.
+/// The sources, with each folder replaced by the photos in it, ordered by name.
 Result<std::vector<std::string>> files_of(const std::vector<std::string>& sources) {
   std::vector<std::string> files;
   for (const std::string& source : sources) {

@@ -16,20 +16,20 @@ struct BoardSearch {
   /// Photos, folders of photos, videos, and cameras as chorus-sensor names them (/dev/video0).
   std::vector<std::string> sources;
   calibration::Board board;
-  double seconds = 60.0;  ///< How long a camera or a stream is watched.
-  /// What is done so far, [0, 1], and what has been found.
+  double seconds = 60.0;  ///< How long a camera or a stream is recorded.
+  /// Called with the share of the work that is done, [0, 1], and with what has been found.
   std::function<void(double share, std::string_view remark)> progress = {};
 };
 
 struct BoardViews {
   std::vector<calibration::View> views;
   calibration::PictureSize size;
-  std::size_t pictures = 0;        ///< Looked at.
-  std::vector<std::string> notes;  ///< What was left out, and why.
+  std::size_t pictures = 0;        ///< Number of pictures examined.
+  std::vector<std::string> notes;  ///< What was left out and why.
 };
 
 /// Every photo, and four pictures a second of a video or camera.  An error when nothing can be read
-/// at all; a damaged photo, or one of another size than the first, is left out with a note.
+/// at all.  A damaged photo, or one whose size differs from the first, is left out with a note.
 [[nodiscard]] Result<BoardViews> look_for_board(const BoardSearch& search);
 
 }  // namespace chorus::ctl

@@ -1,4 +1,5 @@
-// chorus calibrate camera: the lens of a camera from pictures of a board, or from what is known.
+// chorus calibrate camera: measures the lens of a camera from pictures of a board, or writes one
+// from known data.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -29,10 +30,11 @@ using calibration::Board;
 using calibration::Calibration;
 using calibration::PictureSize;
 
-constexpr std::size_t kMostViews = 40;  // more cost time and hardly improve the lens
+constexpr std::size_t kMostViews = 40;  // more take longer and hardly improve the lens
 constexpr std::uintmax_t kMaxPhoto = 1u << 28;
 constexpr double kMarkerShare = 0.75;  // of a square
-constexpr double kPhotoSigma = 0.04;   // Exif rounds to millimetres, and videos are cropped
+// Relative; Exif rounds to millimetres, and videos are cropped.
+constexpr double kPhotoSigma = 0.04;
 
 struct CalibrateArguments {
   std::vector<std::string> sources;
@@ -96,7 +98,7 @@ Result<int> print_board(const CalibrateArguments& arguments) {
   return kExitOk;
 }
 
-/// Writes a lens that was not measured.
+/// Writes a lens from known data, without measuring.
 Result<int> write_known(const CalibrateArguments& arguments, const camera::Lens& lens) {
   const std::string text = calibration::intrinsics_json(lens.camera, lens.focal_sigma);
   if (const auto ok = write_text(arguments.out, text); !ok) return pass(ok);
@@ -141,7 +143,8 @@ std::string coverage_file(const std::string& out) {
   return std::filesystem::path(out).replace_extension(".coverage.png").string();
 }
 
-/// The picture is written even for a set that is refused, because it shows where views are missing.
+/// Writes the coverage picture even when the views are refused, because it shows where views are
+/// missing.
 Result<void> write_coverage(const CalibrateArguments& arguments, const Calibration& calibration,
                             PictureSize size) {
   if (arguments.out == "-" || calibration.views.empty()) return {};

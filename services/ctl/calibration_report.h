@@ -1,4 +1,4 @@
-// What `chorus calibrate camera` says: for people, and as JSON.
+// The output of `chorus calibrate camera`, for people and as JSON.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace chorus::ctl {
 
-/// A table of the views, the lens with its standard deviations, and what is too weak.
+/// A table of the views, the lens with its standard deviations, and what does not suffice.
 [[nodiscard]] std::string calibration_text(const calibration::Calibration& calibration,
                                            const BoardViews& found,
                                            const std::vector<std::string>& weaknesses);

@@ -16,7 +16,7 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr int kExecFailed = 127;  // what a shell exits with then
+constexpr int kExecFailed = 127;  // the exit code of a shell in this case
 
 /// The signals that end the wait; they stay blocked during run_children.
 class HeldSignals {

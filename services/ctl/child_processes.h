@@ -11,8 +11,8 @@
 
 namespace chorus::ctl {
 
-/// The program of this name in the folder of our own program; if there is none, just the name, to
-/// be searched in $PATH.
+/// The program of this name in the folder of our own program; if there is none, the bare name,
+/// which is searched for in $PATH.
 [[nodiscard]] std::filesystem::path sibling_program(const std::string& name);
 
 struct Child {
@@ -20,8 +20,9 @@ struct Child {
   std::vector<std::string> command;
 };
 
-/// Starts all children and waits.  SIGINT or SIGTERM to us stops them: success.  When one ends by
-/// itself, the others are stopped: success if it exited with 0, else an error that names it.
+/// Starts all children and waits.  SIGINT or SIGTERM to us stops them, which is a success.  When
+/// one ends by itself, the others are stopped, and the result is a success if it exited with 0,
+/// otherwise an error that names it.
 [[nodiscard]] Result<void> run_children(const std::vector<Child>& children);
 
 }  // namespace chorus::ctl

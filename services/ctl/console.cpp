@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kBarWidth = 30;  // characters
 
-/// Bytes of a control character at `i`, else 0: C0, DEL, or C1 in UTF-8 (0xC2, then 0x80 to 0x9F).
+/// Length in bytes of the control character at `i`; 0 if there is none.  Control characters are C0,
+/// DEL, and C1 in UTF-8 (0xC2, then 0x80 to 0x9F).
 std::size_t control_at(std::string_view text, std::size_t i) {
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
   if (byte(i) < 0x20 || byte(i) == 0x7F) return 1;

@@ -1,4 +1,5 @@
-// Output for people: aligned tables, and progress as a bar on a terminal and plain lines elsewhere.
+// Output for people: aligned tables, and progress as a bar on a terminal or as plain lines
+// elsewhere.
 #pragma once
 
 #include <iosfwd>
@@ -10,7 +11,7 @@
 
 namespace chorus::ctl {
 
-/// One line with every control and escape character replaced by "?", whatever its source.
+/// One line, with every control and escape character replaced by "?".
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// The strings of an array member, each made printable(); empty when there is no such array.
@@ -28,7 +29,8 @@ namespace chorus::ctl {
 
 class Progress {
  public:
-  /// A terminal has one line that is redrawn; elsewhere each new tenth or remark prints a line.
+  /// On a terminal one line is redrawn in place; elsewhere a line is printed at every 10 % and for
+  /// every new remark.
   Progress(std::ostream& out, bool terminal, std::string label)
       : out_(out), terminal_(terminal), label_(std::move(label)) {}
 

@@ -38,7 +38,7 @@ std::optional<std::array<std::string_view, Count>> fields_of(std::string_view li
   return fields;
 }
 
-/// The value in: "tls=1" "id=s1"
+/// The value of a key in a list such as: "tls=1" "id=s1"
 std::string text_of(std::string_view texts, const std::string& key) {
   const std::size_t at = texts.find("\"" + key + "=");
   if (at == std::string_view::npos) return {};
@@ -70,17 +70,24 @@ std::optional<FoundSensor> sensor_in(std::string_view line) {
   return valid ? std::optional(sensor) : std::nullopt;
 }
 
-/// Whether it is the same sensor, perhaps at another of its addresses.  The id alone does not tell:
-/// anybody may announce it, and must not take the place of whom it belongs to.
-bool same_sensor(const FoundSensor& a, const FoundSensor& b) {
-  return a.id == b.id && a.host == b.host && a.port == b.port && a.tls == b.tls;
-}
-
 /// Less is better.
 int rank_of(const std::string& address) {
-  if (address.starts_with("127.") || address == "::1") return 3;
-  if (address.starts_with("fe80:") || address.starts_with("169.254.")) return 2;
+  if (address.starts_with("127.") || address == "::1") return 4;
+  if (address.starts_with("fe80:")) return 3;
+  if (address.starts_with("169.254.")) return 2;
   return address.find(':') == std::string::npos ? 0 : 1;
+}
+
+/// Loopback, and what needs the name of an interface: nobody can be led astray by these.
+bool leads_nowhere(const std::string& address) { return rank_of(address) >= 3; }
+
+/// Whether it is the same sensor, perhaps at another of its addresses.  The id alone does not tell:
+/// anybody may announce it, and must not take the place of whom it belongs to.  With TLS the name
+/// is asked, and the certificate tells; without it an address is all that tells two hosts apart.
+bool same_sensor(const FoundSensor& a, const FoundSensor& b) {
+  const bool same_place =
+      a.tls || a.address == b.address || leads_nowhere(a.address) || leads_nowhere(b.address);
+  return a.id == b.id && a.host == b.host && a.port == b.port && a.tls == b.tls && same_place;
 }
 
 Error not_asked(int status, const std::string& said) {
@@ -138,13 +145,14 @@ std::vector<FoundSensor> read_browsed(std::string_view text) {
     }
   }
   std::sort(found.begin(), found.end(), [](const FoundSensor& a, const FoundSensor& b) {
-    return std::tie(a.id, a.host, a.port, a.tls) < std::tie(b.id, b.host, b.port, b.tls);
+    return std::tie(a.id, a.host, a.port, a.tls, a.address) <
+           std::tie(b.id, b.host, b.port, b.tls, b.address);
   });
   return found;
 }
 
 Result<std::vector<FoundSensor>> discovered_sensors() {
-  // The command is fixed: nothing of a caller or of the network is in it.
+  // The command is fixed; it contains nothing from a caller or from the network.
   FILE* const pipe = ::popen(
       "avahi-browse --resolve --parsable --terminate --no-db-lookup _chorus-sensor._tcp 2>&1", "r");
   if (pipe == nullptr) return fail(ErrorCode::Io, "avahi-browse", "cannot be started");

@@ -1,5 +1,6 @@
 // Sensors that announce themselves in the local network by multicast DNS (DNS-SD, RFC 6763), with
-// Avahi.  An offer: a configuration lists its sensors, and nothing is followed by itself.
+// Avahi.  This is a convenience: a configuration lists its sensors, and no sensor is followed just
+// because it announces itself.
 #pragma once
 
 #include <cstdint>
@@ -21,21 +22,22 @@ struct FoundSensor {
   std::uint16_t port = 0;
   bool tls = false;
 
-  /// With TLS by name, because certificates are for names; else by address.
+  /// With TLS by name, because certificates are issued for names; otherwise by address.
   [[nodiscard]] std::string url() const;
   bool operator==(const FoundSensor&) const = default;
 };
 
-/// The file for kAvahiFolder that announces a sensor; no secret is in it.
+/// The file for kAvahiFolder that announces a sensor.  It contains no secret.
 [[nodiscard]] std::string announcement(const std::string& id, std::uint16_t port, bool tls);
 
 /// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id, host, port
 /// and TLS; of its addresses IPv4 before IPv6, loopback and link-local ones last.  An id that two
-/// announce is there twice.  Anybody in the network may announce anything, so
-/// lines without a valid id, name, address and port are left out.
+/// announce is there twice; so is a sensor without TLS at two addresses, because one of them may
+/// be a stranger's.  Anybody in the network may announce anything, so lines without a valid id,
+/// name, address and port are left out.
 [[nodiscard]] std::vector<FoundSensor> read_browsed(std::string_view text);
 
-/// Asks Avahi, for a second or two.  Unsupported: avahi-browse is not installed; Unavailable: no
+/// Asks Avahi; takes a second or two.  Unsupported: avahi-browse is not installed; Unavailable: no
 /// daemon runs.
 [[nodiscard]] Result<std::vector<FoundSensor>> discovered_sensors();
 

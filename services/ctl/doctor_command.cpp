@@ -1,4 +1,5 @@
-// chorus doctor: checks whether this host can do its part, and says what to do if it cannot.
+// chorus doctor: checks whether this host is ready for its services, and says what to do if it is
+// not.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>

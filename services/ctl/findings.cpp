@@ -30,7 +30,7 @@ constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sens
 constexpr double kBytesPerMb = 1e6;
 constexpr double kNsPerMs = 1e6;
 
-/// `trust`: for an https:// service; none: client::authorities().
+/// `trust` is for https:// services; if it is none, client::authorities() is used.
 Result<http::ClientResponse> ask(const std::string& base, const std::string& path,
                                  const std::string& token,
                                  const std::optional<tls::Trust>& trust = {}) {
@@ -63,8 +63,8 @@ std::string existing(std::filesystem::path folder) {
 }
 
 Result<tls::CertificateFacts> facts_in(const std::string& file) {
-  constexpr std::uintmax_t kMaxBytes = 1u << 20;
-  const auto text = read_file(file, kMaxBytes);
+  constexpr std::uintmax_t kMaxFileBytes = 1u << 20;
+  const auto text = read_file(file, kMaxFileBytes);
   if (!text) return pass(text);
   return tls::facts_of(*text);
 }
@@ -92,7 +92,7 @@ std::string version_in(const std::string& metrics) {
 
 /// The sensor host's clock minus ours [ms], and its uncertainty: half of the round-trip time.
 struct ClockDifference {
-  double ms = 0.0;  ///< NaN when the host does not tell.
+  double ms = 0.0;  ///< NaN when the host does not report its clock.
   double uncertainty = 0.0;
 };
 
@@ -104,6 +104,18 @@ ClockDifference clock_difference(const http::ClientResponse& answer) {
   const auto sent = static_cast<double>(answer.sent_ns);
   const auto received = static_cast<double>(answer.received_ns);
   return {(theirs - (sent + received) / 2) / kNsPerMs, (received - sent) / 2 / kNsPerMs};
+}
+
+/// What the host says of its own clock.
+std::string host_words(const http::ClientResponse& clock) {
+  const auto document = nlohmann::json::parse(clock.body, nullptr, false);
+  if (!document.is_object() || !document.contains("synchronised")) return {};
+  if (document["synchronised"] != true)
+    return " (follows no other clock; frames are corrected as its answers tell)";
+  const std::string text = text_in(document, "maxErrorNanoseconds");
+  const double most = text.empty() ? client::number_at(document, "maxErrorNanoseconds")
+                                   : std::strtod(text.c_str(), nullptr);
+  return fmt::format(" (synchronised, by its own account at most {:.1f} ms off)", most / kNsPerMs);
 }
 
 Finding of_answering(const std::string& subject, const std::string& url, const std::string& token,
@@ -121,11 +133,12 @@ Finding of_answering(const std::string& subject, const std::string& url, const s
     return {false, subject, fmt::format("runs version {}, and this is {}", theirs, version()),
             "install the same packages on all hosts"};
   }
-  return {true, subject, fmt::format("answers at {}, clock {:+.1f} ms", url, difference)};
+  return {true, subject,
+          fmt::format("answers at {}, clock {:+.1f} ms{}", url, difference, host_words(clock))};
 }
 
-/// Whether we did not accept the certificate that the service showed (tls::Seal::failure); the
-/// message then says what to do.
+/// True if we refused the service's certificate (tls::Seal::failure); the message then says what to
+/// do.
 bool refuses_certificate(const Error& error) { return error.code == ErrorCode::Forbidden; }
 
 Finding unreached(const std::string& subject, const Error& error) {
@@ -184,8 +197,8 @@ std::string ExaminedService::read_token() const {
 }
 
 Result<ExaminedService> examined_service(const std::string& kind, const std::string& file) {
-  constexpr std::uintmax_t kMaxBytes = 1u << 20;
-  const auto text = read_file(file, kMaxBytes);
+  constexpr std::uintmax_t kMaxFileBytes = 1u << 20;
+  const auto text = read_file(file, kMaxFileBytes);
   if (!text) return pass(text);
   JsonLimits limits;
   limits.comments = true;

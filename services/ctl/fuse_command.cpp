@@ -32,7 +32,7 @@ struct FuseArguments {
   bool json = false;
 };
 
-/// The extrinsics from a file or as recorded; none when they are to be solved from the walk.
+/// The extrinsics from a file or from the recording; none when they are to be solved from the walk.
 Result<std::optional<Registration>> given_extrinsics(const FuseArguments& arguments,
                                                      const RecordedCell& cell) {
   if (arguments.from_walk) return std::nullopt;
@@ -51,7 +51,7 @@ Result<Registration> extrinsics(const FuseArguments& arguments, RecordedCell& ce
   return pipeline::register_recordings(cell.input(), config);
 }
 
-/// Refuses to write to any file that is read, which would destroy it.
+/// Refuses to write to any of the input files, which would destroy it.
 Result<void> check_outputs(const FuseArguments& arguments,
                            std::vector<std::filesystem::path> read) {
   read.emplace_back(arguments.registration);

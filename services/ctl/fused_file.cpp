@@ -36,7 +36,8 @@ class Partial {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] Result<void> take_place() const {
-    if (auto ok = may_write(file_, {}); !ok) return ok;  // another process may have made the file
+    // Another process may have created the file.
+    if (auto ok = may_write(file_, {}); !ok) return ok;
     std::error_code error;
     fs::rename(path_, file_, error);
     if (error) return fail(ErrorCode::Io, file_, error.message());
@@ -95,7 +96,7 @@ class FusedLines final : public FusedFile {
     const fs::path folder = fs::path(file_).parent_path();
     if (!folder.empty() && !fs::is_directory(folder, ignored))
       return fail(ErrorCode::Io, file_, "cannot be written; is its folder there?");
-    // A pipe or a device is written directly.
+    // A pipe or a device is written to directly.
     const bool plain = !fs::exists(file_, ignored) || fs::is_regular_file(file_, ignored);
     if (plain) partial_.emplace(file_);
     out_.open(plain ? partial_->path() : file_, std::ios::binary | std::ios::trunc);

@@ -9,8 +9,8 @@
 
 namespace chorus::ctl {
 
-/// Only finish() replaces an existing file; without it, nothing is left behind.  "-" is standard
-/// output.  Nothing in the file depends on when or where it is written.
+/// Only finish() replaces an existing file; without it, nothing is left behind. "-" is standard
+/// output.  The file's contents do not depend on when or where it is written.
 class FusedFile {
  public:
   virtual ~FusedFile() = default;

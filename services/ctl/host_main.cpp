@@ -1,6 +1,6 @@
-// chorus as installed on every host: small, without the commands for recordings.  Where the whole
-// program is installed too (package chorus-tools: ../libexec/chorus/chorus next to our folder),
-// that program is run instead.
+// chorus as installed on every host: small, without the commands for recordings.  If the whole
+// program is installed as well (package chorus-tools: ../libexec/chorus/chorus next to our folder),
+// this one runs that program instead.
 #include <algorithm>
 #include <cstdio>
 #include <string>

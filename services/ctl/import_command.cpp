@@ -44,7 +44,7 @@ struct ImportArguments {
   double rate_hz = 30.0;
 };
 
-/// Formats of cameras, whose lenses are in files of ours.
+/// The formats that come from cameras; they need files of ours with the lenses.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCameraFormats{
     {{"video", "what a runner finds in videos, one camera each, as rays"},
      {"openpose", "OpenPose's JSON, also that of RTMLib and Pose2Sim: a folder a camera, as rays"},
@@ -170,7 +170,7 @@ void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& writ
   }
 }
 
-/// Tells of damaged ends and of inputs without content; everything else has been imported.
+/// Reports damaged ends and inputs without content; everything else has been imported.
 void tell_what_is_missing(const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
     const auto damage = recording.notes.find("damage.1");

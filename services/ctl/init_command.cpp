@@ -115,7 +115,8 @@ std::string shown_host() {
   return name.empty() ? "HOST" : name;
 }
 
-/// A token may have any character; in a link "+" would be a blank, and "&" and "%" more than text.
+/// A token may contain any character, but in a link "+" stands for a blank, and "&" and "%" have a
+/// meaning.
 std::string percent_encoded(const std::string& text) {
   std::string encoded;
   for (const unsigned char c : text) {
@@ -125,7 +126,8 @@ std::string percent_encoded(const std::string& text) {
   return encoded;
 }
 
-/// The page to open; a browser gives its camera to https, and on the own host to http.
+/// Prints the page to open.  A browser allows camera access over https, and on its own host over
+/// http as well.
 void tell_phone(const ServiceWishes& wishes, const std::string& url) {
   std::cerr << "On the phone, which needs ca.crt:\n  " << url << "capture/"
             << (wishes.token.empty() ? "" : "#token=" + percent_encoded(wishes.token)) << "\n";
@@ -154,7 +156,7 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
 }
 
 /// Where the announcement goes; empty: nowhere.  A configuration that is only shown, or written
-/// elsewhere, announces nothing unless that is asked for.
+/// elsewhere, is announced only on request.
 std::string announce_folder(const InitArguments& arguments) {
   if (arguments.no_announce) return {};
   if (!arguments.announce.empty()) return arguments.announce;
@@ -164,7 +166,7 @@ std::string announce_folder(const InitArguments& arguments) {
   return offered ? kAvahiFolder : "";
 }
 
-/// An offer: without it the sensor works as well.
+/// Only a convenience: the sensor works without it, too.
 void announce(const InitArguments& arguments, const ServiceWishes& wishes) {
   const std::string folder = announce_folder(arguments);
   if (folder.empty()) return;
@@ -193,7 +195,7 @@ Result<ServiceWishes> write_sensor(InitArguments& arguments) {
   return wishes.service;
 }
 
-/// Adds the sensors that announce themselves, unless one of that name is there already.
+/// Adds the sensors that announce themselves, except those whose name is already in the list.
 Result<void> add_discovered(std::vector<PolledWish>& sensors) {
   const auto found = discovered_sensors();
   if (!found) return pass(found);
@@ -201,7 +203,7 @@ Result<void> add_discovered(std::vector<PolledWish>& sensors) {
   for (const FoundSensor& sensor : *found) {
     const auto of_this = [&](const auto& each) { return each.id == sensor.id; };
     if (std::ranges::any_of(named, of_this)) continue;
-    // One of them may be a stranger who wants the token: a person has to say which is meant.
+    // One of them may be an impostor that wants the token, so a person has to choose.
     if (std::ranges::count_if(*found, of_this) > 1)
       return fail(ErrorCode::Conflict, sensor.id,
                   "is announced more than once (chorus discover): name it with --sensor");

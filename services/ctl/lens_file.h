@@ -8,14 +8,14 @@
 
 namespace chorus::ctl {
 
-/// Reads the keys of device.camera.intrinsics, or a sensor's configuration that has them, into
-/// settings that are otherwise the defaults.
+/// Reads the keys of device.camera.intrinsics, or a sensor's configuration that contains them.  All
+/// other settings have their defaults.
 [[nodiscard]] Result<camera::CameraSettings> read_lens_file(const std::string& file);
 
 /// The same as a lens, for pictures of the size that the file states.
 [[nodiscard]] Result<camera::Lens> lens_in(const std::string& file);
 
-/// InvalidArgument unless there is none, one for all, or one for each of `inputs`.
+/// InvalidArgument unless there are no lenses, one for all inputs, or one for each.
 [[nodiscard]] Result<void> check_lens_count(const std::vector<std::string>& lenses,
                                             std::size_t inputs);
 

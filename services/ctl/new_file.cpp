@@ -30,14 +30,15 @@ Result<void> cannot(const std::string& file, const std::string& option = {}) {
               std::string("cannot be written: ") + std::strerror(errno) + option);
 }
 
-/// Gives it to the services' group, if possible.
+/// Changes the file's group to that of the services, if possible.
 bool hand_over(int file) {
   const group* const services = ::getgrnam("chorus");
   return services == nullptr || ::geteuid() != 0 || ::fchown(file, 0, services->gr_gid) == 0;
 }
 
-/// The mode of open() and mkdir() is cut by the umask: with 077 the services could not read their
-/// configuration, nor anybody ca.crt.  A file system without modes is no failure.
+/// The umask restricts the mode of open() and mkdir(): with 077 the services could not read their
+/// configuration, and nobody could read ca.crt.  A file system without modes does not count as a
+/// failure.
 bool give_mode(int file, mode_t mode) {
   return ::fchmod(file, mode) == 0 || errno == EPERM || errno == ENOTSUP;
 }
@@ -50,7 +51,8 @@ Result<void> write_file(const std::string& file, const std::string& text, Reader
     std::cout << text;
     return {};
   }
-  // Writes a new file next to the old one, so that readers always get one of the two completely.
+  // Writes a new file next to the old one, so that readers always get either the old or the new one
+  // in full.
   const std::string fresh = overwriting == Overwriting::Yes ? file + ".new" : file;
   if (overwriting == Overwriting::Yes) ::unlink(fresh.c_str());
   const int made =
@@ -73,7 +75,7 @@ Result<void> write_file(const std::string& file, const std::string& text, Reader
 Result<void> make_folder(const std::string& named, Readers readers) {
   std::error_code failed;
   if (std::filesystem::is_directory(named, failed)) return {};
-  // The parent of "x/tls/" is "x/tls": without the slash, or the folder itself would be a parent.
+  // The parent of "x/tls/" would be "x/tls", the folder itself, so a trailing slash is removed.
   std::filesystem::path path(named);
   if (!path.has_filename()) path = path.parent_path();
   const std::string folder = path.string();

@@ -1,4 +1,4 @@
-// Files that `chorus init` makes on a host: for the services, or for root only.
+// Files that `chorus init` creates on a host, for the services or for root only.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace chorus::ctl {
 
 enum class Readers {
-  Services,  ///< User and group "chorus" if they exist and we are root (0640).
+  Services,  ///< Group "chorus" if it exists and we are root; mode 0640.
   Owner,     ///< 0600
   Everybody  ///< 0644
 };

@@ -5,7 +5,7 @@
 
 namespace chorus::ctl {
 
-/// From `least` to `most`, both included; unlike CLI::Range it refuses "nan" too.
+/// From `least` to `most`, both included.  Unlike CLI::Range it also refuses "nan".
 inline CLI::Validator number_range(double least, double most) {
   const CLI::Range range(least, most);
   const auto check = [range, least, most](std::string& text) -> std::string {

@@ -26,7 +26,7 @@ namespace {
 
 using client::ServiceClient;
 
-constexpr double kFarthest = 1000.0;  // [m], the same as the server's
+constexpr double kFarthest = 1000.0;  // [m], the limit that the server has
 
 struct OriginArguments {
   std::string url = client::default_server();
@@ -39,9 +39,9 @@ struct OriginArguments {
 };
 
 /// Watches the person who stands there, on one connection: each frame once, as it comes.
-class Watch {
+class StanceWatch {
  public:
-  Watch(const http::Url& server, tls::Trust trust)
+  StanceWatch(const http::Url& server, tls::Trust trust)
       : poll_(io_, server, {"/frame", "application/json", {}, std::move(trust)},
               {[this](const http::ClientResponse& answer) { take(answer); },
                [this](const Error& error, int status) { failed(error, status); }}) {}
@@ -86,7 +86,7 @@ Result<Stance> watch(const std::string& server, double seconds) {
   if (!url) return pass(url);
   auto trust = client::authorities();
   if (!trust) return pass(trust);
-  return Watch(*url, std::move(*trust)).run(seconds);
+  return StanceWatch(*url, std::move(*trust)).run(seconds);
 }
 
 Result<int> run_origin(const OriginArguments& arguments) {

@@ -1,4 +1,4 @@
-// Turns what pose estimators wrote about pictures into recordings of rays.
+// Turns the output files of pose estimators into recordings of rays.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace chorus::ctl {
 
 struct PoseImport {
   std::vector<std::string> lenses;  ///< One for all, or one for each (lens_file.h).
-  double rate_hz = 30.0;            ///< Pictures a second.
+  double rate_hz = 30.0;            ///< Pictures per second.
 };
 
 /// Each input is one camera (pose_frames.h), named after its folder or file.

@@ -37,9 +37,10 @@ struct RecordArguments {
 enum class End { Asked, TimeIsUp, Gone };
 
 /// Checks a few times a second whether the recording is over, while the sensors are polled.
-class Watch {
+class RecordingWatch {
  public:
-  Watch(asio::io_context& io, const client::LiveRecording& live, const RecordArguments& arguments)
+  RecordingWatch(asio::io_context& io, const client::LiveRecording& live,
+                 const RecordArguments& arguments)
       : io_(io),
         live_(live),
         arguments_(arguments),
@@ -134,7 +135,7 @@ void print_summary(const nlohmann::json& summary, bool json) {
     std::cerr << fmt::format("{}: the last error: {}\n", path, trouble.get<std::string>());
 }
 
-/// The streams that the service announced but that never had a frame.
+/// The streams that the service announced but that never delivered a frame.
 std::vector<std::string> silent_streams(const client::LiveRecording& live) {
   std::vector<std::string> silent;
   for (const auto& [topic, count] : live.counts()) {
@@ -174,7 +175,7 @@ Result<int> run_record(const RecordArguments& arguments) {
   asio::io_context io{1};
   const auto live = client::LiveRecording::start(io, options);
   if (!live) return pass(live);
-  const End end = Watch(io, **live, arguments).run();
+  const End end = RecordingWatch(io, **live, arguments).run();
   const auto report = (*live)->stop();
   print_summary(summary_of(**live, report, arguments.out), arguments.json);
   return judge(**live, report, end, arguments);

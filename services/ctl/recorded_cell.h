@@ -24,8 +24,8 @@ class RecordedCell {
   /// Reads from the beginning.
   [[nodiscard]] pipeline::OfflineInput input();
 
-  /// What was left out when the newest input was read to its end, one line each, and the number of
-  /// its sensors.
+  /// Known once the newest input has been read to its end: what was left out, one line each, and
+  /// the number of sensors.
   struct Told {
     std::vector<std::string> notes;
     std::size_t sensors = 0;

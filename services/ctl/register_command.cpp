@@ -1,13 +1,16 @@
 // chorus register: starts a registration session, or joins the running one, and follows it until
 // its verdict.
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include "common/base/units.h"
 #include "fusion-server/client/service_client.h"
 #include "fusion-server/rest/registration_resources.h"
 #include "services/ctl/command.h"
@@ -24,8 +27,8 @@ using client::ServiceClient;
 using client::text_at;
 
 constexpr std::chrono::milliseconds kAskEvery{250};
-/// The server counts only the time in which somebody is seen; if nobody is seen for this long,
-/// nobody will come.
+/// The server counts only the time in which somebody is seen.  If nobody is seen for this long, we
+/// give up.
 constexpr std::chrono::seconds kPatience{60};
 
 struct RegisterArguments {
@@ -34,6 +37,7 @@ struct RegisterArguments {
   bool fresh = false;
   bool cancel = false;
   bool undo = false;
+  bool history = false;
   bool json = false;
 };
 
@@ -56,13 +60,15 @@ Result<std::string> start(const ServiceClient& server, const RegisterArguments& 
   if (started.error().code != ErrorCode::Conflict) return pass(started);
   const auto registration = server.get("/registration");
   if (!registration) return pass(registration);
-  if (idle(*registration)) return pass(started);  // refused for another reason, or over by now
+  // Refused for another reason, or the session has just ended.
+  if (idle(*registration)) return pass(started);
   std::cerr << "a session is running already; this is its progress "
                "(chorus register --cancel ends it)\n";
   return session_of(*registration, arguments.url);
 }
 
-/// Prints what is missing whenever that changes; the bar shows how long there is still to walk.
+/// Prints what is missing whenever that changes.  The bar shows how long the person still has to
+/// walk.
 class Advice {
  public:
   void tell(const nlohmann::json& session, Progress& progress) {
@@ -79,6 +85,25 @@ class Advice {
  private:
   std::string told_;
 };
+
+/// "Provisional, worst s3 41 mm of 30": how well the last solve places the sensors.
+std::string remark_of(const nlohmann::json& session) {
+  std::string text = text_at(session, "verdict");
+  double worst = 0.0;
+  std::string name;
+  for (const auto& own : part_at(session, "accuracy")) {
+    const double radius = client::number_at(own, "expectedRadius");
+    if (std::isfinite(radius) && radius <= worst) continue;
+    worst = radius;
+    name = text_at(own, "sensorId");
+    if (!std::isfinite(radius)) break;
+  }
+  if (name.empty()) return text;
+  if (!std::isfinite(worst)) return fmt::format("{}, {} has no place yet", text, printable(name));
+  text += fmt::format(", worst {} {:.0f} mm", printable(name), to_mm(worst));
+  const double target = client::number_at(session, "targetRadius");
+  return std::isfinite(target) ? text + fmt::format(" of {:.0f}", to_mm(target)) : text;
+}
 
 /// Follows one session to its end; every answer updates the bar.
 Result<nlohmann::json> follow(const ServiceClient& server, const std::string& path,
@@ -101,7 +126,8 @@ Result<nlohmann::json> follow(const ServiceClient& server, const std::string& pa
     const double target = client::number_at(*session, "targetSeconds");
     if (elapsed > last_elapsed) last_step = std::chrono::steady_clock::now();
     last_elapsed = elapsed;
-    progress.show(elapsed / (target > 0.0 ? target : 1.0), state == "solving" ? state : verdict);
+    progress.show(elapsed / (target > 0.0 ? target : 1.0),
+                  state == "solving" ? state : remark_of(*session));
     advice.tell(*session, progress);
     std::this_thread::sleep_for(kAskEvery);
   }
@@ -133,6 +159,38 @@ int report(const nlohmann::json& session, const nlohmann::json& registration, bo
   return good ? kExitOk : kExitFailed;
 }
 
+Result<int> print_json(const Result<nlohmann::json>& document) {
+  if (!document) return pass(document);
+  std::cout << json_text(*document);
+  return kExitOk;
+}
+
+/// The last few sessions, newest first, and what became of each.
+Result<int> history(const ServiceClient& server, bool json) {
+  const auto registration = server.get("/registration");
+  if (!registration) return pass(registration);
+  nlohmann::json sessions = nlohmann::json::array();
+  for (const std::string& path : lines_at(*registration, "sessions")) {
+    if (auto session = server.get(path)) sessions.push_back(std::move(*session));
+  }
+  if (json) return print_json(sessions);
+  std::vector<std::vector<std::string>> rows{
+      {"session", "started", "by", "walked [s]", "state", "verdict", "adopted", "reasons"}};
+  for (const auto& session : sessions) {
+    const auto said = [&](const char* key) {
+      return session.contains(key) && session.at(key) == true;
+    };
+    rows.push_back({shown(client::number_at(session, "sessionId"), 0), text_at(session, "started"),
+                    said("automatic") ? "itself" : "hand",
+                    shown(client::number_at(session, "elapsedSeconds"), 0),
+                    text_at(session, "state"), text_at(session, "verdict"),
+                    said("adopted") ? "yes" : "no",
+                    fmt::format("{}", fmt::join(lines_at(session, "reasons"), "; "))});
+  }
+  std::cout << (rows.size() > 1 ? table(std::move(rows)) : "no session since the server started\n");
+  return kExitOk;
+}
+
 Result<int> cancel(const ServiceClient& server, const RegisterArguments& arguments) {
   const auto registration = server.get("/registration");
   if (!registration) return pass(registration);
@@ -142,13 +200,14 @@ Result<int> cancel(const ServiceClient& server, const RegisterArguments& argumen
   const auto path = session_of(*registration, arguments.url);
   if (!path) return pass(path);
   if (const auto cancelled = server.remove(*path); !cancelled) return pass(cancelled);
+  if (arguments.json) return print_json(server.get(*path));
   std::cout << "cancelled; the registration is what it was before the session\n";
   return kExitOk;
 }
 
-Result<int> undo(const ServiceClient& server) {
+Result<int> undo(const ServiceClient& server, bool json) {
   const auto registration = server.post("/registration/undo", nlohmann::json::object());
-  if (!registration) return pass(registration);
+  if (!registration || json) return print_json(registration);
   std::cout << "the registration from before is in use again; the same command brings this one "
                "back\n"
             << registration_report(*registration);
@@ -159,7 +218,8 @@ Result<int> run_register(const RegisterArguments& arguments) {
   const auto server = ServiceClient::of(arguments.url);
   if (!server) return pass(server);
   if (arguments.cancel) return cancel(*server, arguments);
-  if (arguments.undo) return undo(*server);
+  if (arguments.undo) return undo(*server, arguments.json);
+  if (arguments.history) return history(*server, arguments.json);
   if (arguments.fresh) {
     if (const auto forgotten = server->remove("/registration"); !forgotten) return pass(forgotten);
   }
@@ -187,11 +247,15 @@ Run add_register(CLI::App& options) {
           .add_flag("--cancel", arguments->cancel,
                     "End the session that runs; the registration is then what it was before")
           ->excludes(fresh);
-  options
-      .add_flag("--undo", arguments->undo,
-                "Go back to the registration before this one; twice changes nothing")
+  auto* undone = options
+                     .add_flag("--undo", arguments->undo,
+                               "Go back to the registration before this one; twice changes nothing")
+                     ->excludes(fresh)
+                     ->excludes(cancelled);
+  options.add_flag("--history", arguments->history, "List the last sessions, and start none")
       ->excludes(fresh)
-      ->excludes(cancelled);
+      ->excludes(cancelled)
+      ->excludes(undone);
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_register(*arguments); };
 }

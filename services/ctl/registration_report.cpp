@@ -26,12 +26,34 @@ std::string yaw_shown(const nlohmann::json& sensor) {
   return shown(to_deg(yaw_of(normalised_or_identity(q).toRotationMatrix())), 1);
 }
 
-std::string chain_shown(const nlohmann::json& sensor) {
+std::string chain_shown(const nlohmann::json& sensor, const char* key) {
   std::string text;
-  for (const auto& link : client::part_at(sensor, "chain")) {
+  for (const auto& link : client::part_at(sensor, key)) {
     if (link.is_string()) text += (text.empty() ? "" : " > ") + link.get<std::string>();
   }
   return text.empty() ? "-" : text;
+}
+
+/// "s1 > s3 (24.0 mm)": the chain that would have been next, and its error.
+std::string next_shown(const nlohmann::json& sensor) {
+  if (!sensor.contains("nextChain")) return "-";
+  return fmt::format("{} ({} mm)", chain_shown(sensor, "nextChain"),
+                     shown(to_mm(client::number_at(sensor, "nextError")), 1));
+}
+
+/// The pair whose loops close worst.
+std::string worst_loop_shown(const nlohmann::json& registration) {
+  double worst = -1.0;
+  std::string text;
+  for (const auto& edge : client::part_at(registration, "edges")) {
+    const double error = client::number_at(edge, "loopError");
+    if (!(error > worst)) continue;
+    worst = error;
+    text = fmt::format("  loops close to within {:.0f} mm (worst: {} and {})\n", to_mm(error),
+                       printable(client::text_at(edge, "target")),
+                       printable(client::text_at(edge, "source")));
+  }
+  return text;
 }
 
 /// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock that the walk told apart.
@@ -44,7 +66,7 @@ std::string clocks_shown(const nlohmann::json& registration) {
     clocks.emplace_back(name, offset);
     sigmas[name] = client::number_at(sensor, "clockUncertaintyMilliseconds");
   }
-  // The common clock is that of the sensor with an exact one.
+  // The common clock is that of the sensor whose uncertainty is zero.
   const auto common =
       std::ranges::find_if(clocks, [&](const auto& each) { return sigmas[each.first] == 0.0; });
   if (common == clocks.end()) return {};
@@ -71,20 +93,20 @@ std::string registration_report(const nlohmann::json& registration) {
     text += "  ALARM: " + alarm + "\n";
   for (const std::string& reason : lines_at(registration, "reasons")) text += "  " + reason + "\n";
   for (const std::string& next : lines_at(registration, "awaits")) text += "  next: " + next + "\n";
-  text += clocks_shown(registration);
+  text += clocks_shown(registration) + worst_loop_shown(registration);
   const std::string problem = client::text_at(registration, "storeProblem", "");
   if (!problem.empty()) text += "  not stored: " + printable(problem) + "\n";
-  std::vector<std::vector<std::string>> rows{
-      {"sensor", "verdict", "x [m]", "y [m]", "z [m]", "yaw [deg]", "error [mm]", "chain"}};
+  std::vector<std::vector<std::string>> rows{{"sensor", "verdict", "x [m]", "y [m]", "z [m]",
+                                              "yaw [deg]", "error [mm]", "chain", "next best"}};
   for (const auto& [name, sensor] : client::part_at(registration, "sensors").items()) {
-    rows.push_back({name, client::text_at(sensor, "verdict"),
-                    shown(client::number_at(sensor, "x"), 3),
-                    shown(client::number_at(sensor, "y"), 3),
-                    shown(client::number_at(sensor, "z"), 3), yaw_shown(sensor),
-                    shown(to_mm(client::number_at(sensor, "error")), 1), chain_shown(sensor)});
+    rows.push_back(
+        {name, client::text_at(sensor, "verdict"), shown(client::number_at(sensor, "x"), 3),
+         shown(client::number_at(sensor, "y"), 3), shown(client::number_at(sensor, "z"), 3),
+         yaw_shown(sensor), shown(to_mm(client::number_at(sensor, "error")), 1),
+         chain_shown(sensor, "chain"), next_shown(sensor)});
   }
   for (const auto& [name, sensor] : client::part_at(registration, "unplaced").items())
-    rows.push_back({name, client::text_at(sensor, "verdict"), "-", "-", "-", "-", "-", "-"});
+    rows.push_back({name, client::text_at(sensor, "verdict"), "-", "-", "-", "-", "-", "-", "-"});
   if (rows.size() > 1) text += table(std::move(rows));
   return text;
 }

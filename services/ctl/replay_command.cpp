@@ -1,8 +1,8 @@
 // chorus replay: starts one chorus-sensor process for each recorded sensor, so that the same
 // programs run as with hardware.
 //
-// All of them count from the same instant, which is about a second ahead, so that the recordings of
-// one set stay in step.
+// All of them start at the same instant, about a second ahead, so that the recordings of one set
+// stay in step.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -33,7 +33,7 @@ struct ReplayArguments {
   std::string save_registration;
 };
 
-/// What one process plays.
+/// The recording that one process plays.
 struct Part {
   SensorId sensor;
   std::filesystem::path from;  ///< A file, or the folder of a recording in several files.
@@ -74,7 +74,8 @@ void share(const Round& round, Child& child) {
   }
 }
 
-/// The streams to play; with a broken recording, or two of one sensor, nothing may be started.
+/// The streams to play.  An error if a recording is broken or a sensor occurs twice: then nothing
+/// may be started.
 Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellLine>& lines) {
   for (const auto& line : lines) {
     for (const std::string& damage : line.damage) std::cerr << "note: " << damage << '\n';
@@ -86,7 +87,7 @@ Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellL
   return stays;
 }
 
-/// A recording includes the sensors' places, so nobody has to register them again.
+/// Saves the recorded registration, so that nobody has to register the sensors again.
 Result<void> hand_on_registration(const std::vector<record::CellLine>& lines,
                                   const std::string& file) {
   const auto recorded = record::last_registration(lines);

@@ -37,7 +37,7 @@ std::string noted(const record::SensorStay& stay, const char* key) {
   return note == stay.about.notes.end() ? std::string{} : note->second;
 }
 
-/// True when all were imported together: then their notes agree.
+/// True when all were imported together, which shows in equal notes.
 bool one_import(const Stays& stays) {
   return std::ranges::all_of(stays, [&](const auto& stay) {
     return std::ranges::all_of(
@@ -47,7 +47,7 @@ bool one_import(const Stays& stays) {
   });
 }
 
-/// Our own recordings are in UTC; an imported one says whether it is.
+/// Our own recordings are in UTC; an imported one states whether it is.
 bool knows_utc(const record::SensorStay& stay) {
   const std::string time = noted(stay, "time");
   return time.empty() || time.starts_with("UTC");

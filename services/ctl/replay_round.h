@@ -1,4 +1,4 @@
-// Keeps the streams of a recording in step while a separate process plays each of them.
+// Keeps the streams of a recording in step while separate processes play them.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,8 @@ struct Round {
 };
 
 struct RoundPlan {
-  /// None for a single stream, for files of one import (their notes name their set), and for
-  /// recordings whose times do not show how they relate.
+  /// None for a single stream, for files of one import (their notes state the set), and for
+  /// recordings whose times cannot be related.
   std::optional<Round> round;
   std::string note;  ///< Why the recordings are not in step, for people to read.
 };

@@ -13,7 +13,7 @@ void add_server_option(CLI::App& app, std::string& url, const std::string& what,
 }
 
 void add_authority_option(CLI::App& app) {
-  // client::authorities() looks there, so every request to a server uses it.
+  // client::authorities() reads this variable, so every request to a server uses it.
   app.add_option_function<std::string>(
       "--ca", [](const std::string& file) { ::setenv("CHORUS_CA", file.c_str(), 1); },
       "The authority of an https:// server, a PEM file; also CHORUS_CA");

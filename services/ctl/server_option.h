@@ -1,4 +1,5 @@
-// How each command finds the service it talks to: --url, else CHORUS_URL, else this host.
+// How each command finds the service it talks to: by --url, otherwise by CHORUS_URL, otherwise on
+// this host.
 #pragma once
 
 #include <string>

@@ -11,11 +11,11 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr double kSure = 0.95;       // least certainty of left and right
+constexpr double kSure = 0.95;       // smallest certainty of left and right
 constexpr double kStill = 0.10;      // [m], largest movement
 constexpr double kTurned = 10.0;     // [deg], largest turn
-constexpr std::size_t kEnough = 5;   // least number of frames
-constexpr double kNarrowest = 0.05;  // [m] right to left; below, the front is undefined
+constexpr std::size_t kEnough = 5;   // smallest number of frames
+constexpr double kNarrowest = 0.05;  // [m] from right to left; if narrower, the front is undefined
 
 Eigen::Vector2d on_floor(const nlohmann::json& joints, const char* name) {
   const auto& joint = client::part_at(joints, name);

@@ -23,26 +23,43 @@ struct StatusArguments {
   bool json = false;
 };
 
+/// What tells how far the sensor's clock is off: the host's answers, a walk, or nothing.
+std::string clock_source(const nlohmann::json& sensor) {
+  if (sensor.contains("clockFromWalkMilliseconds")) return "walk";
+  return sensor.contains("clockOffsetMilliseconds") ? "host" : "-";
+}
+
+/// "s2: the clock of its host is not synchronised", for hosts that say so.
+std::string host_clock_line(const std::string& name, const nlohmann::json& sensor) {
+  const auto synchronised = sensor.find("hostSynchronised");
+  if (synchronised == sensor.end() || *synchronised != false) return {};
+  return printable(name) +
+         ": the clock of its host follows no other (no NTP, chrony or PTP); its frames are "
+         "corrected as the host's answers tell\n";
+}
+
 std::string sensors_report(const nlohmann::json& sensors) {
-  std::vector<std::vector<std::string>> rows{
-      {"sensor", "state", "age [ms]", "rate [Hz]", "clock offset [ms]", "bodies", "share", "url"}};
+  std::vector<std::vector<std::string>> rows{{"sensor", "state", "age [ms]", "rate [Hz]",
+                                              "clock offset [ms]", "from", "bodies", "share",
+                                              "url"}};
   for (const auto& [name, sensor] : sensors.items()) {
     rows.push_back({name, client::text_at(sensor, "state"),
                     shown(client::number_at(sensor, "ageMilliseconds"), 1),
                     shown(client::number_at(sensor, "rateHz"), 1),
                     shown(client::number_at(sensor, "clockOffsetMilliseconds"), 3),
-                    shown(client::number_at(sensor, "bodies"), 0),
+                    clock_source(sensor), shown(client::number_at(sensor, "bodies"), 0),
                     shown(client::number_at(sensor, "share"), 2), client::text_at(sensor, "url")});
   }
   std::string text = rows.size() > 1 ? table(std::move(rows)) : "no sensors are configured\n";
   for (const auto& [name, sensor] : sensors.items()) {
     const std::string error = client::text_at(sensor, "lastError", "");
     if (!error.empty()) text += printable(name + ": " + error) + "\n";
+    text += host_clock_line(name, sensor);
   }
   return text;
 }
 
-/// What the sensor's own service reports as wrong with its device; empty when nothing is.
+/// What the sensor's own service reports as wrong with its device; empty if nothing is wrong.
 std::string own_words(const std::string& sensor_url) {
   constexpr http::ClientLimits kBrief{1 << 16, std::chrono::seconds(1), std::chrono::seconds(1)};
   const auto url = http::parse_url(sensor_url);
@@ -54,7 +71,7 @@ std::string own_words(const std::string& sensor_url) {
   return client::text_at(nlohmann::json::parse(answer->body, nullptr, false), "detail", "");
 }
 
-/// For each sensor that answers the server but has no frames, adds the sensor's own reason.
+/// Adds, for each sensor that answers the server but has no frames, the sensor's own reason.
 void ask_the_silent(nlohmann::json& sensors) {
   for (auto& sensor : sensors) {
     const std::string error = client::text_at(sensor, "lastError", "");
@@ -91,7 +108,7 @@ Result<int> run_status(const StatusArguments& arguments) {
   if (!sensors) return pass(sensors);
   const auto registration = server->get("/registration");
   if (!registration) return pass(registration);
-  // Before the first fused frame the server answers 503: that is a state, not a failure.
+  // Before the first fused frame the server answers with 503, which is a state, not a failure.
   const auto frame = server->get("/frame");
   const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
   nlohmann::json polled = client::part_at(*sensors, "sensors");

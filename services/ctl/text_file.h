@@ -1,4 +1,4 @@
-// Files that a command writes in one piece; "-" is standard output.
+// Files that a command writes as a whole; "-" is standard output.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,8 @@ namespace chorus::ctl {
 /// Replaces an existing file only after everything has been written.
 [[nodiscard]] Result<void> write_text(const std::string& file, std::string_view text);
 
-/// To be called before the work begins: refuses a file that is one of the inputs, and any recording
-/// that exists already.  Inputs that are not files ("-", a URL, "") are ignored.
+/// Call this before the work begins.  Refuses a file that is one of the inputs, and any recording
+/// that already exists.  Inputs that are not files ("-", a URL, "") are ignored.
 [[nodiscard]] Result<void> may_write(const std::string& file,
                                      const std::vector<std::filesystem::path>& inputs);
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "cam01.mp4: 43 %, 12 s left": redrawn on a terminal; elsewhere printed at every tenth.
+/// Shows "cam01.mp4: 43 %, 12 s left": redrawn on a terminal, elsewhere printed at every 10 %.
 class Progress {
  public:
   explicit Progress(std::string name) : name_(std::move(name)) {}
@@ -28,7 +28,7 @@ class Progress {
     if (!begun_) {
       begun_ = now;
       first_ = share;
-      return;  // the runner's start-up time tells nothing
+      return;  // the rate so far only reflects the runner's start
     }
     const int percent = static_cast<int>(100.0 * share);
     if (percent / (terminal_ ? 1 : 10) == told_) return;

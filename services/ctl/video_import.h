@@ -14,7 +14,7 @@ struct VideoImport {
   /// configurations of sensors.  None: assumes a usual field of view.
   std::vector<std::string> lenses;
   std::string model;
-  double rate_hz = 30.0;  ///< Most pictures per second.
+  double rate_hz = 30.0;  ///< Highest number of pictures per second.
 };
 
 /// Each input is one camera, named after its file; all videos begin at options.start.  Reports the

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kMost = 64;  // at most this many formats, sizes and rates each
+constexpr std::uint32_t kMost = 64;  // at most this many formats, sizes and rates, each
 
 class Device {
  public:

@@ -19,7 +19,7 @@ struct WebcamMode {
 struct Webcam {
   std::string path;  ///< "/dev/video0"
   std::string name;  ///< "HD Pro Webcam C920"
-  std::string bus;   ///< Where it is plugged in; tells two cameras of one model apart.
+  std::string bus;   ///< Where it is plugged in; distinguishes two cameras of the same model.
   std::vector<WebcamMode> modes = {};
   std::string problem = {};  ///< Why it cannot be used; empty when it can.
 };

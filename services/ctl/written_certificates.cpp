@@ -36,7 +36,8 @@ Result<void> write_authority(const AuthorityWishes& wishes) {
                                          tls::for_days(wishes.days));
   if (!issued) return pass(issued);
   if (auto ok = make_folder(wishes.folder, Readers::Owner); !ok) return ok;
-  // The key comes first: a certificate without its key would look like an authority, but be none.
+  // The key is written first: a certificate without its key would look like an authority without
+  // being one.
   if (auto ok = write_file(wishes.folder + "/ca.key", issued->key, Readers::Owner); !ok) return ok;
   return write_file(wishes.folder + "/ca.crt", issued->certificate, Readers::Everybody);
 }

@@ -18,7 +18,7 @@
 namespace chorus::ctl {
 namespace {
 
-/// How an output reaches its clients.
+/// How clients get an output's data.
 enum class Manner { Serves, Sends, Shares };
 struct KnownOutput {
   std::string_view name;
@@ -103,8 +103,8 @@ std::string http_of(const ServiceWishes& wishes) {
       quoted(wishes.address), wishes.port, tls_of(wishes.tls), tokens_of(wishes));
 }
 
-/// s1 gets the first place of a ring of six, s2 the second: so the simulated sensors of one
-/// workshop see the same person from different sides.
+/// s1 gets the first place on a ring of six, s2 the second, and so on: the simulated sensors of one
+/// workshop then see the same person from different sides.
 std::size_t ring_place_of(const std::string& id) {
   constexpr std::size_t kPlaces = 6;
   const std::size_t digits = id.find_last_not_of("0123456789") + 1;
@@ -112,7 +112,7 @@ std::size_t ring_place_of(const std::string& id) {
   return (number.value_or(1) + kPlaces - 1) % kPlaces;
 }
 
-/// The section of the device itself, after its kind; empty where the defaults do.
+/// The device's own section of the configuration, which follows `kind`.
 std::string section_of(const SensorWishes& wishes) {
   if (wishes.device == "phone") {
     return "    // Serves /capture/, a page that makes the camera of a phone or laptop this "

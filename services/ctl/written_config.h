@@ -1,5 +1,5 @@
-// The configurations that `chorus init` writes: each decision with its comment, and a pointer to
-// the explanation of all other keys.
+// The configurations that `chorus init` writes: a comment for each decision, and a pointer to the
+// explanation of all other keys.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A wrong host clock, for testing everything that has to cope with one.
+// A wrong host clock, for testing everything that has to tolerate one.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace chorus::sensor_service {
 
-/// The clock's errors, counted from the start of the service.
+/// Errors to simulate in the host's clock.  Drift and `step_after` start with the service.
 struct ClockErrors {
   Duration offset{0};
   double drift = 0.0;  ///< [s/s]

@@ -2,7 +2,7 @@
 // and a request for a frame must not wait for an image.
 //
 // While clients ask, captures are encoded as fast as possible; otherwise once a second, so that the
-// first answer is not old.  While switched off, nothing is encoded.
+// first answer is recent.  While switched off, nothing is encoded.
 #pragma once
 
 #include <chrono>

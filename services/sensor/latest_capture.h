@@ -33,7 +33,7 @@ using LatestCapturePtr = std::shared_ptr<const LatestCapture>;
 
 [[nodiscard]] Result<http::DocumentPtr> floor_plane(const LatestCapture& latest,
                                                     const service::Serving& serving);
-/// `/images/`: the available images, and the camera model of each.
+/// `/images/`: the available images and the camera model of each.
 [[nodiscard]] http::DocumentPtr image_list(const LatestCapture& latest,
                                            const service::Serving& serving);
 /// The bytes of one image; an Error when its encoder failed.

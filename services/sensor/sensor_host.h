@@ -26,7 +26,7 @@ struct Setup {
 
 class SensorHost {
  public:
-  /// Makes the device; an error if it is missing or not as configured.  Binds no port yet.
+  /// Makes the device; an error if it is missing or not as configured.  Does not bind the port yet.
   [[nodiscard]] static Result<std::unique_ptr<SensorHost>> make(const SensorSettings& settings);
   explicit SensorHost(Setup setup);
   ~SensorHost();
@@ -44,8 +44,8 @@ class SensorHost {
   /// What would not work if the service started on this host now.
   [[nodiscard]] service::Concerns concerns() const;
 
-  /// For a watchdog: true while the server's thread runs.  A device may be silent for any length of
-  /// time.
+  /// For a watchdog: true while the server's thread runs.  The device does not count, because it
+  /// may be silent for any length of time.
   [[nodiscard]] bool alive() { return server_.alive(); }
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }

@@ -11,8 +11,8 @@ using http::Request;
 
 namespace {
 
-// If a capture time goes back by more than this, the host's clock was set; if by less, the device
-// repeats itself.  The fusion server has the same limit.
+// A capture time that goes back by more than this means that the host's clock was set; by less,
+// that the device repeats itself.  The fusion server has the same limit.
 constexpr Duration kMaxRepeat = std::chrono::seconds(1);
 
 }  // namespace

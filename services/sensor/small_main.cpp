@@ -1,6 +1,6 @@
 // chorus-sensor as installed on every sensor host: without the device `camera`, because its OpenCV
-// needs more than a hundred packages.  Where the whole program is installed too (package
-// chorus-camera), that program is run instead.
+// needs more than a hundred packages.  If the whole program is installed as well (package
+// chorus-camera), this one runs that program instead.
 #include "common/service/hosted_program.h"
 #include "common/service/whole_program.h"
 #include "services/sensor/device/camera/camera.h"
@@ -8,8 +8,8 @@
 
 namespace chorus::camera {
 
-/// Replaces the function in the camera's library, so that neither this library nor what it needs is
-/// linked.
+/// Replaces the function of the camera's library, so that neither this library nor its dependencies
+/// are linked.
 Result<std::unique_ptr<FrameSource>> make_camera(ConfigReader& /*section*/,
                                                  const sensor_service::DeviceContext& /*context*/) {
   return fail(ErrorCode::NotFound, "device.kind",

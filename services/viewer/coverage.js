@@ -21,7 +21,25 @@ export function mapOf(session, places = {}) {
     target, source, sightings, spread, expected: Number(expectedRadius), good: expectedRadius <= GOOD_RADIUS,
     from: at[target], to: at[source],
   }));
-  return { cells, sensors, links };
+  const target = Number(session?.targetRadius ?? GOOD_RADIUS);
+  const accuracy = (session?.accuracy ?? []).map(({ sensorId, expectedRadius }) => ({
+    id: sensorId, target, radius: expectedRadius === undefined ? Infinity : Number(expectedRadius),
+    good: Number(expectedRadius) <= target,
+  })).sort((a, b) => b.radius - a.radius);
+  return { cells, sensors, links, accuracy };
+}
+
+/// "s3: ±41 mm so far, ±30 wanted"
+export function accuracyLine({ id, radius, target }) {
+  if (radius === Infinity) return `${id}: no place yet`;
+  return `${id}: ±${Math.round(1000 * radius)} mm so far, ±${Math.round(1000 * target)} wanted`;
+}
+
+function item(text, good) {
+  const li = document.createElement('li');
+  li.textContent = text;
+  li.className = good ? 'good' : 'warn';
+  return li;
 }
 
 /// "s1 – s2: 310 sightings, +-32 mm expected"; the pair that needs most first.
@@ -31,15 +49,13 @@ export function lineOf({ target, source, sightings, expected }) {
 }
 
 export function showCoverage(svg, list, session, places) {
-  const { cells, sensors, links } = mapOf(session, places);
+  const { cells, sensors, links, accuracy } = mapOf(session, places);
   const points = [...cells, ...sensors];
   svg.toggleAttribute('hidden', points.length === 0 || links.length === 0);
-  list.replaceChildren(...links.sort((a, b) => b.expected - a.expected).slice(0, 6).map((link) => {
-    const li = document.createElement('li');
-    li.textContent = lineOf(link);
-    li.className = link.good ? 'good' : 'warn';
-    return li;
-  }));
+  list.replaceChildren(
+    ...accuracy.slice(0, 6).map((own) => item(accuracyLine(own), own.good)),
+    ...links.sort((a, b) => b.expected - a.expected).slice(0, 6).map((link) => item(lineOf(link), link.good)),
+  );
   if (points.length === 0) return svg.replaceChildren();
   const [left, right] = [Math.min(...points.map((p) => p.x)), Math.max(...points.map((p) => p.x))];
   const [top, bottom] = [Math.min(...points.map((p) => p.z)), Math.max(...points.map((p) => p.z))];

@@ -1,4 +1,5 @@
 // The text next to the picture.
+import { personLine } from './certainty.js';
 import { sidesOf } from './state.js';
 
 const element = (id) => document.getElementById(id);
@@ -75,6 +76,11 @@ export function showSensors(all, colorOf) {
   showLines('errors', Object.entries(all)
     .filter(([, sensor]) => sensor.lastError)
     .map(([id, sensor]) => `${id}: ${sensor.lastError}`));
+}
+
+/// One line for each person.
+export function showPeople(bodies) {
+  showLines('people', bodies.map(personLine));
 }
 
 function sessionLine(session) {

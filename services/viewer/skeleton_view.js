@@ -1,6 +1,8 @@
 // Draws bodies as bones and joints.  Everything here is metres in a right-handed, y-up space.
 import * as THREE from 'three';
 
+import { REACH, covarianceOf, rootOf } from './certainty.js';
+
 // The bones of the 25 Kinect v2 joints: parent, child (common/body/bones.h).
 export const BONES = [
   ['SpineBase', 'SpineMid'], ['SpineMid', 'SpineShoulder'], ['SpineShoulder', 'Neck'], ['Neck', 'Head'],
@@ -106,6 +108,14 @@ export class FusedView {
     this.inferred = new THREE.MeshStandardMaterial({ color: 0x8b98a8, roughness: 0.8 });
   }
 
+  /// Lets through what is inside the bodies: the ellipsoids are often smaller than a bone.
+  veil(on) {
+    for (const material of [this.material, this.inferred]) {
+      if (material.transparent === on) continue;
+      Object.assign(material, { transparent: on, opacity: on ? 0.25 : 1, depthWrite: !on, needsUpdate: true });
+    }
+  }
+
   show(bodies) {
     const present = new Set(bodies.map((body) => body.bodyId));
     for (const [id, view] of this.bodies) {
@@ -122,6 +132,37 @@ export class FusedView {
       }
       drawn += this.bodies.get(body.bodyId).show(body.joints);
     }
+    return drawn;
+  }
+}
+
+const MOST_ELLIPSOIDS = 64 * 25;
+
+/// Where each fused joint is with 95 % probability, as ellipsoids.  One mesh for all, because there may be 1600 of them.
+export class EllipsoidView {
+  constructor() {
+    const material = new THREE.MeshBasicMaterial({ color: 0xff5ccf, transparent: true, opacity: 0.5, depthWrite: false });
+    this.object = new THREE.InstancedMesh(new THREE.SphereGeometry(1, 16, 12), material, MOST_ELLIPSOIDS);
+    this.object.frustumCulled = false;
+    this.object.count = 0;
+  }
+
+  /// Returns how many joints state a covariance.
+  show(bodies) {
+    const matrix = new THREE.Matrix4();
+    let drawn = 0;
+    for (const body of bodies) {
+      for (const joint of Object.values(body.joints)) {
+        const covariance = seen(joint) && covarianceOf(joint);
+        if (!covariance || drawn >= MOST_ELLIPSOIDS) continue;
+        const [a, b, c, d, e, f] = rootOf(covariance).map((term) => REACH * term);
+        matrix.set(a, 0, 0, joint.x, b, c, 0, joint.y, d, e, f, joint.z, 0, 0, 0, 1);
+        this.object.setMatrixAt(drawn, matrix);
+        drawn += 1;
+      }
+    }
+    this.object.count = drawn;
+    this.object.instanceMatrix.needsUpdate = true;
     return drawn;
   }
 }

@@ -4,9 +4,11 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 import { Resource, clock, follow, link } from './poll.js';
-import { FusedView, RawView, frustum } from './skeleton_view.js';
+import { EllipsoidView, FusedView, RawView, frustum } from './skeleton_view.js';
+import { jointLines } from './certainty.js';
 import { showCoverage } from './coverage.js';
-import { rateOf, showFused, showRegistration, showSensors, showState } from './panel.js';
+import { rateOf, showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
+import { Readout } from './readout.js';
 import { freshness, stateOf } from './state.js';
 
 const COLORS = [0x4cc9f0, 0xf2b84b, 0x80ed99, 0xf28482, 0xb892ff, 0xffd6a5, 0x2ec4b6, 0xff9f1c, 0xa0c4ff, 0xcaffbf];
@@ -17,7 +19,7 @@ const base = new URL(new URLSearchParams(location.search).get('server') ?? '../'
 const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
 
 /// What the page has shown so far, for tests and for curious people.
-const shown = { fusedFrames: 0, fusedJoints: 0, rawBones: {}, sensors: 0, errors: 0 };
+const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sensors: 0, errors: 0 };
 window.chorusViewer = shown;
 
 // ---- the scene -----------------------------------------------------------------------------------------------
@@ -39,7 +41,8 @@ const grid = new THREE.GridHelper(12, 12, 0x55606e, 0x262d36);
 scene.add(grid, new THREE.AxesHelper(0.4));
 
 const fused = new FusedView();
-scene.add(fused.object);
+const ellipsoids = new EllipsoidView();
+scene.add(fused.object, ellipsoids.object);
 
 /// Looks at the centre of the sensors once they are known; people may turn the view afterwards.
 function frameRoom(positions) {
@@ -136,10 +139,11 @@ async function followSession(registration) {
 
 /// Checks the clock too, because frames that no longer arrive cannot say so themselves.
 setInterval(() => {
-  const age = known.frame ? clock.now() - Date.parse(known.frame.captured) : NaN;
+  const age = known.frame ? ageOf(known.frame) : NaN;
   const now = { ...known, link: link.state(), frameAge: age };
   const fresh = freshness(now);
   showState(stateOf(now), fresh);
+  showPeople(switches.uncertainty.checked ? known.frame?.bodies ?? [] : []);
   showFused(fresh === 'gone' ? null : known.frame, fresh === 'live' ? known.rate : NaN, age);
   shown.fresh = fresh;
   if (fresh === 'gone' && known.frame) forget();
@@ -163,7 +167,25 @@ const switches = {
   raw: document.getElementById('show-raw'),
   frusta: document.getElementById('show-frusta'),
   fused: document.getElementById('show-fused'),
+  uncertainty: document.getElementById('show-uncertainty'),
 };
+window.addEventListener('keydown', (event) => {
+  if (event.key === 'u' && !event.ctrlKey && !event.metaKey && !event.altKey) switches.uncertainty.click();
+});
+const ageOf = (frame) => clock.now() - Date.parse(frame.captured);
+const readout = new Readout(canvas, camera, document.getElementById('joint'),
+  (body, name) => jointLines(body, name, known.sensors, ageOf(known.frame)));
+
+/// Where a joint of the first person is on the screen [px].
+shown.where = (name) => known.frame?.bodies?.[0] && readout.toScreen(known.frame.bodies[0].joints[name]);
+
+/// Ellipsoids and read-out of the newest frame, while somebody wants them.
+function showUncertainty() {
+  const bodies = switches.uncertainty.checked ? known.frame?.bodies ?? [] : [];
+  fused.veil(switches.uncertainty.checked);
+  shown.ellipsoids = ellipsoids.show(bodies);
+  readout.show(bodies);
+}
 
 function fit() {
   renderer.setSize(window.innerWidth, window.innerHeight, false);
@@ -182,6 +204,7 @@ renderer.setAnimationLoop(() => {
     view.wedge.visible = switches.frusta.checked;
   }
   fused.object.visible = switches.fused.checked;
+  showUncertainty();
   controls.update();
   renderer.render(scene, camera);
 });

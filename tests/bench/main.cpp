@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kFailed;  // --help is no error
+    return app.exit(error) == 0 ? 0 : kFailed;  // --help is not an error
   }
   return chosen == nullptr ? kFailed : run(*chosen, options, json_path);
 }

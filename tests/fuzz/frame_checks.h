@@ -1,4 +1,4 @@
-// What holds of every body that a sensor may publish, whatever input it got.
+// What is true of every body that a sensor may publish, whatever its input was.
 #pragma once
 
 #include <cmath>

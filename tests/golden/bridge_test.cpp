@@ -1,4 +1,5 @@
-// proto/golden/bridge read by our reader: what is accepted, and what is refused with which words.
+// Reads the golden files in proto/golden/bridge: which messages are accepted, and with what error
+// the others are refused.
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -62,22 +63,28 @@ void expect_joint(const Joint& joint, const Json& wanted, const std::string& nam
         << name << kTerms[i];
 }
 
-void expect_body(const BodyFrame& body, const Json& wanted) {
-  const Json& id = wanted["bodyId"];
-  EXPECT_EQ(std::to_string(body.id.value), id.is_string() ? id.get<std::string>() : id.dump());
+void expect_joints(const Skeleton<SensorSpace>& skeleton, const Json& wanted) {
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const std::string name(kJointNames[i]);
-    if (wanted["joints"].contains(name)) {
-      expect_joint(body.skeleton.joints[i], wanted["joints"][name], name);
+    if (wanted.contains(name)) {
+      expect_joint(skeleton.joints[i], wanted[name], name);
     } else {
-      EXPECT_EQ(body.skeleton.joints[i].state, JointState::NotTracked) << name;
+      EXPECT_EQ(skeleton.joints[i].state, JointState::NotTracked) << name;
     }
   }
 }
 
+void expect_body(const PushedFrame& frame, std::size_t index, const Json& wanted) {
+  const Json& id = wanted["bodyId"];
+  EXPECT_EQ(std::to_string(frame.bodies[index].id.value),
+            id.is_string() ? id.get<std::string>() : id.dump());
+  expect_joints(frame.bodies[index].skeleton, wanted["joints"]);
+  expect_joints(frame.shapes.at(index), wanted.value("shape", Json::object()));
+}
+
 class Golden : public ::testing::TestWithParam<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Bridge, Golden, ::testing::Values("points", "pixels"),
+INSTANTIATE_TEST_SUITE_P(Bridge, Golden, ::testing::Values("points", "pixels", "world"),
                          [](const auto& row) { return std::string(row.param); });
 
 TEST_P(Golden, MessagesMeanTheirFrames) {
@@ -90,7 +97,7 @@ TEST_P(Golden, MessagesMeanTheirFrames) {
     EXPECT_EQ(std::to_string(to_unix_ns(read.frames[i].captured)), frame["capturedNanoseconds"]);
     ASSERT_EQ(read.frames[i].bodies.size(), frame["bodies"].size());
     for (std::size_t b = 0; b < frame["bodies"].size(); ++b)
-      expect_body(read.frames[i].bodies[b], frame["bodies"][b]);
+      expect_body(read.frames[i], b, frame["bodies"][b]);
   }
 }
 

@@ -1,5 +1,5 @@
 // A person whom the tracker first sees standing, waving, walking backwards or coming in: nothing
-// learned about them earlier helps to tell front from rear.
+// learned about them earlier helps to distinguish front from rear.
 //
 // The beginning lasts three to six seconds and ends standing; then they walk at random like
 // everybody else.  World: the workspace centre is the origin, metres.

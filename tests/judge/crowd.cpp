@@ -108,7 +108,8 @@ std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t 
   const std::size_t pairs = std::max<std::size_t>(1, count / 2);
   const double hour = synthetic::Draw{seed, kHour}.uniform(0.0, 10.0);
   for (std::size_t i = 0; i < 2 * pairs; ++i) {
-    WalkerScript script = script_of(seed, i / 2, PathKind::Line);  // both of a pair walk in step
+    // Both people of a pair have the same walk.
+    WalkerScript script = script_of(seed, i / 2, PathKind::Line);
     script.reach = kReach;
     const synthetic::Walker walker(script);
     const double loop = seconds(walker.path().loop());

@@ -16,9 +16,9 @@ using associate::CostTable;
 
 struct Followed {
   std::optional<std::uint64_t> now;   ///< Id at the present instant.
-  std::optional<std::uint64_t> last;  ///< Id at the last answered instant.
+  std::optional<std::uint64_t> last;  ///< Id at the last instant at which the person was reported.
   std::optional<Timestamp> came;      ///< The person's first instant in the room.
-  std::optional<Timestamp> answered;  ///< The first instant with an answer.
+  std::optional<Timestamp> answered;  ///< The first instant at which the person was reported.
 };
 
 /// Counts all figures in one pass over the instants.

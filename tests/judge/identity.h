@@ -14,14 +14,14 @@
 
 namespace chorus::bench {
 
-/// A person in a method's answer.
+/// A person that the method reports.
 struct Claimed {
   std::uint64_t id = 0;
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< World x, z [m]
 };
 
-/// One instant: the people in the answer, and where everybody truly is (not finite: not in the
-/// room).
+/// One instant: the people that the method reports, and where everybody truly is (not finite: not
+/// in the room).
 struct Roll {
   Timestamp instant;
   std::vector<Claimed> claimed;
@@ -29,25 +29,25 @@ struct Roll {
 };
 
 struct IdentityConfig {
-  double reach = 0.5;  ///< A farther answer is not that person [m].
+  double reach = 0.5;  ///< A person reported farther away than this is not that person [m].
   /// A track that follows people for a smaller fraction of its life is a ghost.
   double ghost = 0.5;
   double lasting = 1.0;  ///< After this time an id has followed a person, not just passed by [s].
 };
 
 struct Identity {
-  std::size_t switches = 0;        ///< How often a person's answer changed its id.
-  std::size_t fragmentations = 0;  ///< How often a person's answer ended and began again.
+  std::size_t switches = 0;        ///< How often the id under which a person is reported changed.
+  std::size_t fragmentations = 0;  ///< How often the track of a person ended and began again.
   std::size_t ghosts = 0;          ///< Ids that mostly followed nobody.
-  double coverage = 0.0;           ///< Fraction of people's instants with an answer.
-  /// 2 IDTP / (people's instants + answers), with ids assigned once for all instants.
+  double coverage = 0.0;           ///< Fraction of people's instants at which they are reported.
+  /// 2 IDTP / (people's instants + reported bodies), with ids assigned once for all instants.
   double idf1 = 0.0;
   double minutes = 0.0;
-  /// Mean time from a person's appearance to the first answer, over those who got one [s].
+  /// Mean time from a person's appearance until they are reported, over those who are [s].
   double first_answer = 0.0;
   /// How often an id, after one person, followed another for a second or longer.
   std::size_t inherited = 0;
-  std::size_t spare_ids = 0;  ///< Ids of people who already had one.
+  std::size_t spare_ids = 0;  ///< Additional ids of people who already had one.
 };
 
 [[nodiscard]] Identity identity_of(const std::vector<Roll>& rolls,

@@ -16,7 +16,7 @@ namespace {
 
 using synthetic::HostClock;
 
-// Any instant of the present; the seed chooses where in the loop a walk begins.
+// An arbitrary recent instant; the seed determines where in its loop a walk begins.
 constexpr std::int64_t kSomeTime = 1'795'000'000'000'000'000;
 constexpr double kLatestBegin = 200.0;  // [s]
 constexpr double kBuildSpread = 0.08;   // most by which the first person is taller or shorter

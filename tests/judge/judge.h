@@ -1,5 +1,5 @@
-// The judge: one draw of the simulated workshop, with the full truth about it.  Every accuracy
-// benchmark and accuracy test depends on it; algorithms never include it.
+// The judge: one draw of the simulated workshop, with the complete truth.  Every accuracy benchmark
+// and accuracy test depends on it; algorithms never include it.
 //
 // A draw = profile x seed (from which follow the sensors' parameters, the people, the walk and the
 // hour) x optional stress x layout.  World of the scene: y up, y = 0 the floor, origin = workspace
@@ -53,10 +53,10 @@ struct Workshop {
 /// profile is an error of the caller (throws).
 [[nodiscard]] Workshop draw_workshop(Setting setting);
 
-/// The frames of a draw again, where each joint has the true mean square of its error as its
-/// covariance; and how the errors of two sensors correlate.
+/// The frames of a draw, in which each joint has the true mean square of its error as its
+/// covariance, and how the errors of two sensors correlate.
 struct Confided {
-  std::vector<registration::WalkTrack> tracks;  ///< None: the profile does not know its errors.
+  std::vector<registration::WalkTrack> tracks;  ///< Empty: the profile does not know its errors.
   synthetic::kinect::ColouredError coloured;
 };
 [[nodiscard]] Confided confided(const Workshop& workshop);

@@ -1,4 +1,4 @@
-// Error of a body against the truth, with its labels as given and with left and right exchanged.
+// Error of a body against the truth, with its labels as given and with left and right swapped.
 #pragma once
 
 #include "common/body/bones.h"
@@ -9,7 +9,7 @@ namespace chorus::bench {
 /// Sum of one body's distances from the truth [m], over the joints that were seen.
 struct LabelledError {
   double as_given = 0.0;
-  double exchanged = 0.0;  ///< With all labels left and right exchanged.
+  double exchanged = 0.0;  ///< The sum with left and right swapped in all labels.
 };
 
 template <class Space>

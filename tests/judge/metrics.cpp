@@ -9,12 +9,11 @@
 #include "common/base/median.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
+#include "tests/judge/measures.h"
 
 namespace chorus::bench {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRest = 0.03;  // [m/s] a slower joint is at rest
 constexpr double kJump = 0.08;  // [m] a jump exceeds the true step by this
 // Instants more than this many usual steps apart are not successive.
 constexpr double kNextTo = 1.5;
@@ -22,21 +21,6 @@ constexpr double kMinLag = -0.2;  // [s]
 constexpr double kMaxLag = 0.4;   // [s]
 
 using enum JointId;
-constexpr std::array kLongBones{ElbowLeft,  WristLeft,  KneeLeft,  AnkleLeft,
-                                ElbowRight, WristRight, KneeRight, AnkleRight};
-
-struct Mean {
-  double sum = 0.0;
-  std::size_t count = 0;
-
-  void add(double value) {
-    sum += value;
-    ++count;
-  }
-  [[nodiscard]] double value() const {
-    return count > 0 ? sum / static_cast<double>(count) : kNothing;
-  }
-};
 
 /// Usual time between successive instants [s].
 double usual_step(const Answers& answers) {
@@ -89,12 +73,6 @@ void each_error(const Answers& answers, JointGroup group, const Visit& visit) {
   }
 }
 
-std::optional<double> length_of(const Skeleton<WorldSpace>& body, JointId child) {
-  const auto bone = std::ranges::find(kBones, child, &Bone::child);
-  if (bone == kBones.end() || !body[child].seen() || !body[bone->parent].seen()) return {};
-  return (body[child].position - body[bone->parent].position).norm();
-}
-
 /// Standard deviation over mean of one bone's length; NaN below two samples.
 double variation_of(const Answers& answers, JointId child) {
   Mean mean;
@@ -110,7 +88,7 @@ double variation_of(const Answers& answers, JointId child) {
   return std::sqrt(square.value()) / mean.value();
 }
 
-/// Distances of the labelled pairs from the truth, as given and with left and right exchanged.
+/// Distances of the labelled pairs from the truth, as given and with left and right swapped.
 struct Labelling {
   double as_stated = 0.0;
   double exchanged = 0.0;
@@ -132,7 +110,7 @@ Labelling labelling_of(const Answer& answer) {
   return labelling;
 }
 
-/// Correlation of stated steps with the true ones `lag` instants earlier.
+/// Correlation of reported steps with the true ones `lag` instants earlier.
 double correlation(const Answers& answers, std::ptrdiff_t lag) {
   double both = 0.0;
   double stated_square = 0.0;
@@ -148,7 +126,7 @@ double correlation(const Answers& answers, std::ptrdiff_t lag) {
       const Joint& before = at(i - 1).body.joints[j];
       if (!now.seen() || !before.seen()) continue;
       const Eigen::Vector3d stated = now.position - before.position;
-      if (stated.norm() > kJump) continue;  // a jump is no motion
+      if (stated.norm() > kJump) continue;  // a jump is not motion
       const Eigen::Vector3d exact =
           at(i - lag).exact.joints[j].position - at(i - lag - 1).exact.joints[j].position;
       both += stated.dot(exact);

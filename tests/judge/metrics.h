@@ -13,15 +13,15 @@
 
 namespace chorus::bench {
 
-/// One instant: a method's answer about a person at its stated time, and the truth at that time.
+/// One instant: the body that a method reports for a person, and the truth at the time it states.
 struct Answer {
   Timestamp instant;
-  Skeleton<WorldSpace> body;  ///< Without a seen joint: the method had no answer.
+  Skeleton<WorldSpace> body;  ///< No joint is seen: the method reported nothing.
   Skeleton<WorldSpace> exact;
   std::array<std::size_t, kJointCount> views{};  ///< Number of views that saw each joint.
 };
 
-/// The answers about one person, in order of time.
+/// All instants of one person, in order of time.
 using Answers = std::vector<Answer>;
 
 enum class JointGroup {
@@ -39,7 +39,7 @@ enum class JointGroup {
 /// remains if only the definitions of joints differ.
 [[nodiscard]] double bias_free_mpjpe(const Answers& answers, JointGroup group);
 
-/// Mean distance between a joint's answered step and its true one [m], over joints that are truly
+/// Mean distance between a joint's reported step and its true one [m], over joints that are truly
 /// at rest.
 [[nodiscard]] double jitter_at_rest(const Answers& answers, JointGroup group);
 
@@ -50,14 +50,14 @@ enum class JointGroup {
 /// Steps of a joint more than 80 mm longer than the true one, per minute, over all joints.
 [[nodiscard]] double jumps_per_minute(const Answers& answers);
 
-/// Fraction of the instants whose body fits the truth better with left and right exchanged.
+/// Fraction of the instants whose body fits the truth better with left and right swapped.
 [[nodiscard]] double label_error_share(const Answers& answers);
 
-/// Delay of the answers against the truth [s]: the shift at which their velocities correlate best,
-/// between -0.2 and 0.4 s; requires a moving person and equidistant instants.
+/// Delay of the reported bodies against the truth [s]: the shift at which their velocities
+/// correlate best, between -0.2 and 0.4 s; requires a moving person and equidistant instants.
 [[nodiscard]] double latency(const Answers& answers);
 
-/// Fraction of all joints at all instants that have an answer.
+/// Fraction of all joints at all instants that are reported.
 [[nodiscard]] double coverage(const Answers& answers);
 
 }  // namespace chorus::bench

@@ -2,39 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 
 #include "common/body/bones.h"
 #include "tests/judge/labelled_error.h"
+#include "tests/judge/measures.h"
 
 namespace chorus::bench {
 namespace {
 
 using enum JointId;
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kApart = 0.15;   // [m] limbs closer together cannot be distinguished by position
 constexpr double kStands = 0.05;  // [m/s] a slower ankle stands
 constexpr double kStance = 0.2;   // [s]
 constexpr double kAhead = 0.05;   // [s]
 constexpr std::array kArm{ElbowLeft, WristLeft, HandLeft};
 constexpr std::array kLeg{KneeLeft, AnkleLeft, FootLeft};
-constexpr std::array kLongBones{ElbowLeft,  WristLeft,  KneeLeft,  AnkleLeft,
-                                ElbowRight, WristRight, KneeRight, AnkleRight};
-
-struct Mean {
-  double sum = 0.0;
-  double count = 0.0;
-
-  void add(double value) {
-    sum += value;
-    count += 1.0;
-  }
-  [[nodiscard]] double value() const { return count > 0 ? sum / count : kNothing; }
-};
-
 /// Whether this pair of limbs is exchanged; none: it cannot be decided.
 std::optional<bool> is_exchanged(const Answer& answer, std::span<const JointId> left_limb) {
   double as_stated = 0.0;
@@ -53,12 +38,6 @@ std::optional<bool> is_exchanged(const Answer& answer, std::span<const JointId> 
   }
   if (!(apart.value() >= kApart)) return std::nullopt;
   return exchanged < as_stated;
-}
-
-std::optional<double> length_of(const Skeleton<WorldSpace>& body, JointId child) {
-  const JointId parent = parent_of(child);
-  if (!body[child].seen() || !body[parent].seen()) return std::nullopt;
-  return (body[child].position - body[parent].position).norm();
 }
 
 /// Whether the true ankle stands between this instant and the previous one.

@@ -2,13 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
+
+#include "tests/judge/measures.h"
 
 namespace chorus::bench {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRest = 0.03;       // [m/s] a slower joint is at rest
 constexpr double kChi2Of3 = 7.8147;  // 95 % with three degrees of freedom
 
 /// Speed of a true joint at an instant [m/s]; 0 if there is only one instant.
@@ -42,7 +41,7 @@ void each_stated(const Answers& answers, const Sighted& which, const Visit& visi
   }
 }
 
-/// e^T P^-1 e; infinite if the stated matrix is no covariance.
+/// e^T P^-1 e; infinite if the stated matrix is not a covariance.
 double distance_of(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
   const Eigen::LLT<Eigen::Matrix3d> root(covariance);
   if (root.info() != Eigen::Success) return std::numeric_limits<double>::infinity();

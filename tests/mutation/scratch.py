@@ -51,7 +51,8 @@ class Scratch:
 
     def configure(self):
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-        done = self.run("cmake", "--preset", "dev", *launcher, cwd=self.tree)
+        # Of a unity build, every mutant would compile its neighbours too.
+        done = self.run("cmake", "--preset", "dev", "-DCHORUS_UNITY=OFF", *launcher, cwd=self.tree)
         if done.returncode != 0:
             raise SystemExit("mutate: the scratch copy does not configure:\n" + done.stderr[-2000:])
 

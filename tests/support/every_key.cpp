@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Strings, each of which some key accepts; the other keys refuse it.
+/// Strings, each of which is valid for some key and refused by the others.
 constexpr const char* kWords[] = {
     "s2",        "0.0.0.0", "http://a",    "warn",     "json",      "A",           "circle",
     "replay",    "otto",    "centre-axis", "icp-only", "neck",      "as-recorded", "powerwall",

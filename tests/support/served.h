@@ -13,7 +13,7 @@ struct Answer {
   std::string type;
   std::string etag;
   std::string head;
-  std::string body;  ///< Of a refusal: the message.
+  std::string body;  ///< For a refusal, the message.
 };
 
 /// `whole` is a path that may end in ?key=value.

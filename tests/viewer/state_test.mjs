@@ -3,7 +3,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { Link, ServerClock } from '../../services/viewer/poll.js';
-import { lineOf, mapOf } from '../../services/viewer/coverage.js';
+import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf } from '../../services/viewer/certainty.js';
+import { accuracyLine, lineOf, mapOf } from '../../services/viewer/coverage.js';
 import { freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
 const LIVE = { state: 'live' };
@@ -103,5 +104,48 @@ test('the map of a walk has its cells, its sensors, and the pairs that are linke
   assert.equal(links[1].to, undefined, 's3 has no place yet');
   assert.equal(lineOf(links[0]), 's1 – s2: 900 common sightings, ±41 mm expected');
   assert.match(lineOf(links[1]), /more than 1 m expected$/);
-  assert.deepEqual(mapOf(null), { cells: [], sensors: [], links: [] });
+  assert.deepEqual(mapOf(null), { cells: [], sensors: [], links: [], accuracy: [] });
+});
+
+test('what the walk tells of each sensor so far, the worst first', () => {
+  const { accuracy } = mapOf({ targetRadius: 0.03, accuracy: [
+    { sensorId: 's1', expectedRadius: 0.012 }, { sensorId: 's2', expectedRadius: 0.041 }, { sensorId: 's3' }] });
+  assert.deepEqual(accuracy.map(accuracyLine),
+    ['s3: no place yet', 's2: ±41 mm so far, ±30 wanted', 's1: ±12 mm so far, ±30 wanted']);
+  assert.deepEqual(accuracy.map(({ good }) => good), [false, false, true]);
+});
+
+/// R diag(variances) R^T of a turn about z, then about x.
+function turned([a, b, c], z, x) {
+  const [cz, sz, cx, sx] = [Math.cos(z), Math.sin(z), Math.cos(x), Math.sin(x)];
+  const rows = [[cz, -sz, 0], [cx * sz, cx * cz, -sx], [sx * sz, sx * cz, cx]];
+  const term = (i, j) => a * rows[i][0] * rows[j][0] + b * rows[i][1] * rows[j][1] + c * rows[i][2] * rows[j][2];
+  return [term(0, 0), term(0, 1), term(0, 2), term(1, 1), term(1, 2), term(2, 2)];
+}
+
+test('an ellipsoid has the axes and the shape of its covariance', () => {
+  const variances = [9e-4, 4e-4, 1e-4];
+  for (const [z, x] of [[0, 0], [0.4, 1.1], [2, -0.7], [Math.PI / 2, 0]]) {
+    const covariance = turned(variances, z, x);
+    axesOf(covariance).forEach((sigma, i) => assert.ok(Math.abs(sigma - [0.03, 0.02, 0.01][i]) < 1e-9, `${sigma}`));
+    const [a, b, c, d, e, f] = rootOf(covariance);
+    const product = [a * a, a * b, a * d, b * b + c * c, b * d + c * e, d * d + e * e + f * f];
+    product.forEach((term, i) => assert.ok(Math.abs(term - covariance[i]) < 1e-12, `L L^T, term ${i}`));
+  }
+  assert.deepEqual(axesOf([4e-4, 0, 0, 4e-4, 0, 4e-4]), [0.02, 0.02, 0.02], 'a ball');
+  assert.deepEqual(rootOf([0, 0, 0, 0, 0, 0]), [0, 0, 0, 0, 0, 0], 'a point');
+  assert.ok(rootOf([1e-4, 0, 0, 0, 0, 1e-4]).every(Number.isFinite), 'a flat one');
+  assert.ok(Math.abs(REACH - 2.7955) < 1e-4);
+});
+
+test('a joint is told with its size, its sensors and its age; what is not stated is not made up', () => {
+  const joint = { state: 'Inferred', x: 0, y: 1, z: 0, cxx: 1e-4, cxy: 0, cxz: 0, cyy: 1e-4, cyz: 0, czz: 1e-4, contributors: ['s1', 's2'] };
+  const body = { bodyId: 7, sidesConfidence: 0.999, joints: { Head: joint, Neck: { state: 'Tracked', x: 0, y: 1, z: 0 } } };
+  assert.deepEqual(jointLines(body, 'Head', { s1: { share: 0.96 } }, 41.4),
+    ['Head (inferred), person 7', '95 % within ±28 × 28 × 28 mm', 'from s1 (96 %), s2', 'seen, 41 ms old']);
+  assert.deepEqual(jointLines({ ...body, carriedFor: 0.44 }, 'Neck', undefined, NaN),
+    ['Neck, person 7', 'how sure: not stated', 'from no sensor: where it is expected', 'out of sight for 0.4 s']);
+  assert.equal(covarianceOf({ cxx: 1, cxy: 0 }), null, 'half a covariance is none');
+  assert.equal(personLine(body), 'person 7: seen, left and right 99 % certain', 'never rounded up to certainty');
+  assert.equal(personLine({ bodyId: 8 }), 'person 8: seen, left and right not looked at');
 });

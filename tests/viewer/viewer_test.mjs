@@ -112,6 +112,52 @@ test('reasons, what is awaited, and what is not stored are shown without a regis
   server.stop();
 });
 
+/// Where the head of the fake person is now [px]; the person sways, so it is asked for again and again.
+const pointAtHead = async (page) => {
+  for (let i = 0; i < 60; ++i) {
+    const at = await page.evaluate(() => window.chorusViewer.where('Head'));
+    if (at) await page.mouse.move(at.x, at.y);
+    if (await page.isVisible('#joint')) return at;
+    await page.waitForTimeout(30);
+  }
+  throw new Error('no read-out beside the head');
+};
+
+test('uncertainty is shown when asked for: ellipsoids, people, and a joint with its sensors', async () => {
+  const world = usualWorld();
+  const server = await startFakeFusion(FILES, world);
+  const { page, complaints } = await openViewer(browser, server.url);
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, { timeout: 30000 });
+  assert.equal(await page.evaluate(() => window.chorusViewer.ellipsoids), 0, 'not before');
+  assert.equal(await text(page, '#people'), '');
+  const before = await colorsOnCanvas(page);
+  await page.keyboard.press('u');
+  assert.equal(await page.isChecked('#show-uncertainty'), true, 'by key and by switch');
+  await page.waitForFunction(() => window.chorusViewer.ellipsoids === 24, null, { timeout: 10000 });
+  assert.notEqual(await colorsOnCanvas(page), before);
+  await page.waitForFunction(() => document.querySelector('#people li'), null, { timeout: 5000 });
+  assert.deepEqual(await page.locator('#people li').allTextContents(), ['person 1: seen, left and right 98 % certain']);
+  await pointAtHead(page);
+  await page.mouse.down();
+  await page.mouse.up();
+  await page.mouse.move(1200, 60);
+  await page.waitForTimeout(300);
+  const said = (await text(page, '#joint')).split('\n');
+  assert.deepEqual(said.slice(0, 3), ['Head, person 1', '95 % within ±56 × 28 × 14 mm', 'from s1 (97 %), s2 (0 %)'], 'it stays when clicked');
+  assert.match(said[3], /^seen, \d+ ms old$/);
+  await picture(page, 'uncertainty');
+  world.person = { sidesConfidence: 0.5, carriedFor: 0.42 };
+  await page.waitForFunction(() => /from no sensor/.test(document.getElementById('joint').textContent), null, { timeout: 5000 });
+  await page.waitForFunction(() => /out of sight for 0\.4 s, left and right 50 %/.test(document.getElementById('people').textContent), null, { timeout: 5000 });
+  await page.keyboard.press('Escape');
+  await page.waitForFunction(() => document.getElementById('joint').hidden, null, { timeout: 5000 });
+  await page.keyboard.press('u');
+  await page.waitForFunction(() => window.chorusViewer.ellipsoids === 0 && !document.querySelector('#people li'), null, { timeout: 5000 });
+  assert.deepEqual(complaints, []);
+  await page.close();
+  server.stop();
+});
+
 test('frames that stand still are grey, then gone', async () => {
   const server = await startFakeFusion(FILES);
   const { page } = await openViewer(browser, server.url);
@@ -144,7 +190,8 @@ test('says so when the server goes away, and shows nothing of it any more', asyn
 
 test('says what is missing when three.js is not installed', async () => {
   const folder = await mkdtemp(join(tmpdir(), 'chorus-viewer-'));
-  for (const file of ['index.html', 'boot.js', 'viewer.js', 'viewer.css', 'poll.js', 'panel.js', 'state.js', 'coverage.js', 'skeleton_view.js'])
+  for (const file of ['index.html', 'boot.js', 'viewer.js', 'viewer.css', 'poll.js', 'panel.js', 'state.js', 'coverage.js', 'certainty.js',
+    'readout.js', 'skeleton_view.js'])
     await copyFile(join(FILES, file), join(folder, file));
   const server = await startFakeFusion(folder);
   const { page } = await openViewer(browser, server.url);

@@ -12,16 +12,15 @@
 namespace chorus::importers {
 namespace {
 
-constexpr std::size_t kFieldsPerJoint = 7;
-constexpr std::size_t kFields = kFieldsPerJoint * kJointCount;
-constexpr BodyId kOnlyBody{1};
+constexpr std::size_t kValuesPerJoint = 7;
+constexpr std::size_t kValues = kValuesPerJoint * kJointCount;
 
 Result<Skeleton<SensorSpace>> read_joints(const Row& row) {
   Skeleton<SensorSpace> skeleton;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     std::array<double, 3> x{};
     std::array<double, 4> wxyz{};
-    const std::size_t first = kFieldsPerJoint * j;
+    const std::size_t first = kValuesPerJoint * j;
     if (const auto read = row.numbers(first, x, kMaxImported); !read) return pass(read);
     if (const auto read = row.numbers(first + 3, wxyz, kMaxQuaternionPart); !read)
       return pass(read);
@@ -30,11 +29,11 @@ Result<Skeleton<SensorSpace>> read_joints(const Row& row) {
   return skeleton;
 }
 
-Result<void> read_rows(LineReader& lines, const ImportOptions& options,
-                       record::FrameRecording& recording) {
+Result<void> read_poses(LineReader& lines, const ImportOptions& options,
+                        record::FrameRecording& recording) {
   auto& frames = recording.frames;
   while (const auto line = lines.next_filled()) {
-    const auto row = Row::split(lines, *line, ' ', kFields);
+    const auto row = Row::split(lines, *line, ' ', kValues);
     if (!row) return pass(row);
     const auto joints = read_joints(*row);
     if (!joints) return pass(joints);
@@ -60,7 +59,7 @@ Result<record::FrameRecording> read_keraal_text(const std::filesystem::path& fil
       {"Kinect v2 (KERAAL text)",
        {{"time", kUniformTimeNote}, {"states", "none in the file; every joint counts as tracked"}},
        "row",
-       read_rows});
+       read_poses});
 }
 
 }  // namespace chorus::importers

@@ -1,6 +1,5 @@
 // KERAAL Kinect text: one Kinect v2, one body per row, 25 x (x y z qw qx qy qz), 30 Hz; without
 // times and states.
-// times nor states.
 //
 // The notes that come with the format say x y z w, but the quaternions are w x y z: only then does
 // the y axis lie along the bone that ends at the joint (median angle 0.0 deg, against 51-179 deg).

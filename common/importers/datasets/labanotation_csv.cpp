@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kFieldsPerJoint = 4;  // x y z state
 constexpr std::size_t kFields = 1 + kFieldsPerJoint * kJointCount;
 constexpr std::int64_t kNanosecondsPerTick = 100;
-constexpr BodyId kOnlyBody{1};
 
 /// An epoch that ticks may count from; `unix_epoch` is the beginning of 1970 in its ticks.
 struct TickEpoch {

@@ -11,8 +11,6 @@
 namespace chorus::importers {
 namespace {
 
-constexpr BodyId kOnlyBody{1};
-
 /// Our names for the joints of Kinect v1, in the order of SDK 1; what it calls ShoulderCenter is
 /// our SpineShoulder.
 // clang-format off
@@ -40,8 +38,8 @@ Result<Skeleton<SensorSpace>> read_skeleton(const nlohmann::json& joints, const 
   return skeleton;
 }
 
-Result<void> read_frames(const nlohmann::json& skeletons, const std::string& at,
-                         const ImportOptions& options, record::FrameRecording& recording) {
+Result<void> read_skeletons(const nlohmann::json& skeletons, const std::string& at,
+                            const ImportOptions& options, record::FrameRecording& recording) {
   if (!skeletons.is_array() || skeletons.empty())
     return fail(ErrorCode::Malformed, at, "\"skeletons\" must be an array of frames.");
   if (skeletons.size() > options.limits.max_frames)
@@ -103,7 +101,7 @@ Result<record::FrameRecording> read_nw_ucla_json(const std::filesystem::path& fi
                      {"states",
                       "none in the file; the 20 joints of a Kinect v1 count as tracked, "
                       "Neck, hand tips and thumbs as not tracked"}};
-  if (const auto read = read_frames(**skeletons, file.string(), options, recording); !read)
+  if (const auto read = read_skeletons(**skeletons, file.string(), options, recording); !read)
     return pass(read);
   return recording;
 }

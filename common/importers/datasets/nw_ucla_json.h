@@ -18,7 +18,7 @@ namespace chorus::importers {
                                                                const ImportOptions& options = {});
 
 /// Refuses a set in which two recordings have the same positions throughout: two different cameras
-/// cannot give these.
+/// cannot produce these.
 [[nodiscard]] Result<void> refuse_copies(const std::vector<record::FrameRecording>& views);
 
 }  // namespace chorus::importers

@@ -9,14 +9,15 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-// Weights are relative to one depth point at kUsualRange.  Chosen by hand until people who walk
-// before one sensor were followed (six walks); never on a result of registration or fusion.
+// Weights are relative to that of one depth point at kUsualRange.  They were chosen by hand until
+// the fit followed people who walk in front of one sensor (six walks), never by a result of
+// registration or fusion.
 constexpr double kUsualRange = 2.5;  // [m]
-constexpr double kRobust = 0.05;     // residuals beyond count less [m]
+constexpr double kRobust = 0.05;     // larger residuals count less [m]
 constexpr double kBoneWeight = 300.0;
 constexpr double kShapeWeight = 40.0;  // the trunk is straight
 constexpr double kTwistWeight = 8.0;   // hips turn with the shoulders
-constexpr double kFollowWeight = 3.0;  // a limb goes on as it went
+constexpr double kFollowWeight = 3.0;  // a limb goes on moving as before
 constexpr double kStayWeight = 0.5;
 constexpr double kRestWeight = 0.3;    // towards hanging down
 constexpr double kFootWeight = 3.0;    // toes point to the front
@@ -24,15 +25,15 @@ constexpr double kHandWeight = 3.0;    // hands go on along the forearm
 constexpr double kApartWeight = 30.0;  // legs do not cross
 constexpr double kApart = 0.03;        // least share of the height between knees, ankles
 constexpr double kThroughWeight = 8.0;
-constexpr double kThrough = 0.15;       // seeing so little past a node is no contradiction [m]
-constexpr double kTrunkThrough = 0.15;  // further past a node of the trunk, it is beside [m]
+constexpr double kThrough = 0.15;       // a depth this much beyond a node is no contradiction [m]
+constexpr double kTrunkThrough = 0.15;  // a ray that goes further passes beside the trunk [m]
 constexpr double kTrunkWeight = 8.0;
-constexpr double kThroughReach = 0.6;  // the nearest own point is sought so far [m]
-constexpr double kDeep = 0.04;         // a node under the surface, at least [m]
+constexpr double kThroughReach = 0.6;  // how far the person's nearest point is looked for [m]
+constexpr double kDeep = 0.04;         // least depth of a node below the surface [m]
 constexpr double kMostStep = 0.12;     // of a node in one round [m]
 constexpr double kMomentum = 0.7;
 constexpr double kSupported = 0.2;
-constexpr double kSeen = 0.6;  // of a capsule's outline usually gives points
+constexpr double kSeen = 0.6;  // share of a capsule's outline that usually gives points
 
 struct Nearest {
   std::size_t segment = 0;
@@ -57,8 +58,8 @@ struct Axes {
   }
 };
 
-/// A capsule lies behind what is seen of it: an axis before its point is as far off as a whole
-/// turn-over.
+/// A capsule's axis must lie behind the points that are seen of it; an axis in front of its point
+/// counts as far away as if the capsule were turned over.
 Nearest nearest(const Axes& axes, const Eigen::Vector3d& point) {
   Nearest best;
   double least = std::numeric_limits<double>::infinity();
@@ -119,7 +120,7 @@ void keep_bones(NormalEquations& equations, const Nodes& nodes, double height) {
   }
 }
 
-/// sum of the combination = target
+/// Adds the equation: sum of the combination = target.
 void want(NormalEquations& equations, const Nodes& nodes, std::span<const Term> combination,
           const Eigen::Vector3d& target, double weight) {
   Eigen::Vector3d now = Eigen::Vector3d::Zero();
@@ -199,9 +200,10 @@ const SurfacePoint* nearest_seen(const Evidence& evidence, const Eigen::Vector3d
   return found;
 }
 
-/// A node lies behind the surface in its pixel.  Where the sensor sees a little past a node of the
-/// trunk, it goes back along the ray (limbs are thinner than a pixel's error); where it sees far
-/// past a limb, the limb goes to the nearest point of the person.
+/// A node must lie behind the surface that its pixel shows.  If the sensor sees a little beyond a
+/// node of the trunk, the node is moved back along the ray (not so for limbs, which are thinner
+/// than the error of a pixel).  If it sees far beyond a limb, the limb is moved to the person's
+/// nearest point.
 void leave_free_space(NormalEquations& equations, const Nodes& nodes, const Evidence& evidence) {
   for (int i = 0; i < kNodeCount; ++i) {
     const Eigen::Vector3d node = nodes.col(i);
@@ -228,7 +230,7 @@ void limit_steps(Nodes& step) {
   }
 }
 
-/// Points that half a capsule gives when nothing hides it.
+/// How many points half a capsule gives if nothing hides it.
 double expected_points(const Axes& axes, std::size_t segment, const DepthCamera& camera) {
   const Eigen::Vector3d middle = axes.from[segment] + 0.5 * axes.way[segment];
   const double across = axes.way[segment].cross(middle.normalized()).norm();

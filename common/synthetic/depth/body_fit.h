@@ -1,7 +1,8 @@
-// One generic body fitted to the depth points of one person: articulated iterated closest point.
+// Fits a generic body to the depth points of one person, by articulated iterated closest point.
 //
-// Each round every point chooses the nearest capsule, and one Gauss-Newton step moves all nodes at
-// once; bones keep their length, a trunk keeps its shape, limbs without evidence go with the trunk.
+// In each round every point is assigned to the nearest capsule, and one Gauss-Newton step moves all
+// nodes together.  Bones keep their length, the trunk keeps its shape, and limbs without points
+// move with the trunk.
 #pragma once
 
 #include <array>
@@ -12,10 +13,10 @@
 
 namespace chorus::synthetic::depth {
 
-/// What one image says of one person.
+/// What one image shows of one person.
 struct Evidence {
   std::span<const SurfacePoint> points;
-  double share = 1.0;  ///< Of all the person's points that `points` are.
+  double share = 1.0;  ///< `points` as a share of all the person's points.
   const DepthImage* image = nullptr;
   const DepthCamera* camera = nullptr;
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();
@@ -25,17 +26,17 @@ struct FittedBody {
   Nodes now = Nodes::Zero();
   Nodes before = Nodes::Zero();  ///< One frame earlier.
   double height = kGenericHeight;
-  std::array<double, kNodeCount> support{};  ///< Points near a node, of those that a free view has.
+  std::array<double, kNodeCount> support{};  ///< Points near each node over those of a free view.
   double misfit = 0.0;                       ///< Mean distance of points to the surface [m]
 };
 
 /// Distance of a point to the body's surface [m].
 [[nodiscard]] double distance_to(const Nodes& nodes, double height, const Eigen::Vector3d& point);
 
-/// The next frame begins: everything moves on a little as it did.
+/// Predicts the next frame: all nodes go on moving as before, but more slowly.
 void predict(FittedBody& body);
 
-/// `rounds` Gauss-Newton steps from where the body stands; then support and misfit.
+/// Makes `rounds` Gauss-Newton steps from the current pose, then computes support and misfit.
 void fit(FittedBody& body, const Evidence& evidence, int rounds);
 
 }  // namespace chorus::synthetic::depth

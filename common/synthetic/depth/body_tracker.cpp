@@ -13,34 +13,34 @@ namespace chorus::synthetic::depth {
 namespace {
 
 constexpr std::size_t kMostTracks = 6;    // as Kinect v2
-constexpr std::size_t kMostPoints = 400;  // of a person that are fitted
-constexpr std::size_t kFewPoints = 40;    // fewer are no person
-constexpr std::size_t kNewPoints = 120;   // a new person shows at least so many
+constexpr std::size_t kMostPoints = 400;  // of one person, used for the fit
+constexpr std::size_t kFewPoints = 40;    // fewer are not taken for a person
+constexpr std::size_t kNewPoints = 120;   // that a new person must have
 constexpr int kRounds = 4;
 constexpr int kFirstRounds = 15;
 constexpr std::array kFirstYaws{0.0, deg(40), -deg(40), deg(80), -deg(80)};
-constexpr double kReach = 0.35;         // points so far from the body may be its own [m]
-constexpr double kMixedReach = 0.12;    // in a piece that is mostly something else [m]
-constexpr double kOwnShare = 0.5;       // of a piece within kMixedReach: it is the person's
-constexpr double kForeignShare = 0.1;   // of a piece: below, it is somebody new or a thing
+constexpr double kReach = 0.35;       // points within this distance may belong to the body [m]
+constexpr double kMixedReach = 0.12;  // the same in a piece that is mostly something else [m]
+constexpr double kOwnShare = 0.5;  // of a piece within kMixedReach: then all of it is the person's
+constexpr double kForeignShare = 0.1;   // of a piece: below, it is a new person or an object
 constexpr int kConfirmed = 3;           // frames before a body is reported
 constexpr int kPatience = 10;           // poor frames before it is given up
 constexpr double kBadFit = 0.035;       // mean distance to the surface [m]
-constexpr double kTrunkSeen = 0.15;     // least support of head and chest of a body that is there
+constexpr double kTrunkSeen = 0.15;     // least support of head and chest of a real body
 constexpr double kSame = 0.15;          // two trunks cannot be closer [m]
-constexpr double kExchange = deg(100);  // facing beyond this: believed to face the sensor
+constexpr double kExchange = deg(100);  // beyond this facing angle, front and rear are exchanged
 constexpr double kTracked = 0.3;        // support of a joint
 constexpr int kForgotten = 60;          // frames without support: not tracked any more
-constexpr double kBorder = 6.0;         // pixels outside the image where joints are guessed
-constexpr double kLeastHeight = 1.4;    // of a person [m]
+constexpr double kBorder = 6.0;  // pixels beyond the image's border in which joints are guessed
+constexpr double kLeastHeight = 1.4;  // of a person [m]
 constexpr double kMostHeight = 2.05;
 constexpr double kGrowth = 0.2;      // of the height per frame, towards what is seen
 constexpr int kGrowing = 60;         // frames in which the height is learned
 constexpr double kHeadReach = 0.2;   // [m]
-constexpr double kWidest = 1.2;      // a new piece is at most so wide [m]
-constexpr double kLowestTop = 1.1;   // and reaches from so high
-constexpr double kTallest = 0.7;     // over at least so much [m]
-constexpr double kHeadBand = 0.15;   // its top of this height ...
+constexpr double kWidest = 1.2;      // largest width of a new person [m]
+constexpr double kLowestTop = 1.1;   // least height of its top [m]
+constexpr double kTallest = 0.7;     // its least vertical extent [m]
+constexpr double kHeadBand = 0.15;   // the topmost part of this height ...
 constexpr double kHeadWidth = 0.45;  // ... is no wider than a head [m]
 constexpr double kHalfWidth = 0.18;  // shoulder to the middle of a body [m]
 constexpr double kHalfDepth = 0.10;  // surface to the middle of a body [m]
@@ -64,7 +64,7 @@ double top_of(const std::vector<SurfacePoint>& points) {
   return top;
 }
 
-/// As big as a person, with something like a head on top.
+/// True if the piece has the size of a person and something like a head on top.
 bool may_be_person(const std::vector<SurfacePoint>& piece) {
   if (piece.size() < kNewPoints) return false;
   const double top = top_of(piece);
@@ -80,7 +80,7 @@ bool may_be_person(const std::vector<SurfacePoint>& piece) {
          whole.width() < kWidest && head.width() < kHeadWidth;
 }
 
-/// Somebody who stands there and looks past the sensor by `yaw`.
+/// A person who stands where the piece is and faces the sensor, turned by `yaw`.
 Stance guess(const std::vector<SurfacePoint>& piece, const Plane& floor, double yaw) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const SurfacePoint& point : piece) {
@@ -116,7 +116,7 @@ void learn_height(FittedBody& body, const std::vector<SurfacePoint>& points) {
   if (top > body.height) body.height += kGrowth * (std::min(top, kMostHeight) - body.height);
 }
 
-/// A body that would show its back is taken to show its front.
+/// Turns a body that would face away so that it faces the sensor.
 void believe_it_faces_us(FittedBody& body) {
   const auto facing = facing_angle(joints_of(body.now, body.height));
   if (!facing || std::abs(*facing) <= kExchange) return;
@@ -191,7 +191,7 @@ void BodyTracker::give_up() {
   std::erase_if(tracks_, [](const Track& track) {
     return track.poor > kPatience || !track.body.now.allFinite();
   });
-  // Two bodies in one place: the older one stays.
+  // Of two bodies in one place the older one is kept.
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const Eigen::Vector3d chest = tracks_[i].body.now.col(kChest);
     const auto is_double = [&chest](const Track& other) {

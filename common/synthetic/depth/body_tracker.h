@@ -1,7 +1,8 @@
-// Bodies in a sequence of depth images: found, followed, named, lost.  Knows nothing of the truth.
+// Finds bodies in a sequence of depth images, follows them, gives them ids and loses them again. It
+// does not know the truth.
 //
-// A person is taken to face the sensor, as body-tracking SDKs do: when the shoulder line has turned
-// past the side view, left and right are exchanged.
+// Like body-tracking SDKs it assumes that people face the sensor: once the shoulders have turned
+// beyond the side view, left and right are exchanged.
 #pragma once
 
 #include <vector>
@@ -20,7 +21,7 @@ class BodyTracker {
  public:
   explicit BodyTracker(const DepthCamera& camera) : camera_(camera) {}
 
-  /// The bodies of the next image; `floor` as the sensor estimates it.
+  /// Returns the bodies of the next image.  `floor`: as the sensor estimates it.
   [[nodiscard]] std::vector<TrackedBody> look(const DepthImage& image, const Plane& floor);
 
  private:

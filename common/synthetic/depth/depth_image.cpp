@@ -15,8 +15,8 @@ struct Patch {
   int left, right, top, bottom;  ///< Pixels, right and bottom exclusive.
 };
 
-/// Pixels that may see the taper: the square around each end's ball, everything when it is too
-/// near.
+/// The pixels that may see the taper: the squares around the balls at its ends, or the whole image
+/// if it is too near.
 Patch patch_of(const Taper& taper, const DepthCamera& camera) {
   Patch patch{camera.width, 0, camera.height, 0};
   const auto clip = [](double v, int most) {
@@ -71,7 +71,8 @@ void draw_taper(DepthImage& image, const Taper& taper, const DepthCamera& camera
        });
 }
 
-/// Unit variance out of one draw: the sum of four uniform numbers (within +-3.5).
+/// Nearly Gaussian noise of unit variance from one draw: the sum of four uniform numbers, within
+/// +-3.5.
 double unit_noise(Draw& draw) {
   const std::uint64_t bits = draw.bits();
   double sum = 0;
@@ -83,7 +84,7 @@ double unit_noise(Draw& draw) {
   return (sum - kMean) * kScale;
 }
 
-/// The depth across the nearest edge; the pixel's own when there is none.
+/// The depth on the other side of the nearest edge; the pixel's own depth if there is no edge.
 double across_edge(const DepthImage& exact, int column, int row) {
   const double own = exact.at(column, row);
   constexpr std::array<std::array<int, 2>, 4> kCross{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};

@@ -23,7 +23,7 @@ struct DepthCamera {
   double cx = 63.5;
   double cy = 52.5;
 
-  /// Through the middle of a pixel, z = 1.
+  /// The ray through the middle of a pixel, with z = 1.
   [[nodiscard]] Eigen::Vector3d ray(int column, int row) const {
     return {-(column - cx) / focal, -(row - cy) / focal, 1.0};
   }
@@ -36,7 +36,7 @@ struct DepthImage {
   int width = 0;
   int height = 0;
   std::vector<float> depth;  ///< Along z [m]
-  std::vector<bool> dark;    ///< Of dark cloth; only in exact images.
+  std::vector<bool> dark;    ///< True on dark cloth; only in exact images.
 
   [[nodiscard]] std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
@@ -59,7 +59,7 @@ struct View {
 
 [[nodiscard]] DepthImage render(const View& view, const DepthCamera& camera);
 
-/// Range limits, noise, flying pixels, holes.
+/// Applies the limits of range, noise, flying pixels and holes to an exact image.
 [[nodiscard]] DepthImage measure(const DepthImage& exact, const TimeOfFlight& camera, Draw draw);
 
 }  // namespace chorus::synthetic::depth

@@ -10,7 +10,7 @@ namespace chorus::synthetic::depth {
 namespace {
 
 constexpr std::uint64_t kPurpose = 1101;
-constexpr double kMostLost = 0.9;  // of pixels; something must be seen
+constexpr double kMostLost = 0.9;  // of pixels, so that something is still seen
 
 struct Parameter {
   double& (*field)(DepthProfile&);
@@ -25,7 +25,7 @@ constexpr std::array kParameters{
     // [notes] sigma(z) = 1.2 mm + 0.4 mm (z / 1 m)^2
     Parameter{[](DepthProfile& p) -> double& { return p.camera.noise_near; }, 0.0012, 0.3},
     Parameter{[](DepthProfile& p) -> double& { return p.camera.noise_square; }, 0.0004, 0.3},
-    // [est] the mixed seam is about one pixel of 512 wide, our pixels are four wide
+    // [est] mixed depths are about one of 512 pixels wide; each of ours is four of those wide
     Parameter{[](DepthProfile& p) -> double& { return p.camera.flying_share; }, 0.2, 0.4},
     // [est]
     Parameter{[](DepthProfile& p) -> double& { return p.camera.hole_share; }, 0.003, 0.5},

@@ -1,7 +1,7 @@
 // The parameters of profile C: what a time-of-flight camera does to a depth image, and how people
 // differ from the generic body that is fitted to it.
 //
-// Metres, seconds.  The errors of joints are not in here: they emerge.
+// In metres and seconds.  There are no errors of joints in here: they result from the fit.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@
 namespace chorus::synthetic::depth {
 
 struct TimeOfFlight {
-  double noise_near = 0;       ///< sigma(z) = near + square z^2 [m]
-  double noise_square = 0;     ///< [1/m]
-  double flying_share = 0;     ///< Of the pixels at a depth edge: somewhere between both sides.
-  double hole_share = 0;       ///< Of all pixels: no answer.
-  double dark_hole_share = 0;  ///< Of pixels on dark cloth or hair.
+  double noise_near = 0;                   ///< sigma(z) = near + square z^2 [m]
+  double noise_square = 0;                 ///< [1/m]
+  double flying_share = 0;                 ///< Share of edge pixels that lie between both sides.
+  double hole_share = 0;                   ///< Share of all pixels that give no depth.
+  double dark_hole_share = 0;              ///< The same for pixels on dark cloth or hair.
   double least_range = 0, most_range = 0;  ///< [m]
 };
 
 struct BuildSpread {
   double girth = 0;        ///< Radii of a person's segments differ by up to this share.
-  double clothing = 0;     ///< Cloth adds up to this to a radius [m]
-  double dark_chance = 0;  ///< Of hair, trunk, legs each to be dark.
+  double clothing = 0;     ///< Clothing adds up to this much to a radius [m]
+  double dark_chance = 0;  ///< Probability to be dark; for hair, trunk and legs each.
 };
 
 struct DepthProfile {
@@ -39,11 +39,13 @@ struct DepthProfile {
 /// Every parameter drawn uniformly from its interval; the same seed gives the same draw.
 [[nodiscard]] DepthProfile draw_depth_profile(std::uint64_t seed);
 
-/// One source multiplied.  White: noise of depth.  Gross: flying pixels and holes.  Bias: girth and
-/// clothing.  Delivery and clock as in kinect/.  The other sources have no parameter here.
+/// Returns the profile with one source of error multiplied.  White: noise of depth.  Gross: flying
+/// pixels and holes.  Bias: girth and clothing.  Delivery and clock: as in kinect/.  The other
+/// sources have no parameter here.
 [[nodiscard]] DepthProfile with_source(DepthProfile profile, kinect::Source source, double factor);
 
-/// First 12 hex digits of the SHA-256 of this folder's sources: errors emerge from all of them.
+/// First 12 hex digits of the SHA-256 of the code of this folder, without comments and white space
+/// (../code_hash.cmake): errors emerge from all of it.
 [[nodiscard]] std::string frozen_depth_hash();
 
 }  // namespace chorus::synthetic::depth

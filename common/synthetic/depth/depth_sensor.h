@@ -1,5 +1,5 @@
 // Profile C: a sensor that renders depth images of the truth, measures them as a time-of-flight
-// camera would and fits a generic body to them.  Errors of joints emerge; none is drawn.
+// camera would and fits a generic body to them.  Errors of joints result from that; none is drawn.
 //
 // When frames are taken, dropped and arrive, the floor plane and the host's clock are as in
 // kinect/.
@@ -19,8 +19,8 @@ struct DepthSetting {
   std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
   DepthProfile profile;
   std::uint64_t seed = 1;
-  std::uint64_t people_seed = 1;  ///< How people are built and dressed: the same for all sensors.
-  bool own_clock = true;          ///< Stamps by the host's erring clock; false: true time.
+  std::uint64_t people_seed = 1;  ///< Of people's build and clothing; equal for all sensors.
+  bool own_clock = true;          ///< Stamps by the host's clock with its errors; false: true time.
 };
 
 class DepthSensor final : public BodySensor {
@@ -42,7 +42,7 @@ class DepthSensor final : public BodySensor {
   std::uint64_t number_;
   std::vector<Build> builds_;
   DepthCamera camera_;
-  kinect::FloorError floor_ = kinect::nominal_profile("A").floor;  ///< The same SDK estimates it.
+  kinect::FloorError floor_ = kinect::nominal_profile("A").floor;  ///< From the same SDK.
   BodyTracker tracker_;
 };
 

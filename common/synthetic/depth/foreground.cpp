@@ -7,16 +7,16 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-constexpr double kFloorBand = 0.05;  // this much over the floor is floor [m]
+constexpr double kFloorBand = 0.05;  // everything lower counts as floor [m]
 constexpr double kHighest = 2.4;     // nobody reaches higher [m]
-constexpr double kJoined = 0.10;     // neighbouring pixels of one surface [m]
-constexpr int kLeastNeighbours = 3;  // of eight; fewer: a stray pixel
+constexpr double kJoined = 0.10;     // largest step between neighbouring pixels of one surface [m]
+constexpr int kLeastNeighbours = 3;  // of eight; a pixel with fewer is stray
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 constexpr std::array<std::array<int, 2>, 8> kAround{
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
 
-/// Index of the pixel beside; kNone outside the image.
+/// Index of the neighbouring pixel; kNone if it is outside the image.
 std::size_t beside(const DepthImage& image, std::size_t index, const std::array<int, 2>& step) {
   const int column = static_cast<int>(index) % image.width + step[0];
   const int row = static_cast<int>(index) / image.width + step[1];
@@ -35,7 +35,7 @@ bool is_stray(const DepthImage& image, std::size_t index) {
   return like < kLeastNeighbours;
 }
 
-/// Which point a pixel became; kNone: none.
+/// For each pixel the index of its point, or kNone.
 using PointOfPixel = std::vector<std::size_t>;
 
 PointOfPixel pick(const DepthImage& image, const DepthCamera& camera, const Plane& floor,

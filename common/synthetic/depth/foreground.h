@@ -1,4 +1,4 @@
-// From a depth image to points that are neither floor nor stray, in connected pieces.
+// Turns a depth image into points that are neither floor nor stray, grouped into connected pieces.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@ struct Foreground {
   std::size_t pieces = 0;
 };
 
-/// Floor and everything close to it goes, pixels that float between two surfaces go; neighbouring
-/// pixels of like depth form a piece.
+/// Removes the floor, everything close to it, and pixels that float between two surfaces.
+/// Neighbouring pixels of similar depth form a piece.
 [[nodiscard]] Foreground foreground_of(const DepthImage& image, const DepthCamera& camera,
                                        const Plane& floor);
 

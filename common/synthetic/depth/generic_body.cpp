@@ -31,7 +31,8 @@ constexpr std::array kSources{
 };
 // clang-format on
 
-constexpr double kThumb = 0.022;  // from the hand towards the body's middle, share of the height
+constexpr double kThumb =
+    0.022;  // from the hand towards the middle of the body, as a share of the height
 
 }  // namespace
 

@@ -1,8 +1,9 @@
-// The fitter's idea of a person: nineteen points, bones of everybody's proportions, capsules around
-// them.
+// The body that is fitted to everybody: nineteen nodes, bones of average proportions, and capsules
+// around them.
 //
-// It has neither the build nor the bone lengths of whom it is fitted to: proportions of body height
-// (Drillis and Contini, as given by Winter) and mean girths (ANSUR II).  Front and rear look alike.
+// It has neither the build nor the bone lengths of the person it is fitted to.  Bone lengths are
+// shares of the body height (Drillis and Contini, as given by Winter), girths are means (ANSUR II).
+// Front and rear look alike.
 #pragma once
 
 #include <array>
@@ -31,7 +32,7 @@ using Nodes = Eigen::Matrix<double, 3, kNodeCount>;
 struct Between {
   Node first;
   Node second;
-  double share = 0.0;  ///< Of the second.
+  double share = 0.0;  ///< 0: at the first, 1: at the second.
 
   [[nodiscard]] Eigen::Vector3d at(const Nodes& nodes) const {
     return (1.0 - share) * nodes.col(first) + share * nodes.col(second);
@@ -46,7 +47,7 @@ struct Segment {
 
 constexpr Between on(Node node) { return {node, node, 0.0}; }
 
-inline constexpr double kGenericHeight = 1.7;  ///< Radii below are for it [m]
+inline constexpr double kGenericHeight = 1.7;  ///< The height that the radii below are for [m]
 
 // clang-format off
 inline constexpr std::array kSegments{
@@ -87,8 +88,8 @@ inline constexpr std::array kLimbs{
 };
 // clang-format on
 
-/// Where the points of the trunk lie in a standing body, as shares of its height: to the body's
-/// left, up from the floor.
+/// Where the nodes of the trunk are in a standing body, as shares of its height: towards the body's
+/// left, and up from the floor.
 struct TrunkPlace {
   Node node;
   double left;
@@ -101,7 +102,7 @@ inline constexpr std::array kTrunk{
     TrunkPlace{kHipR, -0.052, 0.530},
 };
 
-/// How a body stands in the room of the sensor.
+/// Where and how a body stands, in sensor space.
 struct Stance {
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< On the floor under the pelvis.
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();
@@ -109,13 +110,13 @@ struct Stance {
   double height = kGenericHeight;                    ///< [m]
 };
 
-/// Upright, arms hanging, feet towards the front.
+/// A body that stands upright, with hanging arms and its feet pointing forwards.
 [[nodiscard]] Nodes standing(const Stance& stance);
 
-/// The node on the other side.
+/// The corresponding node on the other side of the body.
 [[nodiscard]] Node other_side(Node node);
 
-/// Left becomes right.
+/// The nodes with left and right exchanged.
 [[nodiscard]] Nodes exchanged(const Nodes& nodes);
 
 /// The 25 joints of Kinect v2, all tracked; orientations are not given.

@@ -1,4 +1,4 @@
-// Least squares over the points of the generic body: J^T W J and J^T W r, solved at once.
+// Normal equations of least squares for the nodes of the generic body: J^T W J and J^T W r.
 #pragma once
 
 #include <span>
@@ -17,13 +17,13 @@ class NormalEquations {
  public:
   NormalEquations();
 
-  /// The combination should move by `way` along the unit vector `direction`.
+  /// Adds the wish that the combination of nodes moves by `way` along the unit vector `direction`.
   void move_along(std::span<const Term> combination, const Eigen::Vector3d& direction, double way,
                   double weight);
-  /// The combination should move by `way`.
+  /// Adds the wish that the combination of nodes moves by `way`.
   void move(std::span<const Term> combination, const Eigen::Vector3d& way, double weight);
 
-  /// The step of every node; zero when the equations have no finite solution.
+  /// The step of every node; zero if the equations have no finite solution.
   [[nodiscard]] Nodes solve() const;
 
  private:

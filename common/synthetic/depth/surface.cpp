@@ -109,7 +109,7 @@ double scale_of(const Skeleton<SensorSpace>& body) {
   return std::isfinite(trunk) ? std::clamp(trunk / kMeanTrunk, kLeastScale, kMostScale) : 1.0;
 }
 
-/// The first meeting with a ball in front of the origin.
+/// Distance to the first intersection with a ball in front of the origin.
 std::optional<double> hit_ball(const Eigen::Vector3d& centre, double radius,
                                const Eigen::Vector3d& ray) {
   const double closest = ray.dot(centre);
@@ -119,15 +119,16 @@ std::optional<double> hit_ball(const Eigen::Vector3d& centre, double radius,
   return distance > 0 ? std::optional(distance) : std::nullopt;
 }
 
-/// The cone that touches both balls, between the circles where it touches them.
+/// Distance to the cone that touches both balls, between the circles where it touches them.
 std::optional<double> hit_cone(const Taper& taper, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d axis = taper.to - taper.from;
   const double length = axis.norm();
   const double sine = length > 0 ? (taper.radius_from - taper.radius_to) / length : 1.0;
   if (std::abs(sine) >= 1.0) return std::nullopt;  // one ball contains the other
   const Eigen::Vector3d unit = axis / length;
-  const double slope = sine / std::sqrt(1.0 - sine * sine);  // radius lost per axis length
-  // On the cone: |x across the axis| = r0 - slope * along, r0 the cone's radius at `from`.
+  const double slope = sine / std::sqrt(1.0 - sine * sine);  // radius lost per length of axis
+  // Points x on the cone satisfy |x across the axis| = r0 - slope * along, with r0 its radius at
+  // `from`.
   const double r0 = taper.radius_from / std::sqrt(1.0 - sine * sine);
   const double d = ray.dot(unit);
   const double o = -taper.from.dot(unit);

@@ -19,7 +19,7 @@ enum Purpose : std::uint64_t {
   kSlow
 };
 
-/// Half the rate for the moment, for every sensor on its own: every other frame is not taken.
+/// True while this sensor runs at half its rate and takes only every other frame.
 bool is_slow(const Delivery& delivery, std::uint64_t number, const ErrorKeys& keys) {
   if (!(delivery.slow_time > 0)) return false;
   const double time = static_cast<double>(number) * delivery.period;
@@ -46,7 +46,8 @@ Timestamp exposure(const Delivery& delivery, std::uint64_t number, const ErrorKe
   const double phase = Draw{kPhase, keys.seed, keys.sensor}.uniform() * delivery.period;
   const double jitter =
       Draw{kJitter, keys.seed, keys.sensor, number}.uniform(-1.0, 1.0) * delivery.jitter;
-  // The period in whole nanoseconds: years of frames would lose their phase in a double.
+  // The period is in whole nanoseconds, because a double could not hold the phase of frames that
+  // are numbered over years.
   const Duration period = from_seconds(delivery.period);
   return Timestamp(period * static_cast<Duration::rep>(number) + from_seconds(phase + jitter));
 }

@@ -1,4 +1,5 @@
-// When frames are taken and arrive, which are lost, and what the host's clock says.  Seconds.
+// When frames are exposed and when they arrive, which ones are lost, and what the sensor host's
+// clock shows.  All times in seconds.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +10,25 @@
 
 namespace chorus::synthetic::kinect {
 
-/// A host's clock drawn from the profile; some step once, some time after the origin.
+/// Draws a host's clock from the profile.  Some clocks jump once, at a random time after the
+/// origin.
 [[nodiscard]] HostClock draw_clock(const ClockError& clock, Timestamp origin,
                                    const ErrorKeys& keys);
 
-/// When frame `number` (periods since the epoch) is truly exposed.
+/// The true time at which frame `number` is exposed; frames are numbered in periods since the
+/// epoch.
 [[nodiscard]] Timestamp exposure(const Delivery& delivery, std::uint64_t number,
                                  const ErrorKeys& keys);
 /// The first frame exposed at or after the instant.
 [[nodiscard]] std::uint64_t first_frame(const Delivery& delivery, Timestamp instant,
                                         const ErrorKeys& keys);
-/// Lost on the way, or never taken: the odd ones of an episode at half the rate.
+/// True if the frame was lost on the way, or never taken: while a sensor runs at half the rate, the
+/// odd frames are missing.
 [[nodiscard]] bool is_dropped(const Delivery& delivery, std::uint64_t number,
                               const ErrorKeys& keys);
-/// The tracker has lost this person for the moment.
+/// True while the tracker has lost this person.
 [[nodiscard]] bool is_lost(const Delivery& delivery, double time, const ErrorKeys& keys);
-/// Exposure to arrival.
+/// The delay between exposure and arrival.
 [[nodiscard]] Duration latency(const Delivery& delivery, std::uint64_t number,
                                const ErrorKeys& keys);
 

@@ -8,7 +8,7 @@
 namespace chorus::synthetic::kinect {
 namespace {
 
-/// The exact body under the labels that the SDK gives.
+/// The exact body with the labels that the SDK gives to its joints.
 Skeleton<SensorSpace> labelled(const Skeleton<SensorSpace>& exact, const FlipState& flip) {
   Skeleton<SensorSpace> body = exact;
   if (flip.blend <= 0.5) return body;
@@ -16,8 +16,8 @@ Skeleton<SensorSpace> labelled(const Skeleton<SensorSpace>& exact, const FlipSta
   return body;
 }
 
-/// Of joints that err freely: what is drawn, what bias is worth, and what the yaw that the SDK
-/// shows moves for certain.
+/// Moments before bones are given fixed lengths: random error, bias, and the displacement caused by
+/// the wrong yaw that the SDK shows.
 Moments of_free_joints(const Sight& sight, double time, const Profile& profile,
                        const ErrorKeys& keys) {
   const double facing = sight.stand.view.facing;
@@ -36,7 +36,8 @@ Moments of_free_joints(const Sight& sight, double time, const Profile& profile,
   return moments;
 }
 
-/// What turns a bone: the difference of its ends' errors, of which a follower has little.
+/// The moment that turns a bone: that of the difference between its ends' errors, which is small
+/// for a joint that follows its neighbour.
 Eigen::Matrix3d turning(const Moments& free, JointId parent, JointId child,
                         const ColouredError& coloured) {
   const Eigen::Matrix3d apart = free[index_of(parent)] + free[index_of(child)];

@@ -1,10 +1,9 @@
-// How far a simulated joint is off on average: the true mean square of its error, given how the
-// body stands, which joints are hidden and which are called inferred, but not which errors were
-// drawn.
+// The true mean square error of each simulated joint, given the body's pose, which joints are
+// hidden and which are called inferred, but not the errors that were actually drawn.
 //
-// What a perfect error model would say of a sight.  No sensor knows it and no algorithm may; a
-// bound on what combining sights can give is made of it.  Of a fitted body (fitted_body.h) to first
-// order.
+// This is what a perfect error model would state about one sensor's view.  No real sensor knows it
+// and no algorithm may use it; it serves to compute a bound on what fusion can achieve.  For a
+// fitted body (fitted_body.h) it is correct to first order.
 #pragma once
 
 #include "common/synthetic/kinect/joint_bias.h"
@@ -13,22 +12,22 @@
 
 namespace chorus::synthetic::kinect {
 
-/// Sensor space, about the joint's true place [m^2].
+/// One matrix per joint, in sensor space, about the joint's true position [m^2].
 using Moments = std::array<Eigen::Matrix3d, kJointCount>;
 
-/// One person before one sensor, just before random errors come to the body.
+/// One person in front of one sensor, just before random errors are added to the body.
 struct Sight {
   const Skeleton<SensorSpace>& exact;
-  const Skeleton<SensorSpace>& shown;  ///< With bias, labels as the SDK has them, states decided.
+  const Skeleton<SensorSpace>& shown;  ///< With bias, the SDK's labels, and states.
   FlipState flip;
   const Stand& stand;
 };
 
-/// Of every joint that is seen; zero for the others.
+/// The moment of every joint that is seen; zero for the others.
 [[nodiscard]] Moments moments_of(const Sight& sight, double time, const Profile& profile,
                                  const ErrorKeys& keys);
 
-/// Lets each seen joint bring its moment.
+/// Writes each seen joint's moment into its covariance.
 void confide(Skeleton<SensorSpace>& body, const Moments& moments);
 
 }  // namespace chorus::synthetic::kinect

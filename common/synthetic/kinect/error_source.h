@@ -8,17 +8,24 @@ namespace chorus::synthetic::kinect {
 /// The layers, as with_source() groups them.
 enum class Source { Visibility, Yaw, Bias, Coloured, White, Gross, Delivery, Clock };
 
-/// The profile with one source of error multiplied: 0 switches it off, 1 leaves it; more factor is
-/// more error (a test holds each to it, up to 3).
+/// Returns the profile with one source of error multiplied by `factor`: 0 switches it off, 1 leaves
+/// it as it is, and a larger factor means a larger error (a unit test checks this for each source,
+/// up to 3).  What is multiplied:
 ///
-/// Visibility: how far hidden joints are off, and how often visible ones are called inferred; which
-/// joints are hidden is geometry and stays, as does the share of those that are called inferred.
-/// Yaw: the slopes beyond the reliable angle are taken to this power, so that the body shown turns
-/// less and less but never back; left and right are exchanged earlier, towards the reliable angle,
-/// below 1 later, towards half a turn. Bias, Coloured, White: sizes.
-/// Gross: rates of teleports and ghosts; probability of exchanged ids and share by which legs
-/// merge. Delivery: share of drops and of 15 Hz, rate of gaps, both jitters; latency is no error
-/// and stays. Clock: offset, drift, size and chance of a step.  Probabilities and shares stop at 1.
+/// - Visibility: the error of hidden joints, and how often visible joints are called inferred.
+///   (Which joints are hidden is geometry, and does not change; nor does the share of them that is
+///   called inferred.)
+/// - Yaw: the slopes beyond the reliable angle are raised to this power, so that the body shown
+///   turns less and less but never backwards.  Above 1 left and right are exchanged at a smaller
+///   angle, closer to the reliable one; below 1 at a larger one, closer to half a turn.
+/// - Bias, Coloured, White: the size of the error.
+/// - Gross: the rates of teleports and ghosts, the probability that ids are exchanged, and how far
+///   legs are pulled together.
+/// - Delivery: the shares of lost frames and of time at 15 Hz, the rate of gaps, and both jitters.
+///   Latency is not an error and does not change.
+/// - Clock: offset, drift, and the size and probability of a step.
+///
+/// Probabilities and shares are limited to 1.
 [[nodiscard]] Profile with_source(Profile profile, Source source, double factor);
 
 }  // namespace chorus::synthetic::kinect

@@ -1,8 +1,9 @@
-// A tracker that fits a body of fixed proportions: every bone of a frame has its length times one
-// scale (Azure Kinect, measured: two bones' lengths correlate by 1.000000, one scale in 0.77-1.09).
+// A tracker that fits a body of fixed proportions: in each frame all bones have their own lengths
+// times one common scale.  (Measured on Azure Kinect logs: the lengths of any two bones correlate
+// by 1.000000, and the scale is between 0.77 and 1.09.)
 //
-// Bones keep the directions that the erring joints give them; lengths are the fitted body's.  The
-// middle of the trunk stays where the erring joints have it.
+// Bones keep the directions given by the joints with their errors, but have the lengths of the
+// fitted body.  The middle of the trunk stays where the joints with their errors put it.
 #pragma once
 
 #include "common/body/bones.h"
@@ -10,16 +11,17 @@
 
 namespace chorus::synthetic::kinect {
 
-/// Memory of one body in one sensor: what its scale does.
+/// What one sensor's tracker remembers of one body: the course of its scale.
 struct FitState {
   SmoothNoise scale;
 };
 
-/// Lengths of the bones over the true ones, in the order of kBones: for good, left as right.
+/// Ratio of each bone's fitted length to its true one, in the order of kBones.  Constant over time,
+/// and equal for left and right.
 using Proportions = std::array<double, kBones.size()>;
 [[nodiscard]] Proportions proportions_of(const BodyFit& fit, const ErrorKeys& keys);
 
-/// One frame further: the scale wanders as the trunk moves.
+/// Goes on by one frame; the scale changes faster while the trunk moves.
 void advance(FitState& state, const Stand& stand, const Moment& moment, const Profile& profile,
              const ErrorKeys& keys);
 
@@ -27,8 +29,8 @@ void advance(FitState& state, const Stand& stand, const Moment& moment, const Pr
 [[nodiscard]] double scale_of(const FitState& state, double time, const BodyFit& fit,
                               const ErrorKeys& keys);
 
-/// Gives the seen bones of an erring body the lengths of the exact one times `scale` and their
-/// proportion.
+/// Gives the seen bones of the body with errors the lengths of the exact body, times `scale` and
+/// each bone's proportion.
 [[nodiscard]] Skeleton<SensorSpace> fitted(const Skeleton<SensorSpace>& erring,
                                            const Skeleton<SensorSpace>& exact, double scale,
                                            const Proportions& proportions);

@@ -8,7 +8,8 @@
 
 namespace chorus::synthetic::kinect {
 
-/// A fixed error per sensor and a little per frame; `keys.person` does not matter.
+/// Adds an error that is constant for the sensor and a small one that changes from frame to frame.
+/// `keys.person` is not used.
 [[nodiscard]] FloorPlane estimated_floor(const Eigen::Isometry3d& world_from_sensor,
                                          std::uint64_t number, const FloorError& error,
                                          const ErrorKeys& keys);

@@ -1,4 +1,4 @@
-// Errors that are not noise: legs that merge, bodies that are not there, ids that swap.
+// Errors that are not noise: legs that merge, bodies where nobody is, exchanged ids.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,20 @@
 
 namespace chorus::synthetic::kinect {
 
-/// Before the sensor the far leg disappears behind the near one: the SDK pulls it towards it.
+/// Where one leg hides the other, the SDK pulls the far leg towards the near one.
 void merge_legs(Skeleton<SensorSpace>& body, const GrossError& gross);
 
-/// A skeleton on furniture, standing still somewhere in view; none most of the time.
+/// A skeleton that the SDK sees in a piece of furniture: it stands still somewhere in view. Usually
+/// none.
 [[nodiscard]] std::optional<BodyFrame> ghost(const GrossError& gross, double time,
                                              const ErrorKeys& keys);
 
-/// Which id each person goes by in one sensor; swapped with some probability when two people touch.
+/// The id that one sensor uses for each person.  When two people touch, their ids are exchanged
+/// with some probability.
 class IdBook {
  public:
   IdBook(const ErrorKeys& keys, std::size_t people);
-  /// `cores`: trunk positions by person, sensor space; not finite where the person is not seen.
+  /// `cores`: each person's trunk in sensor space; not finite if the person is not seen.
   void look(const std::vector<Eigen::Vector3d>& cores, const GrossError& gross, double time);
   [[nodiscard]] BodyId id_of(std::size_t person) const { return ids_[person]; }
 

@@ -13,19 +13,20 @@ namespace chorus::synthetic::kinect {
 namespace {
 
 constexpr std::uint64_t kPurpose = 911;
-/// 0 below `from`, 1 from `from + width` on, smooth between.
+/// 0 below `from`, 1 above `from + width`, smooth in between.
 double ramp(double value, double from, double width) {
   const double s = std::clamp((value - from) / width, 0.0, 1.0);
   return s * s * (3.0 - 2.0 * s);
 }
 
-/// How far the body is turned away from squarely front or squarely rear.
+/// How far the body is turned away from directly facing the sensor or directly facing away from it
+/// [rad].
 double side_on(double facing) {
   const double size = std::abs(facing);
   return std::min(size, deg(180) - size);
 }
 
-/// Radial, lateral and up at a joint.
+/// The directions radial, lateral and up at a joint.
 struct Frame {
   Eigen::Vector3d radial;
   Eigen::Vector3d lateral;
@@ -38,7 +39,7 @@ std::optional<Frame> frame_at(const Eigen::Vector3d& joint) {
   return Frame{radial, Eigen::Vector3d::UnitY().cross(radial)};
 }
 
-/// What every person's joint errs by from this side.
+/// The part of the bias that is equal for all people, for this facing angle.
 Eigen::Vector3d common_bias(JointId id, const Frame& frame, double facing, const JointBias& bias) {
   const double turned = side_on(facing);
   if (id == JointId::Head) {
@@ -65,7 +66,8 @@ BiasSize size_of(JointId id, const JointBias& bias) {
   return {part * bias.core * limb, part * bias.vertical};
 }
 
-/// What a joint errs on its own account, at a place that is not the sensor's.
+/// The part of the bias that does not come from a leader.  The joint must not be at the sensor's
+/// own position.
 Eigen::Vector3d own_bias(JointId id, const Frame& frame, double facing, const JointBias& bias,
                          const Harmonics& h) {
   const BiasSize size = size_of(id, bias);
@@ -76,7 +78,7 @@ Eigen::Vector3d own_bias(JointId id, const Frame& frame, double facing, const Jo
          size.up * v * Eigen::Vector3d::UnitY() + common_bias(id, frame, facing, bias);
 }
 
-/// Its mean square over people and SDKs.
+/// The mean square of own_bias() over people and SDKs.
 Eigen::Matrix3d own_moment(JointId id, const Frame& frame, double facing, const JointBias& bias) {
   const BiasSize size = size_of(id, bias);
   const double unit = bias.harmonic * bias.harmonic;

@@ -42,7 +42,7 @@ Eigen::Vector3d node(std::initializer_list<std::uint64_t> key, std::uint64_t blo
   return Draw{keyed.bits(), block}.gauss3();
 }
 
-/// Student t as a slowly varying scale on a Gaussian; unit variance.
+/// A slowly varying factor that turns Gaussian noise into Student's t with unit variance.
 double tail_scale(const ColouredError& coloured, double time, const ErrorKeys& keys,
                   std::size_t joint) {
   const double nu = coloured.student_nu;
@@ -53,8 +53,9 @@ double tail_scale(const ColouredError& coloured, double time, const ErrorKeys& k
   return std::min(coloured.most_tail, std::sqrt((nu - 2.0) / std::max(chi_square, 1e-3)));
 }
 
-/// The error's standard deviation against the table's: of the trunk where the SDK's body is turned
-/// wrongly (limbs are turned or hidden then), and of all off the best distance.
+/// The factor on the table's standard deviations: it grows for the trunk where the SDK's yaw is
+/// wrong (limbs are displaced or hidden there anyway), and for all joints away from the best
+/// distance.
 double growth(JointId id, const Stand& stand, const ColouredError& coloured) {
   const double turned = is_core(id) ? std::abs(stand.misjudged) / kTurnUnit : 0.0;
   const double off =
@@ -62,8 +63,8 @@ double growth(JointId id, const Stand& stand, const ColouredError& coloured) {
   return (1.0 + coloured.turn_growth * turned) * (1.0 + coloured.distance_growth * off * off);
 }
 
-/// Where a guess is drawn to: the bone hanging straight down from its parent; shoulders and hips
-/// have no such rest.
+/// Where inferred joints are pulled to: the bone hangs straight down from its parent.  Shoulders
+/// and hips stay where they are.
 Eigen::Vector3d resting_place(const Skeleton<SensorSpace>& body, JointId id) {
   if (is_girdle(id)) return body[id].position;
   for (const Bone& bone : kBones) {
@@ -88,7 +89,7 @@ Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double t
   const double at = std::max(0.0, time / tau);
   const double s = at - std::floor(at);
   const std::uint64_t block = block_of(time, tau);
-  // A straight line between two nodes has the least variance in the middle: scaled back to one.
+  // Interpolation reduces the variance between two nodes; this restores it to one.
   return ((1.0 - s) * node(key, block) + s * node(key, block + 1)) /
          std::sqrt((1.0 - s) * (1.0 - s) + s * s);
 }
@@ -133,7 +134,7 @@ void advance(ColouredState& state, const Stand& stand, const Moment& moment, con
     state.joint[i].advance(moment.dt * activity(stand.speed[i], coloured),
                            tau_of(static_cast<JointId>(i), coloured),
                            Draw{kOwn, keys.seed, keys.sensor, keys.person, i, stamp});
-    // Nothing holds a guess in its place: its time passes at rest, too.
+    // Unlike the others, the error of a hidden joint goes on changing while the body is at rest.
     state.hidden[i].advance(moment.dt, profile.visibility.hidden_tau,
                             Draw{kHidden, keys.seed, keys.sensor, keys.person, i, stamp});
   }
@@ -145,8 +146,8 @@ void advance(ColouredState& state, const Stand& stand, const Moment& moment, con
 
 namespace {
 
-/// The unit-variance coloured error of one joint on its own account: shared by all sensors that see
-/// the same side, by the core, and its own.
+/// The coloured error of one joint without that of its leader, of unit variance: a part shared by
+/// the sensors that see the same side, a part common to the core, and a part of its own.
 Eigen::Vector3d own_unit(std::size_t i, const ColouredState& state, const ColouredError& coloured) {
   const double shared = static_cast<JointId>(i) == JointId::Neck ? coloured.neck_correlation
                                                                  : coloured.sensor_correlation;
@@ -157,7 +158,7 @@ Eigen::Vector3d own_unit(std::size_t i, const ColouredState& state, const Colour
          std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i].value();
 }
 
-/// The same with the part in which it follows its neighbour.
+/// The same including the part that follows the joint's leader.
 Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
                               const ColouredError& coloured) {
   const auto led_by = leader(static_cast<JointId>(i));
@@ -171,7 +172,7 @@ Eigen::Vector3d stretched(const Eigen::Vector3d& unit, const Eigen::Vector3d& ra
   return unit + (factor - 1.0) * ray.dot(unit) * ray;
 }
 
-/// The sizes of what a seen joint errs by at random, and the ray to it.
+/// Standard deviations of the random errors of a seen joint, and the ray to it.
 struct Sizes {
   double coloured = 0.0;                            ///< Across the ray [m]
   double hidden = 0.0;                              ///< Across the ray [m]
@@ -215,7 +216,7 @@ Eigen::Matrix3d stretched_covariance(double sigma, const Eigen::Vector3d& ray, d
          (Eigen::Matrix3d::Identity() + (factor * factor - 1.0) * ray * ray.transpose());
 }
 
-/// How a guess is drawn to where it would hang.
+/// The displacement of an inferred joint towards its resting place.
 Eigen::Vector3d pull(JointId id, const Skeleton<SensorSpace>& body, const ColouredError& coloured) {
   if (body[id].state != JointState::Inferred) return Eigen::Vector3d::Zero();
   return coloured.inferred_pull * (resting_place(body, id) - body[id].position);

@@ -1,7 +1,7 @@
-// Random joint error and the tracked / inferred flag: coloured, white, teleports.
+// Random joint error (coloured noise, white noise, teleports) and the state tracked or inferred.
 //
-// Time enters as seconds since the epoch; everything but the Ornstein-Uhlenbeck state is a pure
-// function of the keys.
+// Times are seconds since the epoch.  Everything except ColouredState is a pure function of its
+// arguments, so that it can be computed for any frame in any order.
 #pragma once
 
 #include <array>
@@ -14,16 +14,16 @@
 
 namespace chorus::synthetic::kinect {
 
-/// Who errs: one sensor looking at one person.
+/// Keys of the random draws for one sensor that sees one person.
 struct ErrorKeys {
   std::uint64_t seed = 1;
   std::uint64_t sensor = 0;
   std::uint64_t person = 0;
 };
 
-/// A smooth coloured process of unit variance, three axes: two equal first-order lags, one after
-/// the other.  Correlation after a lag L is (1 + L/a) exp(-L/a) with a = tau / 2; unlike one lag
-/// alone it adds nothing to white noise.
+/// Smooth coloured noise of unit variance on three axes: white noise through two equal first-order
+/// low-pass filters.  The correlation after a time L is (1 + L/a) exp(-L/a) with a = tau / 2.  One
+/// filter alone would change from frame to frame enough to be taken for white noise.
 class SmoothNoise {
  public:
   void advance(double passed, double tau, Draw draw);
@@ -35,8 +35,9 @@ class SmoothNoise {
   bool started_ = false;
 };
 
-/// The coloured error's memory: one process per joint and one common to the core, each sensor's
-/// own, and the part that sensors share; a second one per joint for when it is hidden.
+/// State of the coloured error of one person in one sensor: one process for each joint, a second
+/// one for each joint while it is hidden, one common to the core joints, and the part that sensors
+/// share.
 struct ColouredState {
   std::array<SmoothNoise, kJointCount> joint{};
   std::array<SmoothNoise, kJointCount> hidden{};
@@ -44,44 +45,44 @@ struct ColouredState {
   SharedError shared;
 };
 
-/// How the body stands and moves: what scales the error.
+/// The body's pose and motion as far as they determine the size of the error.
 struct Stand {
   View view;
-  double misjudged = 0.0;                    ///< Yaw the SDK is wrong by [rad]
+  double misjudged = 0.0;                    ///< Error of the yaw that the SDK shows [rad]
   double distance = 2.5;                     ///< Sensor to neck [m]
   std::array<double, kJointCount> speed{};   ///< Of each joint [m/s]
-  std::array<double, kJointCount> hidden{};  ///< Of each joint as labelled, noticed share: 0 seen.
+  std::array<double, kJointCount> hidden{};  ///< By the SDK's labels, as noticed; 0: seen.
 };
 
-/// Smooth unit-variance noise over one coordinate (time [s]) with correlation length `tau`; pure.
+/// Smooth noise of unit variance over `time`, with correlation time `tau` [s]; a pure function.
 [[nodiscard]] Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double time,
                                             double tau);
 
-/// Share of time that passes for the error of a joint of this speed: rest_share at rest, 1 when
-/// moving.
+/// How fast the error of a joint of this speed changes: by rest_share of the full rate at rest, by
+/// the full rate (1) when it moves.
 [[nodiscard]] double activity(double speed, const ColouredError& coloured);
 
-/// Tracked or inferred, in runs of about `state_hold`; occluded joints mostly inferred, core
-/// joints, shoulders and hips never when visible.
+/// Decides between tracked and inferred, in runs of about `state_hold`.  Occluded joints are mostly
+/// inferred; visible core joints, shoulders and hips never are.
 [[nodiscard]] JointState shown_state(JointId id, double visible_share, double time,
                                      const Visibility& visibility, const ErrorKeys& keys);
 
-/// One frame: when it is and how long after the one before [s].
+/// The time of a frame, and the time since the one before [s].
 struct Moment {
   double time = 0.0;
   double dt = 0.033;
 };
 
-/// One frame further.
+/// Goes on by one frame.
 void advance(ColouredState& state, const Stand& stand, const Moment& moment, const Profile& profile,
              const ErrorKeys& keys);
 
-/// Adds coloured and white error, that of hidden joints, and teleports to every seen joint.
+/// Adds coloured and white noise, the error of hidden joints, and teleports to every seen joint.
 void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,
                 double time, const Profile& profile, const ErrorKeys& keys);
 
-/// The true mean square, about nothing, of what add_errors() adds to a seen joint of this body
-/// [m^2]: the covariance of what is random, and what is not.
+/// The true second moment about zero of what add_errors() adds to a seen joint of this body [m^2]:
+/// the covariance of the random part plus the square of its mean.
 [[nodiscard]] Eigen::Matrix3d error_moment(JointId id, const Skeleton<SensorSpace>& body,
                                            const Stand& stand, double time, const Profile& profile,
                                            const ErrorKeys& keys);

@@ -1,11 +1,12 @@
-// Standard deviations per joint at 2.5 m, facing, tracked: coloured (one figure), what comes to it
-// when hidden, white (x, y, z), and what is left at rest.
+// Standard deviations of each joint's error, for a tracked joint of a person who faces the sensor
+// at 2.5 m: coloured noise, additional error when hidden, white noise, and what remains at rest.
 //
-// Millimetres, sensor space.  White: real Kinect v2 logs, third-difference, walking (statistics
-// only).  Coloured: bone-length variation of the same logs; the neck by Otto's Table 1.  Hidden:
-// the bones of a side turned away from the sensor, another log.  At rest: Otto's Fig. 7.  Order of
-// JointId; profiles.json scales each table as a whole (coloured.scale, visibility.hidden_scale,
-// white.scale), and the intervals stand there.
+// In millimetres and sensor space, in the order of JointId.  Sources: white noise from third
+// differences of real Kinect v2 logs of walking (statistics only); coloured noise from the
+// variation of bone lengths in the same logs, for the neck from Otto's Table 1; hidden from the
+// bones on the side turned away from the sensor, in another log; at rest from Otto's Fig. 7.
+// profiles.json scales each table as a whole (coloured.scale, visibility.hidden_scale, white.scale)
+// and has the intervals.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@ namespace chorus::synthetic::kinect {
 
 struct JointNoise {
   double coloured;  ///< Per axis [mm]
-  double hidden;    ///< More of it when hidden, across the ray [mm]
+  double hidden;    ///< Additional when hidden, across the ray [mm]
   double white_x;   ///< [mm]
   double white_y;
   double white_z;

@@ -30,7 +30,7 @@ void limit(Skeleton<SensorSpace>& body, const ViewLimits& view) {
   }
 }
 
-/// What is hidden of each joint as the SDK labels it.
+/// How far each joint is hidden, by the labels that the SDK gives.
 std::array<double, kJointCount> as_labelled(const std::array<double, kJointCount>& hidden,
                                             const FlipState& flip) {
   std::array<double, kJointCount> labelled{};
@@ -41,7 +41,7 @@ std::array<double, kJointCount> as_labelled(const std::array<double, kJointCount
   return labelled;
 }
 
-/// The SDK reports a body when it has its trunk.
+/// The SDK reports a body only if it sees the trunk.
 bool is_reported(const Skeleton<SensorSpace>& body) {
   return body[JointId::Neck].state == JointState::Tracked && body[JointId::SpineMid].seen();
 }
@@ -117,7 +117,7 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
   Skeleton<SensorSpace> body = as_shown(labelled, facing, memory.flip, profile.yaw);
   limit(body, profile.view);
   if (!is_reported(body) || is_lost(profile.delivery, time, keys(person))) {
-    memory.flip = {};  // whom it finds again, it meets anew
+    memory.flip = {};  // a person who is found again counts as new
     return std::nullopt;
   }
   merge_legs(body, profile.gross);
@@ -150,7 +150,7 @@ Stand KinectSensor::stand_of(std::size_t person) const {
       scene_->world_from_sensor[setting_.place] * exact[JointId::Neck].position;
   const double facing = facing_angle(exact).value_or(0.0);
   const Eigen::Vector3d& neck = exact[JointId::Neck].position;
-  // Facing 0 looks at the sensor: against the bearing.
+  // With a facing angle of 0 the person looks towards the sensor, opposite to the bearing.
   const double heading = std::atan2(neck.x(), neck.z()) + std::numbers::pi + facing;
   stand.view = {facing, heading, {neck_in_world.x(), neck_in_world.z()}};
   if (const auto& before = memory_[person].before) {
@@ -158,7 +158,8 @@ Stand KinectSensor::stand_of(std::size_t person) const {
       stand.speed[i] = (exact.joints[i].position - before->joints[i].position).norm() /
                        setting_.profile.delivery.period;
     }
-    // A joint is no calmer than the trunk: a walker's standing foot errs as much as the other one.
+    // A joint counts as moving at least as fast as the trunk: the error of a walker's standing foot
+    // changes as fast as that of the other one.
     const double trunk = stand.speed[index_of(JointId::SpineShoulder)];
     for (double& speed : stand.speed) speed = std::max(speed, trunk);
   }

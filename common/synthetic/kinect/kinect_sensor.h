@@ -1,10 +1,10 @@
-// One body-tracking depth sensor of the workshop: every layer of error, in order, frame by frame.
+// One simulated body-tracking depth sensor.  It applies the layers of error in this order, frame by
+// frame:
 //
 //   truth -> visibility -> yaw behaviour and flip -> view limits -> states -> bias
 //         -> coloured and white error -> fitted body -> gross errors -> drops, gaps, latency, clock
 //
-// Deterministic: the same room, place, profile, seed and start
-// give the same frames.
+// Deterministic: the same room, place, profile, seed and start give the same frames.
 #pragma once
 
 #include <optional>
@@ -26,11 +26,11 @@ struct KinectSetting {
   SensorId id;
   std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
   Profile profile;
-  std::uint64_t seed = 1;       ///< The same for all sensors of a room: shared errors are shared.
-  std::uint64_t bias_seed = 1;  ///< SDK and people: the same person errs the same way in every run.
-  bool own_clock = true;        ///< Stamps by the host's erring clock; false: true time.
-  /// Joints bring the true mean square of their error as their covariance, which no sensor knows:
-  /// for bounds.
+  std::uint64_t seed = 1;       ///< The same for all sensors of a room, for errors that they share.
+  std::uint64_t bias_seed = 1;  ///< Of the SDK and of people, whose bias is the same in every run.
+  bool own_clock = true;        ///< Stamps by the host's clock with its errors; false: true time.
+  /// Gives each joint the true mean square of its error as its covariance (error_moment.h).  No
+  /// real sensor knows that; it serves to compute bounds.
   bool confides = false;
 };
 
@@ -46,12 +46,12 @@ class KinectSensor final : public BodySensor {
  private:
   struct Memory {
     FlipState flip;
-    std::array<double, kJointCount> hidden{};  ///< Noticed share of each joint.
+    std::array<double, kJointCount> hidden{};  ///< Of each joint, as noticed by the SDK.
     ColouredState coloured;
     FitState fit;
     PersonHarmonics bias{};
     Proportions proportions{};
-    std::optional<Skeleton<SensorSpace>> before;  ///< One frame ago, exactly.
+    std::optional<Skeleton<SensorSpace>> before;  ///< The exact body one frame ago.
   };
   void look(Timestamp exposed);
   [[nodiscard]] std::optional<Skeleton<SensorSpace>> shown(std::size_t person, Timestamp exposed);
@@ -65,7 +65,7 @@ class KinectSensor final : public BodySensor {
   std::uint64_t number_;
   std::vector<Memory> memory_;
   IdBook ids_;
-  std::vector<Skeleton<SensorSpace>> bodies_;  ///< Everybody, exactly, at the current exposure.
+  std::vector<Skeleton<SensorSpace>> bodies_;  ///< All exact bodies at the current exposure.
   Obstacles obstacles_;
 };
 

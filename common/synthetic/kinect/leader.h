@@ -1,7 +1,8 @@
-// Joints whose error is mostly that of a neighbour.
+// Joints whose error is mostly that of a neighbour, their leader.
 //
-// In real logs the bone between them keeps its length (spine base to hip 7-14 mm, chest to neck
-// 4-5 mm) although each wanders by more: the SDK places them together.
+// In real logs the length of the bone between two such joints hardly varies (spine base to hip
+// 7-14 mm, chest to neck 4-5 mm), although the position of each varies by more: the SDK moves them
+// together.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace chorus::synthetic::kinect {
 
-/// Whom the joint follows; none for one that errs on its own.
+/// The joint that this joint follows; none if its error is its own.
 [[nodiscard]] constexpr std::optional<JointId> leader(JointId id) {
   using enum JointId;
   if (id == SpineShoulder) return Neck;

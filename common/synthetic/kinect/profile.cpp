@@ -37,7 +37,7 @@ struct Binding {
 
 #define CHORUS_FIELD(member) [](Profile& p) -> double& { return p.member; }
 
-// One row per entry of profiles.json; a test holds the two lists against each other.
+// One row per entry of profiles.json; a test compares the two lists.
 constexpr std::array kBindings{
     Binding{"view.half_width_deg", Unit::Degrees, CHORUS_FIELD(view.half_width)},
     Binding{"view.half_height_deg", Unit::Degrees, CHORUS_FIELD(view.half_height)},
@@ -151,8 +151,7 @@ const nlohmann::json& parameters() {
   return parsed;
 }
 
-/// Fills every field; `scale(spread)` says by which factor a value is drawn away from its nominal
-/// one.
+/// Fills every field; `scale(spread)` gives the factor on a nominal value.
 Profile filled(std::string_view name, const std::function<double(double)>& scale) {
   Profile profile;
   profile.name = name;

@@ -11,7 +11,7 @@ namespace chorus::synthetic::kinect {
 namespace {
 
 constexpr std::uint64_t kPurpose = 921;
-constexpr double kOffset = 1000.0;  // keeps cell numbers positive anywhere in a building
+constexpr double kOffset = 1000.0;  // keeps the cell numbers positive anywhere in a building
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void SharedError::look(const View& view, const ColouredError& coloured, const Sh
   if (!filled_ || cell != cell_) fill(cell, keys);
   const Eigen::Vector2d s = at - cell;
   weights_ = {(1 - s.x()) * (1 - s.y()), s.x() * (1 - s.y()), (1 - s.x()) * s.y(), s.x() * s.y()};
-  // A mean of corners has less variance than a corner: scaled back to one.
+  // Averaging the corners reduces the variance; this restores it to one.
   double squares = 0.0;
   for (const double weight : weights_) squares += weight * weight;
   for (double& weight : weights_) weight /= std::sqrt(squares);

@@ -1,10 +1,11 @@
-// The part of the smooth joint error that all sensors share which see the same side of a person:
-// clothing, posture, motion, and what the SDK makes of them.
+// The part of the smooth joint error that is common to all sensors that see the same side of a
+// person.  It stands for clothing, posture and motion, and the SDK's response to them.
 //
-// A field over the floor (the same place, the same error; at rest nothing changes), turning with
-// the view: one part is the same from every side, the other comes round twice as the view does
-// once, for opposite sides see one outline, mirrored.  Two sensors whose views differ by D
-// correlate by 1 - view_twice + view_twice cos(2 D).
+// The error is a random field over the floor: it is the same whenever the person is in the same
+// place, and does not change while they rest.  It also depends on the view.  One part is equal from
+// all sides; the other varies with twice the view angle, because sensors on opposite sides see the
+// same outline mirrored.  The errors of two sensors whose views differ by D correlate by
+// 1 - view_twice + view_twice cos(2 D).
 #pragma once
 
 #include <array>
@@ -15,14 +16,14 @@
 
 namespace chorus::synthetic::kinect {
 
-/// From where one sensor sees a person.
+/// The direction from which one sensor sees a person, and the person's place.
 struct View {
   double facing = 0.0;                              ///< Yaw away from facing the sensor [rad]
   double heading = 0.0;                             ///< Of the body in sensor space, about +y [rad]
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< Of the neck on the floor, world x, z [m]
 };
 
-/// Whose error: the same for every sensor of a room.
+/// Keys of the random draws; equal for all sensors of a room.
 struct SharedKeys {
   std::uint64_t seed = 1;
   std::uint64_t person = 0;
@@ -30,9 +31,10 @@ struct SharedKeys {
 
 class SharedError {
  public:
-  /// One frame further.  A pure function of its arguments; what it remembers only saves time.
+  /// Goes on to the next frame.  A pure function of its arguments; the state only saves time.
   void look(const View& view, const ColouredError& coloured, const SharedKeys& keys);
-  /// Unit variance per axis, sensor space; joints of the core have part of it in common.
+  /// The error of one joint in sensor space, of unit variance per axis.  Joints of the core have a
+  /// part of it in common.
   [[nodiscard]] Eigen::Vector3d of(JointId id, const ColouredError& coloured) const;
 
  private:
@@ -44,7 +46,7 @@ class SharedError {
 
   std::array<Corner, 4> corners_{};
   std::array<double, 4> weights_{};       ///< Of the corners; squares sum to one.
-  std::array<double, kOrders> orders_{};  ///< Of the view; squares sum to one.
+  std::array<double, kOrders> orders_{};  ///< Of the orders, for this view; squares sum to one.
   Eigen::Matrix3d sensor_from_body_ = Eigen::Matrix3d::Identity();
   Eigen::Vector2d cell_ = Eigen::Vector2d::Constant(-1.0);
   bool filled_ = false;

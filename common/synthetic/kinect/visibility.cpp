@@ -17,7 +17,7 @@ double distance_to_axis(const Capsule& capsule, const Eigen::Vector3d& point) {
   return (point - (capsule.from + s * axis)).norm();
 }
 
-/// A capsule with the ball around it.
+/// A capsule and its bounding ball.
 struct Obstacle {
   const Capsule* capsule;
   Eigen::Vector3d middle;
@@ -36,7 +36,7 @@ std::vector<Obstacle> all_of(const Obstacles& obstacles, std::size_t self) {
   return all;
 }
 
-/// One joint and what may stand before it.
+/// One joint and the capsules that may hide it.
 struct Target {
   Eigen::Vector3d joint;
   bool is_core;
@@ -44,9 +44,9 @@ struct Target {
   std::vector<const Capsule*> capsules;  ///< Near any of its rays.
 };
 
-/// Keeps the capsules whose balls come within `fan` of the ray to the joint.  Not the limb that the
-/// joint lies in, and none of the own ones for the trunk: in real logs the own limbs hardly ever
-/// make it "inferred" (0-3 %).
+/// Keeps the capsules whose balls come within `fan` of the ray to the joint.  Leaves out the limb
+/// that contains the joint, and for joints of the trunk all capsules of the same body: in real logs
+/// a person's own limbs hardly ever make the trunk "inferred" (0-3 %).
 void choose(Target& target, const std::vector<Obstacle>& all, double fan) {
   target.capsules.clear();
   const Eigen::Vector3d ray = target.joint.normalized();
@@ -72,7 +72,8 @@ bool is_blocked(const Eigen::Vector3d& end, const Target& target, const std::vec
   return std::ranges::any_of(boxes, [&](const Box& box) { return blocks(box, end); });
 }
 
-/// The joint itself, then points around it across the line of sight.
+/// Where a ray ends: ray 0 at the joint itself, the others at points around it, across the line of
+/// sight.
 Eigen::Vector3d ray_end(const Eigen::Vector3d& joint, int index, double fan) {
   if (index == 0) return joint;
   const Eigen::Vector3d ray = joint.normalized();

@@ -1,4 +1,5 @@
-// Which joints a sensor really sees: rays against every body and occluder (sensor space, metres).
+// Which joints a sensor really sees, by casting rays against all bodies and occluders (sensor
+// space, metres).
 #pragma once
 
 #include <array>
@@ -17,25 +18,25 @@ struct Box {
   Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5);  ///< Half edge lengths [m]
 };
 
-/// Everything that can stand in a ray's way, in the space of one sensor.
+/// Everything that can block a ray, in the space of one sensor.
 struct Obstacles {
   std::vector<std::vector<Capsule>> bodies;  ///< Capsules of each person.
   std::vector<Box> boxes;
 };
 
-/// Does the segment from the origin to `end` meet the box before its end?
+/// True if the segment from the origin to `end` meets the box before its end.
 [[nodiscard]] bool blocks(const Box& box, const Eigen::Vector3d& end);
 
-/// Share of the rays to each joint of body `self` that arrive, in [0, 1].  Capsules of the body
-/// itself that contain the joint are passed through: the joint lies inside its own limb.  No rays:
-/// all visible.
+/// The share of rays to each joint of body `self` that reach it, in [0, 1].  The body's own
+/// capsules do not block a ray if they contain the joint, because a joint lies inside its own limb.
+/// If the profile has no rays, all joints are visible.
 [[nodiscard]] std::array<double, kJointCount> visible_share(const Skeleton<SensorSpace>& body,
                                                             std::size_t self,
                                                             const Obstacles& obstacles,
                                                             const Visibility& visibility);
 
-/// One frame further: what the SDK has noticed of each joint's being hidden follows what is hidden
-/// now, so that a leg which passes is tracked on.
+/// Goes on by one frame.  The SDK notices only after a while that a joint is hidden, so that it
+/// goes on tracking a leg that is hidden for a moment.
 void notice(std::array<double, kJointCount>& hidden, const std::array<double, kJointCount>& visible,
             double dt, const Visibility& visibility);
 

@@ -24,8 +24,8 @@ Skeleton<SensorSpace> mirrored_labels(const Skeleton<SensorSpace>& body) {
   return swapped;
 }
 
-/// Turns every lateral joint about the vertical through the spine by the error of its half of the
-/// body.
+/// Turns every joint beside the spine about the vertical through the spine: those of the upper half
+/// of the body by the shoulders' error, those of the lower half by the hips'.
 void turn_laterals(Skeleton<SensorSpace>& body, double shoulder_error, double hip_error) {
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const auto id = static_cast<JointId>(i);
@@ -77,7 +77,7 @@ double misjudged_yaw(double facing, const FlipState& state, const YawBehaviour& 
 
 Skeleton<SensorSpace> as_shown(const Skeleton<SensorSpace>& body, double facing,
                                const FlipState& state, const YawBehaviour& behaviour) {
-  // In the rear state the SDK sees a person who faces it: the yaw is counted from behind.
+  // In the rear state the SDK takes the back for the front, so the yaw counts from behind.
   const auto shown_for = [&](bool rear) {
     const double yaw = rear ? wrap_angle(facing - kHalfTurn) : facing;
     Skeleton<SensorSpace> shown = rear ? mirrored_labels(body) : body;

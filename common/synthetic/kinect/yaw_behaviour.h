@@ -1,10 +1,9 @@
-// What the SDK makes of a body that turns: it believes that everybody looks at the camera (Otto
-// Figs. 5-6).
+// How the SDK shows a body that turns: it assumes that everybody faces the camera (Otto Figs. 5-6).
 //
-// Up to `reliable` the yaw is right; beyond, shoulders and hips lag; past flip_to_rear the skeleton
-// is shown as if it faced the sensor, so left and right are exchanged, and it stays so until the
-// yaw is back below flip_to_front (hysteresis).  Whom it sees for the first time it takes to face
-// it: nothing of the person's past holds it to an earlier view.
+// Up to `reliable` the yaw shown is right; beyond, that of shoulders and hips lags behind.  Beyond
+// flip_to_rear the skeleton is shown as if the person faced the sensor, so left and right are
+// exchanged; this lasts until the yaw is below flip_to_front again (hysteresis).  A person whom the
+// SDK sees for the first time is taken to face the sensor.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +13,33 @@
 
 namespace chorus::synthetic::kinect {
 
-/// Memory of one body in one sensor.
+/// What one sensor's SDK remembers of one body.
 struct FlipState {
   bool rear = false;   ///< Labels are exchanged.
-  double blend = 0.0;  ///< 0 front ... 1 rear, moving while the SDK changes its mind.
-  bool met = false;    ///< Has been decided once.
+  double blend = 0.0;  ///< 0: front, 1: rear; in between while the SDK changes.
+  bool met = false;    ///< True once `rear` has been decided.
 };
 
-/// The yaw the SDK shows for a true yaw [rad] with this slope; odd, continuous, front only.
+/// The yaw that the SDK shows for a true yaw [rad]; `slope`: of the shown over the true yaw beyond
+/// the reliable angle.  Odd and continuous; for a person in the front state.
 [[nodiscard]] double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour);
 
-/// One sensor's own angles: the profile's, each off by up to flip_own and flip_back_own.
+/// The angles of one sensor: the profile's with a deviation of up to flip_own, and of up to
+/// flip_back_own for the way back.
 [[nodiscard]] YawBehaviour own_behaviour(YawBehaviour behaviour, std::uint64_t seed,
                                          std::uint64_t sensor);
 
-/// One frame further: decides the flip from the true facing angle (0 = squarely facing).
+/// Goes on by one frame: decides the state from the true facing angle (0: directly facing the
+/// sensor).
 void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour);
 
-/// By how much the yaw that the SDK shows is wrong, shoulders, exchanged labels aside [rad, >= 0].
+/// The error of the yaw that the SDK shows for the shoulders, not counting exchanged labels [rad,
+/// >= 0].
 [[nodiscard]] double misjudged_yaw(double facing, const FlipState& state,
                                    const YawBehaviour& behaviour);
 
 /// The skeleton as the SDK would show it: trunk and limbs turned about the spine, labels exchanged
-/// when flipped.
+/// in the rear state.
 [[nodiscard]] Skeleton<SensorSpace> as_shown(const Skeleton<SensorSpace>& body, double facing,
                                              const FlipState& state, const YawBehaviour& behaviour);
 

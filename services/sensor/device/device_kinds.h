@@ -25,8 +25,8 @@ struct DeviceContext {
 
 struct DeviceKind {
   std::string_view name;  ///< The value of device.kind, and the NAME of the section device.NAME.
-  /// Reports every mistake in the section, even if another kind is selected, so that a file may
-  /// have sections for all kinds.
+  /// Reports every mistake in the section, even if another kind is selected: a file may have
+  /// sections for all kinds.
   void (*read)(ConfigReader& section, const SensorId& sensor);
   /// Makes the device, ready to run.
   Result<std::unique_ptr<FrameSource>> (*make)(ConfigReader& section, const DeviceContext& context);

@@ -17,37 +17,36 @@
 namespace chorus::bench {
 namespace {
 
-using std::chrono::seconds;
-
-constexpr std::uint64_t kPurpose = 731;
+constexpr std::uint64_t kBumpPurpose = 731;
 constexpr std::size_t kDraws = 20;
 constexpr std::size_t kQuickDraws = 1;
-constexpr Duration kPushedAt = seconds(180);  // sensors are known by then
-constexpr Duration kFollowed = seconds(60);   // after the push: the sensor is placed anew meanwhile
-constexpr double kShift = 0.05;               // [m]
+constexpr Duration kPushedAt = std::chrono::seconds(180);  // sensors are known by then
+constexpr Duration kFollowedFor =
+    std::chrono::seconds(60);    // after the push: the sensor is placed anew meanwhile
+constexpr double kShift = 0.05;  // [m]
 constexpr double kTurn = deg(2);
 constexpr double kEight = 8.0 * 3600.0;  // [s]
 constexpr const char* kProfiles[] = {"A", "B", "D"};
 
-/// What happens to one sensor, in a room of so many.
+/// What happens to one sensor, in a room with this many.
 struct BumpCase {
   const char* name;
   std::size_t sensors;
   double shift;
   double yaw;
 };
-constexpr BumpCase kCases[] = {{"bump-50mm", 6, kShift, 0.0},
-                               {"bump-2deg", 6, 0.0, kTurn},
-                               {"bump-50mm-three", 3, kShift, 0.0},
-                               {"bump-50mm-pair", 2, kShift, 0.0}};
+constexpr BumpCase kBumpCases[] = {{"bump-50mm", 6, kShift, 0.0},
+                                   {"bump-2deg", 6, 0.0, kTurn},
+                                   {"bump-50mm-three", 3, kShift, 0.0},
+                                   {"bump-50mm-pair", 2, kShift, 0.0}};
 
 RoomSetting pushed_room(const BumpCase& each, std::uint64_t seed) {
-  synthetic::Draw draw{kPurpose, seed};
+  synthetic::Draw draw{kBumpPurpose, seed};
   RoomSetting room;
   room.profile = kProfiles[seed % std::size(kProfiles)];
   room.seed = seed;
   room.sensors = each.sensors;
-  room.length = kPushedAt + kFollowed;
+  room.length = kPushedAt + kFollowedFor;
   Push push;
   push.at = kPushedAt;
   push.sensor = draw.bits() % each.sensors;
@@ -58,8 +57,8 @@ RoomSetting pushed_room(const BumpCase& each, std::uint64_t seed) {
   return room;
 }
 
-/// Time from the push to the first alarm that names the sensor, alone or in a pair [s]; not a
-/// number: there was none.
+/// Time from the push to the first alarm that names the sensor, alone or in a pair [s]; NaN: there
+/// was none.
 double detected_after(const RoomLog& log, const Push& push) {
   for (const RoomLog::Alarm& alarm : log.alarms) {
     if (alarm.sensor == push.sensor && alarm.at >= push.at)
@@ -68,7 +67,7 @@ double detected_after(const RoomLog& log, const Push& push) {
   return kNoRatio;
 }
 
-/// Alarms before the push, and after it for others than the one that was pushed.
+/// Number of alarms before the push, and of those after it that name another sensor.
 std::size_t wrong_alarms(const RoomLog& log, const Push& push) {
   return static_cast<std::size_t>(
       std::ranges::count_if(log.alarms, [&](const RoomLog::Alarm& alarm) {
@@ -122,7 +121,7 @@ void measure_pushed(Report& report, const BumpCase& each) {
 
 /// Two people, six sensors, nobody touches anything.
 void measure_quiet(Report& report) {
-  const Duration length = report.quick() ? seconds(60) : seconds(24 * 60);
+  const Duration length = report.quick() ? std::chrono::seconds(60) : std::chrono::seconds(24 * 60);
   const auto logs = over_draws(report.quick() ? kQuickDraws : kDraws, [&](std::size_t i) {
     RoomSetting room;
     room.seed = report.seed() + i;
@@ -145,7 +144,7 @@ void measure_quiet(Report& report) {
 }  // namespace
 
 void measure_bumps(Report& report) {
-  for (const BumpCase& each : kCases) measure_pushed(report, each);
+  for (const BumpCase& each : kBumpCases) measure_pushed(report, each);
   measure_quiet(report);
   report.note(
       "bump: everyday frames after the system's own registration; the sensor is moved within one "

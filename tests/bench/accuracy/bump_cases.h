@@ -1,5 +1,5 @@
-// The case "bump": how soon the fusion server notices that a sensor was moved, what that costs the
-// output, and how often it is wrong.
+// The case "bump": how soon the fusion server detects that a sensor was moved, how that affects the
+// output, and how often there is a false alarm.
 #pragma once
 
 #include "tests/bench/report/report.h"

@@ -16,7 +16,6 @@ namespace chorus::bench {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using synthetic::BodySensor;
 
 SensorId sensor_of(std::size_t place) {
@@ -67,14 +66,14 @@ class Room {
   RoomSetting setting_;
   Timestamp begin_;
   synthetic::Scene scene_;
-  synthetic::Scene after_;  ///< With one sensor moved.
+  synthetic::Scene after_;  ///< The scene with one sensor moved.
   Eigen::Isometry3d world_from_scene_;
-  Eigen::Isometry3d pushed_place_;  ///< Of the pushed sensor, in the world of the tracker.
+  Eigen::Isometry3d pushed_place_;  ///< Pose of the pushed sensor in the tracker's world.
   std::optional<core::FusionCore> core_;
   std::vector<Lane> lanes_;
   std::set<SensorId> alarmed_;
   bool lost_ = false;                           ///< The pushed sensor has lost its place.
-  std::map<PersonId, Eigen::Vector3d> errors_;  ///< Of the trunk, at the instant before.
+  std::map<PersonId, Eigen::Vector3d> errors_;  ///< Error of the trunk at the previous instant.
   RoomLog log_;
   double before_sum_ = 0.0, after_sum_ = 0.0;
   std::size_t before_count_ = 0, after_count_ = 0;
@@ -95,7 +94,7 @@ Room::Room(const RoomSetting& setting) : setting_(setting) {
   const Workshop workshop = draw_workshop(walk);
   Registration registration =
       registration::solve(workshop.tracks, workshop.begin, registration::RegistrationConfig{});
-  begin_ = workshop.begin + seconds(60);
+  begin_ = workshop.begin + std::chrono::seconds(60);
   world_from_scene_ = world_from_scene(workshop, registration.master);
   scene_ = workshop.scene;
   if (setting.persons > 1) {
@@ -125,12 +124,12 @@ std::unique_ptr<BodySensor> Room::make(const synthetic::Scene& scene, std::size_
 }
 
 void Room::advance(Lane& lane) const {
-  const Timestamp end = begin_ + setting_.length + seconds(1);
+  const Timestamp end = begin_ + setting_.length + std::chrono::seconds(1);
   lane.next.reset();
   while (!lane.next && lane.sensor->next_exposure() < end) lane.next = lane.sensor->next();
 }
 
-/// From now on the pushed sensor looks from where it was moved to.
+/// From now on the pushed sensor sees the scene from its new pose.
 void Room::push() {
   Lane& lane = lanes_[setting_.push->sensor];
   lane.sensor = make(after_, setting_.push->sensor, begin_ + setting_.push->at);
@@ -165,7 +164,7 @@ std::optional<Eigen::Vector3d> trunk_of(const Skeleton<WorldSpace>& body) {
 }
 
 void Room::score(const Snapshot& snapshot) {
-  constexpr Duration kAverage = seconds(10);
+  constexpr Duration kAverage = std::chrono::seconds(10);
   constexpr double kSomebodyElse = 0.5;  // [m]
   std::map<PersonId, Eigen::Vector3d> errors;
   for (const FusedBody& body : snapshot.bodies) {
@@ -197,7 +196,7 @@ void Room::score(const Snapshot& snapshot) {
   errors_ = std::move(errors);
 }
 
-/// Solves what is due at once, as a worker would in the meantime.
+/// Does the jobs that are due at once; in a server the worker does them.
 void Room::work(Timestamp now) {
   const auto job = core_->due_job(now);
   if (!job) return;

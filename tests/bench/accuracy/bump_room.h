@@ -34,11 +34,11 @@ struct RoomLog {
   struct Alarm {
     Duration at{0};
     std::size_t sensor = 0;
-    bool pair = false;  ///< One of two, not told which.
+    bool pair = false;  ///< True if the alarm names two sensors, of which one was moved.
   };
-  std::vector<Alarm> alarms;                  ///< Once for each time one is raised.
-  std::optional<Duration> placed_again = {};  ///< When the pushed sensor had a place again.
-  double place_again_error = 0.0;             ///< Of that place at the end, from the truth [m].
+  std::vector<Alarm> alarms;                  ///< One entry for each alarm that is raised.
+  std::optional<Duration> placed_again = {};  ///< When the pushed sensor was registered again.
+  double place_again_error = 0.0;             ///< Error of its pose at the end [m].
   /// Largest step of a person's trunk from one instant to the next beyond the true one [m], before
   /// the push and from then on.
   double step_before = 0.0;

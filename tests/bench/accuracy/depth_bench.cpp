@@ -1,8 +1,8 @@
 // Profile C compared with profiles A and B: how far one sensor's joints are from the truth when
 // errors emerge from depth images, and when they are drawn at random.
 //
-// Both are reported with labels as given, and with labels repaired where left and right are
-// exchanged.
+// Both are reported with labels as given, and with labels corrected where left and right are
+// swapped.
 #include <algorithm>
 #include <array>
 #include <ctime>
@@ -31,7 +31,7 @@ using namespace synthetic;
 constexpr Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
 constexpr double kDistance = 2.6;  // from the sensor to the middle of the walk [m]
 
-/// How the person truly stands towards the sensor.
+/// The person's true orientation towards the sensor.
 constexpr std::array<const char*, 3> kViews{"facing", "side", "rear"};
 
 std::size_t view_of(double facing) {
@@ -42,7 +42,7 @@ std::size_t view_of(double facing) {
 /// Sums over the frames of one view.
 struct Tally {
   double given = 0;     ///< Sum of joint errors [m]
-  double repaired = 0;  ///< Sum of joint errors with repaired labels [m]
+  double repaired = 0;  ///< Sum of joint errors with corrected labels [m]
   std::size_t joints = 0;
   std::size_t inferred = 0;
   std::size_t frames = 0;

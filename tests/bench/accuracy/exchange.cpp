@@ -8,7 +8,7 @@
 namespace chorus::bench {
 namespace {
 
-constexpr std::uint64_t kPurpose = 601;
+constexpr std::uint64_t kExchangePurpose = 601;
 
 double exponential(synthetic::Draw& draw, double mean) {
   return -mean * std::log(1.0 - draw.uniform());
@@ -24,7 +24,7 @@ Duration way(const Network& network, synthetic::Draw& draw, double extra) {
 }  // namespace
 
 ClockExchange exchange_of(const Link& link, const Request& request) {
-  synthetic::Draw draw{kPurpose, link.seed,
+  synthetic::Draw draw{kExchangePurpose, link.seed,
                        static_cast<std::uint64_t>(request.sent.time_since_epoch().count())};
   const Timestamp receipt = request.sent + way(link.network, draw, link.network.asymmetry);
   const Timestamp answered = std::max(receipt + request.held, request.ready);

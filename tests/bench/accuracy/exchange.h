@@ -9,7 +9,7 @@
 
 namespace chorus::bench {
 
-/// Delay of one direction: least + exponential, sometimes plus a spike [s].
+/// Delay of one direction: a minimum plus an exponential part, sometimes plus a spike [s].
 struct Network {
   double least = 0.4e-3;
   double jitter = 1.5e-3;     ///< Mean of the exponential part.
@@ -35,7 +35,7 @@ struct Request {
 [[nodiscard]] ClockExchange exchange_of(const Link& link, const Request& request);
 
 /// The tracks as the fusion server sees them: every stamp is corrected by the exchanges before it.
-/// One request is under way at a time: a long poll asks again when it has its answer.
+/// Only one request is under way at a time: a long poll is repeated when its answer has arrived.
 [[nodiscard]] std::vector<registration::WalkTrack> with_corrected_clocks(const Workshop& workshop,
                                                                          const Network& network);
 

@@ -45,7 +45,7 @@ Draws draw_all(const Report& report, const FusionCase& each,
   });
 }
 
-/// Whether a method has a figure; not every method has all of them.
+/// True if the method has this figure; not every method has all of them.
 bool has_any(const Draws& draws, std::size_t method, std::size_t metric) {
   return std::ranges::any_of(draws, [&](const std::vector<Scored>& draw) {
     return !std::isnan(draw[method].values[metric]);
@@ -60,7 +60,7 @@ Comparison compare(const std::string& name, const Draws& draws, std::size_t metr
     for (std::size_t draw = 0; draw < draws.size(); ++draw) {
       const Scored& scored = draws[draw][method];
       const double value = scored.values[metric];
-      // No value because no joint was asked about is no failure.
+      // NaN here means that there were no such joints, which is not a failure.
       if (shown.kind == Kind::Stated && std::isnan(value)) continue;
       comparison.add(scored.method, draw, value);
     }
@@ -81,7 +81,7 @@ void report_stated(Report& report, const std::string& name, const Draws& draws,
   }
 }
 
-/// Errors over the joints for which every method gives an answer.
+/// Errors over the joints that every method reports.
 void report_common(Report& report, const std::string& name, const Draws& draws) {
   Comparison comparison(name, "mpjpe_common_mm", "mm");
   for (std::size_t draw = 0; draw < draws.size(); ++draw) {
@@ -161,7 +161,7 @@ void ablate(Report& report) {
   }
 }
 
-/// Turns one source of error after the other down and up.
+/// Scales each source of error in turn, down and up.
 void sweep(Report& report) {
   std::vector<Contender> contenders;
   for (Contender& each : all_contenders()) {
@@ -197,7 +197,7 @@ std::vector<FusionCase> all_cases() {
   return cases;
 }
 
-/// Catches a regression long before anybody reads the table.
+/// Fails on a gross regression, before anybody reads the table.
 void hold_to_ceiling(Report& report, const Comparison& found) {
   constexpr double kCeiling = 60.0;  // [mm] about twice the present; 97 before sides were resolved
   report.condition(fmt::format("{}: our mean joint error is below {} mm", kMainCase, kCeiling),

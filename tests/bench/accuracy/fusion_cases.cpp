@@ -32,7 +32,7 @@ std::vector<FusionCase> scenes_of(const std::string& profile) {
       std::move(cold)};
 }
 
-/// The yaws at which every sensor exchanges left and right, and exchanges them back [rad].
+/// The yaws at which every sensor swaps left and right, and swaps them back [rad].
 struct Flips {
   double out;
   double back;

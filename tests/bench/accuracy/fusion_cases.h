@@ -28,10 +28,10 @@ struct FusionCase {
 /// Walking, standing, turning, at work, cold starts, on every profile; few and many sensors.
 [[nodiscard]] std::vector<FusionCase> main_cases();
 
-/// Various yaws at which left and right are exchanged; everything else as in profile A.
+/// Various yaws at which left and right are swapped; everything else as in profile A.
 [[nodiscard]] std::vector<FusionCase> flip_cases();
 
-/// Makes the person begin in the way that this draw's number selects.
+/// Makes the person begin in the way that the draw's number selects.
 void begin_cold(Setting& setting, std::size_t draw);
 
 }  // namespace chorus::bench

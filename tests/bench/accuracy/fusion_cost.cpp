@@ -15,8 +15,8 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kRate = 30.0;  // [Hz]
-constexpr Duration kLength = std::chrono::seconds(10);
+constexpr double kCostRate = 30.0;  // [Hz]
+constexpr Duration kCostLength = std::chrono::seconds(10);
 constexpr Duration kQuickLength = std::chrono::seconds(2);
 constexpr double kLiveRun = 8.0;  // [s]
 
@@ -24,9 +24,10 @@ struct CostCase {
   const char* name;
   std::size_t sensors;
   std::size_t persons;
-  double most_p99_ms;  ///< The condition.
+  double most_p99_ms;  ///< Limit that the condition sets.
 };
-constexpr std::array kCases{CostCase{"cost-10x6", 10, 6, 2.0}, CostCase{"scale-64x2", 64, 2, 5.0}};
+constexpr std::array kCostCases{CostCase{"cost-10x6", 10, 6, 2.0},
+                                CostCase{"scale-64x2", 64, 2, 5.0}};
 
 Workshop workshop_of(const Report& report, const CostCase& each) {
   Setting setting;
@@ -35,7 +36,7 @@ Workshop workshop_of(const Report& report, const CostCase& each) {
   ring.count = each.sensors;
   setting.places = ring_places(ring);
   setting.people = people_at_work(each.persons, setting.seed);
-  setting.length = report.quick() ? kQuickLength : kLength;
+  setting.length = report.quick() ? kQuickLength : kCostLength;
   return draw_workshop(setting);
 }
 
@@ -48,7 +49,7 @@ std::vector<double> step_times(const Workshop& workshop, fusion::Method method) 
   pipeline::Memory memory;
   std::vector<double> times;
   const Timestamp end = workshop.begin + workshop.setting.length;
-  const Duration step = from_seconds(1.0 / kRate);
+  const Duration step = from_seconds(1.0 / kCostRate);
   for (Timestamp instant = workshop.begin; instant <= end; instant += step) {
     const pipeline::Histories& histories = arriving.until(instant);
     const Timestamp late = instant + config.align.patience + Duration(1);
@@ -81,7 +82,8 @@ Result<void> report_rate(Report& report, const CostCase& each) {
   if (!cell) return pass(cell);
   const auto seen = watch(*cell, kLiveRun);
   if (!seen) return pass(seen);
-  report.row(each.name, "output_hz", seen->output_hz, "Hz", "configured", seen->output_hz / kRate);
+  report.row(each.name, "output_hz", seen->output_hz, "Hz", "configured",
+             seen->output_hz / kCostRate);
   report.row(each.name, "lost_frames", static_cast<double>(seen->lost), "frames");
   return {};
 }
@@ -89,7 +91,7 @@ Result<void> report_rate(Report& report, const CostCase& each) {
 }  // namespace
 
 Result<void> measure_cost(Report& report) {
-  for (const CostCase& each : kCases) {
+  for (const CostCase& each : kCostCases) {
     report_times(report, each);
     if (report.quick()) continue;
     if (auto done = report_rate(report, each); !done) return done;

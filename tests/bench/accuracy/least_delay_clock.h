@@ -1,5 +1,5 @@
-// What the server did before: the exchange with the least delay of the last 30 s, without a model
-// of the rate, applied only where it is larger than its own uncertainty.
+// The server's former method: the offset from the exchange with the least delay of the last 30 s,
+// without a model of the rate, applied only if it exceeds its uncertainty.
 #pragma once
 
 #include <deque>
@@ -24,7 +24,7 @@ class LeastDelayClock {
   [[nodiscard]] const Sample* best(Timestamp now) const;
   [[nodiscard]] bool contradicts(const Sample& sample);
 
-  std::deque<Sample> samples_;  ///< Oldest first; uncertainty rises, so the first is the best.
+  std::deque<Sample> samples_;  ///< Oldest first; uncertainties increase, so the first is the best.
   int contradictions_ = 0;
 };
 

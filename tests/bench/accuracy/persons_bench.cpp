@@ -1,5 +1,5 @@
 // Identities: our association compared with a first attempt and with the sensors' own ids; with
-// single sources of error turned up and down, and with parts of the association left out.
+// single sources of error scaled up and down, and with parts of the association left out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -87,7 +87,7 @@ std::vector<Association> ablations() {
   return all;
 }
 
-/// Keeps ours and its ablations if `ablated`, else ours and the other methods.
+/// Keeps ours and its ablations if `ablated`, otherwise ours and the other methods.
 Draws only(const Draws& draws, bool ablated) {
   Draws kept = draws;
   for (Identities& identities : kept) {
@@ -156,7 +156,7 @@ void measure(Report& report, const PersonsCase& each) {
   if (each.sides) report_sides(report, each);
   if (ablated) report_draws(report, "ablation-" + each.name, only(draws, true));
   if (each.name != kCrossingTwo) return;
-  constexpr double kMin = 50.0;  // [%] generous: it catches a regression and is no target
+  constexpr double kMin = 50.0;  // [%] generous: it detects a regression and is not a target
   report.condition(
       fmt::format("{}: in at least {} % of the draws no id changes", kCrossingTwo, kMin),
       no_switch_percent(draws, kOurs) >= kMin);

@@ -38,7 +38,7 @@ std::vector<Eigen::Isometry3d> ring(std::size_t count, double radius = 3.0) {
 /// What the sensors see at one instant, before it is assigned to people.
 using Sights = associate::Scene;
 
-/// A method: returns the people at each instant; keeps whatever memory it needs.
+/// A method: returns the people at each instant, and may remember anything from instant to instant.
 using Grouper = std::function<std::vector<Person>(const Sights& sights)>;
 
 /// Reports every occluded joint as inferred.  Profile A reports many of them as tracked, close to
@@ -147,7 +147,7 @@ std::vector<Contestant> contestants_in(const Workshop& workshop,
   return all;
 }
 
-/// The roll of an instant: everybody's true place, and no answers of a method yet.
+/// The roll of an instant: everybody's true position, without a method's output yet.
 Roll roll_at(const Workshop& workshop, Timestamp instant) {
   Roll roll{instant, {}, {}};
   const SensorId& master = workshop.tracks.front().sensor;
@@ -161,7 +161,7 @@ Period period_of(const Workshop& workshop) {
   return {workshop.begin + kStart, workshop.begin + workshop.setting.length - kTail};
 }
 
-/// Lets every method assign the views of every instant, and records who it says is where.
+/// Lets every method assign the views of every instant, and records whom it reports where.
 void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) {
   const Registration places = true_registration(workshop, workshop.tracks.front().sensor);
   visit_scenes(workshop.tracks, places, period_of(workshop), [&](const Sights& sights) {
@@ -174,7 +174,7 @@ void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) 
   });
 }
 
-/// Whether the person's views together fit better with left and right exchanged.
+/// True if the person's views together fit better with left and right swapped.
 bool is_exchanged(const Person& person, const Skeleton<WorldSpace>& exact) {
   LabelledError sum;
   for (const SensorView& view : person.views) {

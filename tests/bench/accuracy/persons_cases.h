@@ -22,7 +22,7 @@ struct PersonsCase {
   /// Changes the profile of the sensor at `place` after the draw.
   std::function<void(synthetic::kinect::Profile&, std::size_t place)> adjust = {};
   std::size_t draws = 20;
-  bool sides = false;  ///< Whether sides_wrong_in() is measured, too.
+  bool sides = false;  ///< True: sides_wrong_in() is measured, too.
 };
 
 /// The case that is measured in quick runs and used for sweeps.
@@ -36,7 +36,7 @@ struct Association {
   associate::AssociationConfig config = {};
 };
 
-/// What each method makes of the people, by the method's name.
+/// The scores of each method, by its name.
 using Identities = std::map<std::string, Identity>;
 
 /// One draw: each of `ours`, and in addition `nearest-neighbour` (greedy, without prediction) and
@@ -45,7 +45,7 @@ using Identities = std::map<std::string, Identity>;
                                        const std::vector<Association>& ours);
 
 /// The product's whole perception: fraction of the instants at which a person's views together fit
-/// better with left and right exchanged; people without an answer are left out.
+/// better with left and right swapped; people who are not reported are left out.
 [[nodiscard]] double sides_wrong_in(const PersonsCase& each, std::uint64_t seed);
 
 }  // namespace chorus::bench

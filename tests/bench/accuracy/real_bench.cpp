@@ -35,7 +35,7 @@ constexpr double kNoWorseMm = 5;
 
 using Truth = std::vector<importers::TruthFrame>;
 
-/// Fused joints with the true ones.
+/// Fused joints paired with the true ones.
 struct JointPairs {
   std::vector<Eigen::Vector3d> fused;
   std::vector<Eigen::Vector3d> truth;
@@ -74,14 +74,14 @@ Eigen::Isometry3d published_from_ours(const Registration& ours, const Registrati
 struct FusedScore {
   double median_mm = std::numeric_limits<double>::quiet_NaN();
   double p90_mm = std::numeric_limits<double>::quiet_NaN();
-  /// Median after the best rigid motion.
+  /// Median error after the best rigid motion.
   double shape_mm = std::numeric_limits<double>::quiet_NaN();
   double bodies_per_frame = 0.0;
   std::size_t frames = 0;
-  double missing_percent = 0.0;  ///< True joints without an answer, in all frames.
+  double missing_percent = 0.0;  ///< True joints that are not reported, in all frames.
 };
 
-/// The rigid motion that brings most joints onto the truth; views with left and right exchanged
+/// The rigid motion that brings most joints onto the truth; views with left and right swapped
 /// hardly count.
 Eigen::Isometry3d best_motion(const JointPairs& pairs) {
   constexpr int kRounds = 20;

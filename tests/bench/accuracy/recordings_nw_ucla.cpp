@@ -68,7 +68,7 @@ std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& tar
   return best;
 }
 
-/// Whether the product, as configured, takes these clips without clocks for a registered pair.
+/// True if the product, as configured, accepts these clips without clocks as a registered pair.
 bool accepts(const FrameRecording& target, const FrameRecording& source) {
   registration::RegistrationConfig config;
   config.use_floor = false;  // Kinect v1 delivers no floor
@@ -98,7 +98,7 @@ void close_chain(const Views& views, Closure& closure) {
 struct Census {
   std::size_t complete = 0;  ///< Takes with all three views.
   std::size_t copies = 0;    ///< Complete takes of which two views have the same numbers.
-  std::size_t refused = 0;   ///< Such takes that the importer refuses as copies.
+  std::size_t refused = 0;   ///< Of these, takes that the importer refuses as copies.
   std::size_t wrongly = 0;   ///< Complete takes without copies that the importer refuses as copies.
   std::size_t pairs = 0;     ///< Pairs of walks.
   std::size_t accepted = 0;  ///< Pairs that were accepted as registered.

@@ -1,7 +1,7 @@
 // Left and right in single-sensor recordings after the whole pipeline.
 //
 // In most collections people face the sensor: its labels are the truth.  In NW-UCLA they walk
-// about, and the direction of walking is the truth; seen from behind, their labels are exchanged.
+// about, and the direction of walking is the truth; seen from behind, their labels are swapped.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -48,7 +48,7 @@ struct Share {
 
 struct Shares {
   Share as_labelled;  ///< Frames in which the sensor's labels are right.
-  Share exchanged;    ///< Frames in which they are exchanged.
+  Share exchanged;    ///< Frames in which they are swapped.
 };
 
 /// The sensor's body nearest to a fused one.
@@ -106,8 +106,8 @@ std::optional<Truth> labels_are_right(const FrameRecording&, std::size_t, const 
 std::optional<Truth> walks_forwards(const FrameRecording& recording, std::size_t index,
                                     const Body& raw) {
   constexpr std::size_t kFrames = 4;
-  constexpr double kWalking = 0.4;  // [m/s]
-  constexpr double kAlong = 0.5;    // cosine of the angle to the front
+  constexpr double kWalks = 0.4;  // [m/s]
+  constexpr double kAlong = 0.5;  // cosine of the angle to the front
   if (index < kFrames || index + kFrames >= recording.frames.size()) return std::nullopt;
   const auto& before = recording.frames[index - kFrames];
   const auto& after = recording.frames[index + kFrames];
@@ -116,7 +116,7 @@ std::optional<Truth> walks_forwards(const FrameRecording& recording, std::size_t
   way.y() = 0;
   Eigen::Vector3d left = raw[JointId::ShoulderLeft].position - raw[JointId::ShoulderRight].position;
   left.y() = 0;
-  if (way.norm() < kWalking * seconds(after.captured - before.captured) || left.norm() < 0.05)
+  if (way.norm() < kWalks * seconds(after.captured - before.captured) || left.norm() < 0.05)
     return std::nullopt;
   const double along = way.normalized().dot(left.normalized().cross(Eigen::Vector3d::UnitY()));
   if (std::abs(along) < kAlong) return std::nullopt;
@@ -131,7 +131,7 @@ struct Collection {
   const char* beginning;
   Reader read;
   Judge judge;
-  /// Required share of right answers where the labels are right; 0: only reported.
+  /// Required share of correct results where the labels are right; 0: only reported.
   double least_percent;
 };
 

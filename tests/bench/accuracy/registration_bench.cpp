@@ -13,6 +13,7 @@
 #include "tests/bench/accuracy/bump_cases.h"
 #include "tests/bench/accuracy/exchange.h"
 #include "tests/bench/accuracy/registration_cases.h"
+#include "tests/bench/accuracy/registration_scale.h"
 #include "tests/bench/methods/comparison.h"
 #include "tests/bench/methods/over_draws.h"
 #include "tests/bench/methods/stress.h"
@@ -46,7 +47,7 @@ void watch(Report& report, const RegistrationCase& each, const std::vector<Score
                    median(position) < kCeiling);
 }
 
-/// The claim for white noise, from before the sensor model existed; kept so that it can be
+/// The claim for white noise, which is older than the sensor model; kept so that it can be
 /// repeated.
 void measure_gauss(Report& report) {
   Setting setting;
@@ -64,7 +65,7 @@ void measure_gauss(Report& report) {
                    holds);
 }
 
-/// One row per baseline: a ring of three, 10 s, with one source of error turned up or down.
+/// One row per baseline: a ring of three, 10 s, with one source of error scaled up or down.
 void measure_stress(Report& report, const std::string& name,
                     const std::vector<synthetic::Stress>& stress) {
   RegistrationCase each{name, {}, {kStressWalk}, timed_baselines()};
@@ -93,17 +94,19 @@ void sweep_stress(Report& report) {
   }
 }
 
-/// One of the short walks and what was made of it.
+/// One of the short walks, and its result.
 struct ShortWalk {
   Score score;
-  /// A uniform circle or a straight line: from the first no clock can be told, in principle.
+  /// True for a uniform circle or a straight line.  A circle does not determine a clock, in
+  /// principle.
   bool marked = false;
-  double offset_error = kNoRatio;  ///< Of the pair's clocks, found from the motion [ms]; NaN: none.
-  double offset_sigma = kNoRatio;  ///< As stated [ms].
+  double offset_error = kNoRatio;  ///< Error of the pair's clock offset, as found from the motion
+                                   ///< [ms]; NaN: none was found.
+  double offset_sigma = kNoRatio;  ///< Its stated standard deviation [ms].
 };
 
-/// What has to be added to the second sensor's stamps at mid-walk, they are by the first one's
-/// clock [s].
+/// First sensor's clock minus the second's, at mid-walk: to be added to the second one's stamps
+/// [s].
 double true_offset(const Workshop& workshop) {
   const Timestamp middle = workshop.begin + workshop.setting.length / 2;
   return seconds(workshop.clocks[0].host_time(middle) - workshop.clocks[1].host_time(middle));
@@ -146,7 +149,7 @@ double percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? kNoRatio : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// How well the clocks were told where a place was accepted.
+/// How accurate the clock offsets were where the pair was accepted.
 void report_offsets(Report& report, const std::string& name, const std::vector<ShortWalk>& walks) {
   constexpr double kP95 = 0.95;
   constexpr double kSigmas95 = 1.96;
@@ -190,7 +193,7 @@ void measure_short_walks(Report& report, const std::string& name, std::size_t co
                    percent(unmarked_refused, unmarked) <= kMaxRefused);
 }
 
-/// A thousand short walks, or fewer; 200 of them say nearly as much.
+/// A thousand short walks, or fewer; 200 of them show nearly as much.
 void measure_all_short_walks(Report& report, std::size_t count) {
   measure_short_walks(report, "walks-1000-synced", count, true);
   measure_short_walks(report, "walks-1000", count, false);
@@ -200,11 +203,12 @@ void measure_all_short_walks(Report& report, std::size_t count) {
       "with stamps corrected from exchanges.  Marked are uniform circles and straight lines.");
 }
 
-/// What became of the sensors of one ring.
+/// The outcome for the sensors of one ring.
 struct RingFate {
-  bool odd_named = false;   ///< The one that followed somebody else has no place, and a reason.
-  std::size_t refused = 0;  ///< Of the others.
-  std::size_t lost = 0;     ///< ... that were placed more than 100 mm off.
+  /// True if the sensor that followed somebody else got no place, and a reason.
+  bool odd_named = false;
+  std::size_t refused = 0;  ///< Number of other sensors that were refused.
+  std::size_t lost = 0;     ///< Number of other sensors that were placed more than 100 mm off.
 };
 
 /// A ring of four, 20 s; with `bystander`, one of its sensors followed somebody else all the time.
@@ -276,6 +280,24 @@ void measure_all_bystanders(Report& report, std::size_t count) {
       "else all the time.  honest-250: the same without.");
 }
 
+/// The case as it is asked for: that of its first walk.
+std::string full_name(const RegistrationCase& each) {
+  return fmt::format(fmt::runtime(each.name), each.lengths.front());
+}
+
+/// Measures the case that was asked for; false if there is none of that name.
+bool measure_only(Report& report) {
+  bool found = false;
+  for (const char* profile : {"A", "B", "C"}) {
+    for (const RegistrationCase& each : registration_cases(profile)) {
+      if (full_name(each) != report.only()) continue;
+      measure(report, each);
+      found = true;
+    }
+  }
+  return found;
+}
+
 void measure_cases(Report& report, const std::string& profile) {
   for (RegistrationCase& each : registration_cases(profile)) {
     if (report.quick()) {
@@ -301,7 +323,16 @@ void measure_ablations(Report& report, const std::string& profile) {
 Result<void> run_registration(Report& report) {
   constexpr std::string_view kBump = "bump";
   if (report.list()) {
-    std::cout << kBump << "\nwalks\nbystanders\n";
+    std::cout << kBump << "\nwalks\nbystanders\n" << kScale << '\n';
+    for (const char* profile : {"A", "B", "C"}) {
+      for (const RegistrationCase& each : registration_cases(profile))
+        std::cout << full_name(each) << '\n';
+    }
+    return {};
+  }
+  if (report.only() == kScale) {
+    report.profile(described({"A"}));
+    measure_scale(report);
     return {};
   }
   if (report.only() == "walks") {
@@ -316,7 +347,13 @@ Result<void> run_registration(Report& report) {
   }
   report.profile(described({"gauss", "A", "B", "C", "D"}));
   if (report.only().empty() || report.only() == kBump) measure_bumps(report);
-  if (!report.only().empty()) return {};
+  if (report.only() == kBump) return {};
+  if (!report.only().empty()) {
+    if (measure_only(report)) return {};
+    return fail(ErrorCode::InvalidArgument, "--only",
+                "there is no case \"" + report.only() + "\"; --list shows all");
+  }
+  if (!report.quick()) measure_scale(report);
   measure_gauss(report);
   for (const char* profile : {"A", "B", "C"}) measure_cases(report, profile);
   measure_all_short_walks(report, report.quick() ? 20 : 1000);

@@ -1,5 +1,5 @@
-// How well a sensor host's clock is known: the clock model alone on simulated exchanges, with
-// network and clock made worse and with parts of the filter left out; then how much its corrections
+// How well a sensor host's clock is known: the clock model alone on simulated exchanges, with a
+// worse network and clock, and with parts of the filter left out; then how much its corrections
 // improve fused bodies.
 #include <array>
 #include <functional>

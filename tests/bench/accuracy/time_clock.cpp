@@ -165,7 +165,7 @@ std::vector<ClockErrors> clock_errors(const ClockCase& each, const std::vector<N
   std::vector<Errors> errors(methods.size());
   Timestamp free = begin;
   for (double time = 0.0; time < each.length; time += 1.0 / each.rate) {
-    // One request is under way at a time: while waiting for an answer, turns are skipped.
+    // Only one request is under way at a time; requests that fall due meanwhile are skipped.
     constexpr Duration kAtOnce = std::chrono::microseconds(100);
     const Timestamp turn = begin + from_seconds(time);
     if (turn < free) continue;

@@ -28,7 +28,7 @@ struct NamedClock {
 /// A host's clock and the network in front of it.
 struct ClockCase {
   std::string name;
-  std::string target;       ///< As text, from the notes and measured peers.
+  std::string target;       ///< The requirement, as text.
   double ceiling_ms = 0.0;  ///< Condition on p95; 0: none.
   Network network;
   double offset = 0.0;  ///< Drawn uniformly from +- this [s]
@@ -47,7 +47,7 @@ struct ClockErrors {
   double p95 = 0.0;
   double p99 = 0.0;
   double deviation = 0.0;   ///< Standard deviation: a constant error does not count.
-  double after_step = 0.0;  ///< The largest from 10 s after a step on; 0: there is no step.
+  double after_step = 0.0;  ///< Largest error from 10 s after a step on; 0 if there is no step.
 };
 
 /// Errors of one draw, in the order of the methods.

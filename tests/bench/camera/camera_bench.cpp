@@ -1,5 +1,5 @@
-// Cameras without depth: who is who from rays alone, four views of a real person from landmarks and
-// from pixels, and how many pictures a second the runner that comes with Chorus takes.
+// Cameras without depth: identities from rays alone, four views of a real person from landmarks and
+// from pixels, and how many pictures a second the runner that comes with Chorus processes.
 #include <array>
 #include <string_view>
 

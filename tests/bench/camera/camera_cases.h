@@ -20,7 +20,7 @@ inline constexpr double kTruthHz = 60.0;
 
 [[nodiscard]] Registration published_places(const importers::ImportedSet& set);
 
-/// How fused joints agree with the published ones.
+/// How well fused joints agree with the published ones.
 struct Agreement {
   std::vector<double> errors;  ///< [m]
   std::vector<double> limbs;   ///< Errors of shoulders, elbows, wrists, hips, knees and ankles [m].
@@ -36,11 +36,11 @@ struct Agreement {
 [[nodiscard]] Result<void> four_views(Report& report);
 /// Fuses the bundled videos with real processes.
 [[nodiscard]] Result<void> live_views(Report& report);
-/// Measures how many pictures a second a runner takes on one core.
+/// Measures how many pictures a second a runner processes on one core.
 [[nodiscard]] Result<void> runner_speed(Report& report);
-/// Measures who is who with five simulated cameras in the scenes of `persons`.
+/// Measures identities with five simulated cameras in the scenes of `persons`.
 [[nodiscard]] Result<void> simulated_people(Report& report);
-/// Lenses from rendered pictures of a board.
+/// Measures the accuracy of lenses from rendered pictures of a board.
 [[nodiscard]] Result<void> lens_calibration(Report& report);
 
 }  // namespace chorus::bench

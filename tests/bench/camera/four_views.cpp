@@ -50,7 +50,7 @@ Result<Agreement> fused(const Tracks& tracks, const ImportedSet& set) {
   return agreement;
 }
 
-/// Lens and file of a camera, as the demo has them.
+/// Settings of a camera, as in the demo.
 Result<camera::CameraSettings> settings_of(const std::string& id) {
   std::ifstream file(fmt::format("{}/{}.json", kFourVideos, id));
   const auto all = nlohmann::json::parse(file, nullptr, false, true);

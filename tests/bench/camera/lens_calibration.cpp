@@ -23,7 +23,7 @@ constexpr PictureSize kSize{1280, 720};
 constexpr std::size_t kViews = 20;
 constexpr double kPercent = 100.0;
 
-/// A webcam or a wide lens, as drawn.
+/// A random webcam or wide-angle lens.
 Intrinsics drawn_lens(std::uint64_t seed) {
   synthetic::Draw draw({seed, 67});
   Intrinsics lens{kSize.width, kSize.height, 0, 0, 0, 0, {}};
@@ -37,15 +37,15 @@ Intrinsics drawn_lens(std::uint64_t seed) {
 }
 
 struct Draw {
-  double focal_percent = 0.0;  ///< Error of fx, relative.
+  double focal_percent = 0.0;  ///< Relative error of fx [percent].
   double centre_px = 0.0;
-  double sigmas = 0.0;  ///< The error of fx by its stated standard deviation.
-  double pixels = 0.0;  ///< Largest error of a direction in the picture, as pixels.
+  double sigmas = 0.0;  ///< Error of fx divided by its stated standard deviation.
+  double pixels = 0.0;  ///< Largest error of a direction in the picture [px].
   double reprojection = 0.0;
   double refused = 0.0;
 };
 
-/// How far apart the two lenses put the same direction, at most, over the picture.
+/// Largest distance, over the picture, between the pixels of the same direction in the two lenses.
 double worst_pixel(const Intrinsics& truth, const Intrinsics& found) {
   double worst = 0.0;
   for (int x = -9; x <= 9; ++x) {

@@ -65,7 +65,7 @@ synthetic::Ring ring() {
 
 SensorId camera_id(std::size_t i) { return SensorId::parse(fmt::format("cam{}", i)).value(); }
 
-/// Whether pose models have a landmark for the joint; they have none for hands and toes.
+/// True if pose models have a landmark for the joint; they have none for hands and toes.
 bool has_landmark(JointId id) {
   constexpr std::array kNone{JointId::HandLeft,     JointId::HandRight, JointId::HandTipLeft,
                              JointId::HandTipRight, JointId::ThumbLeft, JointId::ThumbRight,
@@ -110,7 +110,7 @@ class Camera {
     });
   }
 
-  /// Replaces a joint by the ray to its noisy landmark; false: it is not in the picture.
+  /// Replaces a joint with the ray to its noisy landmark; false if it is not in the picture.
   bool make_ray(Joint& joint) {
     std::normal_distribution<double> noise(0.0, errors_.pixels);
     if (joint.position.z() < 0.2) return false;
@@ -169,7 +169,7 @@ double nearest(const Eigen::Vector3d& neck, const std::vector<Skeleton<WorldSpac
   return least;
 }
 
-/// What the fused bodies say about who is where, with the truth; adds the neck errors to `off`.
+/// The reported people and the true ones; adds the neck errors to `off`.
 Roll roll_of(Timestamp instant, const std::vector<Skeleton<WorldSpace>>& people,
              const std::vector<FusedBody>& bodies, std::vector<double>& off) {
   Roll roll{instant, {}, {}};

@@ -151,8 +151,8 @@ Result<void> foreign_websocket(Trial& trial) {
   return {};
 }
 
-/// A host may try ten tokens at once and then one a second.  The test counts the judged guesses
-/// over kGuessing; it does not wait for the first refusal.
+/// A host may try ten tokens at once and then one a second.  The test counts the guesses that are
+/// checked during kGuessing; it does not wait for the first refusal.
 Result<void> guessed_tokens(Trial& trial) {
   constexpr double kGuessing = 4.0;       // [s]
   constexpr int kMaxJudged = 10 + 4 + 2;  // at once, one a second, and two to spare

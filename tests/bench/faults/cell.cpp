@@ -15,7 +15,7 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kPatience = 15.0;  // for start-up on a busy machine [s]
+constexpr double kStartPatience = 15.0;  // for start-up on a busy machine [s]
 
 std::string name_of_sensor(int index) { return fmt::format("s{}", index + 1); }
 
@@ -92,7 +92,8 @@ Result<void> Cell::take_ports() {
   return {};
 }
 
-/// Puts two pumps that only forward between server and sensor, one at each end of the lossy path.
+/// Connects server and sensor through two pumps that only forward, one at each end of the lossy
+/// path.
 Result<void> Cell::lead_through_path(int index) {
   std::uint16_t port = 0;
   Result<void> listens;
@@ -158,7 +159,7 @@ Result<void> Cell::start_sensor(int index) {
   if (!started) return pass(started);
   sensors_.at(static_cast<std::size_t>(index)).emplace(std::move(*started));
   const auto answers = [&] { return ask_port(sensor_port(index), {"GET", "/frame"}).status != 0; };
-  if (wait_until(kPatience, answers)) return {};
+  if (wait_until(kStartPatience, answers)) return {};
   return fail(ErrorCode::Timeout, "chorus-sensor", "it does not answer");
 }
 
@@ -183,7 +184,8 @@ Result<void> Cell::start_fusion() {
   if (!started) return pass(started);
   fusion_.emplace(std::move(*started));
   const auto answers = [&] { return ask({"GET", "/healthz"}).status != 0; };
-  if (wait_until(kPatience, [&] { return answers() || !fusion_->alive(); }) && fusion_->alive())
+  if (wait_until(kStartPatience, [&] { return answers() || !fusion_->alive(); }) &&
+      fusion_->alive())
     return {};
   return fail(ErrorCode::Timeout, "chorus-fusion", "it does not answer");
 }
@@ -197,7 +199,7 @@ Result<void> Cell::settle() const {
              return newest.contributors.contains(name);
            });
   };
-  if (wait_until(kPatience, all_here)) return {};
+  if (wait_until(kStartPatience, all_here)) return {};
   return fail(ErrorCode::Timeout, "the cell",
               "not every sensor contributed to one person within 15 s, before anything was done");
 }

@@ -29,7 +29,7 @@ using Settings = std::vector<std::string>;  ///< "key=value"
 struct Neighbour {
   std::string id;
   std::uint16_t port = 0;
-  int place = -1;      ///< Its place on the ring, after those of the sensors; -1: unknown.
+  int place = -1;  ///< Its place on the ring, after those of the sensors; -1: it is not registered.
   bool honest = true;  ///< Expected to contribute.
 };
 
@@ -43,7 +43,8 @@ struct CellPlan {
   Settings fusion = {};
   bool secure = false;                  ///< The server asks the sensors by https.
   ChildSurroundings surroundings = {};  ///< What chorus-fusion starts with.
-  bool placed = true;  ///< Extrinsics are given; else the sensors' places are unknown.
+  /// True: extrinsics are configured; false: the sensors have to be registered.
+  bool placed = true;
   /// The extrinsics are in the server's state folder, not in registration.file.
   bool stored = false;
   bool start_all = true;              ///< False: no sensor is started yet.
@@ -52,7 +53,8 @@ struct CellPlan {
 
 class Cell {
  public:
-  /// A started cell; unless the plan says otherwise, every placed sensor contributes already.
+  /// Starts a cell.  Unless the plan says otherwise, every placed sensor contributes when this
+  /// returns.
   [[nodiscard]] static Result<Cell> start(CellPlan plan);
 
   [[nodiscard]] Result<void> start_sensor(int index);
@@ -80,9 +82,9 @@ class Cell {
 
   /// Sends one request to chorus-fusion; status 0: no answer.
   [[nodiscard]] http::ClientResponse ask(http::ClientRequest request) const;
-  /// The answer to a GET as JSON; discarded() when there is no such answer.
+  /// The answer to a GET as JSON; discarded() if there is none.
   [[nodiscard]] nlohmann::json json(const std::string& path) const;
-  /// What /sensors/ reports of this sensor.
+  /// What /sensors/ reports about this sensor.
   [[nodiscard]] nlohmann::json told_of(const std::string& sensor) const;
 
  private:

@@ -1,4 +1,4 @@
-// Clients that take all they can get and never give way.
+// Clients that take all resources they can get.
 #include <atomic>
 #include <chrono>
 #include <cmath>

@@ -14,7 +14,7 @@
 namespace chorus::bench {
 namespace {
 
-constexpr int kSensors = 3;
+constexpr int kHonest = 3;
 constexpr int kRing = 4;
 constexpr double kNear = 0.3;  // largest distance from the person to the nearest fused body [m]
 
@@ -57,13 +57,13 @@ std::set<std::uint64_t> ids_near_person(const std::vector<FusedInstant>& seen, T
   return out;
 }
 
-/// Makes of the truth what a liar reports, once the cell has settled.
+/// Turns the truth into what a liar reports, once the cell has settled.
 using Lie = std::function<Guest::Said(Timestamp now, Guest::Said truth)>;
 
 struct Liars {
   explicit Liars(int count, const Lie& lie) {
     for (int i = 0; i < count; ++i) {
-      const auto place = place_of(kSensors + i, kSensors + count);
+      const auto place = place_of(kHonest + i, kHonest + count);
       guests.push_back(
           std::make_unique<Guest>(fmt::format("liar{}", i + 1), [this, place, lie](Timestamp when) {
             auto truth = honest(place, when);
@@ -73,10 +73,10 @@ struct Liars {
   }
   [[nodiscard]] CellPlan plan() const {
     CellPlan plan;
-    plan.sensors = kSensors;
+    plan.sensors = kHonest;
     for (std::size_t i = 0; i < guests.size(); ++i)
       plan.neighbours.push_back(
-          {guests[i]->id(), guests[i]->port(), kSensors + static_cast<int>(i)});
+          {guests[i]->id(), guests[i]->port(), kHonest + static_cast<int>(i)});
     return plan;
   }
 
@@ -124,8 +124,8 @@ Result<void> no_second_person(Trial& trial, const Lie& lie) {
   return {};
 }
 
-/// The time within the minute before `when` at which the person was farthest from where it will be
-/// two seconds after `when`.
+/// The time, in the minute before `when`, at which the person was farthest from its position two
+/// seconds after `when`.
 Timestamp furthest_before(Timestamp when) {
   constexpr int kLookedBack = 60;  // [s]
   const Eigen::Vector3d soon = truth_at(when + std::chrono::seconds(2));
@@ -141,7 +141,7 @@ Result<void> ghost_repeats(Trial& trial) {
   const auto old = std::make_shared<std::optional<Timestamp>>();
   return no_second_person(trial, [old](Timestamp when, Guest::Said truth) {
     if (!*old) *old = furthest_before(when);
-    truth.bodies = honest(place_of(kSensors, kSensors + 1), **old).bodies;
+    truth.bodies = honest(place_of(kHonest, kHonest + 1), **old).bodies;
     for (BodyFrame& body : truth.bodies) body.captured = when;
     return truth;
   });
@@ -208,12 +208,13 @@ Result<void> coat_stand(Trial& trial) {
   constexpr std::int64_t kMaxVersions = 3;
   const auto place = place_of(3, kRing);
   Guest guest("x", [&](Timestamp when) {
-    auto said = honest(place, Timestamp(std::chrono::hours(1)));  // the person as it stood then
+    // The person's pose at a fixed time.
+    auto said = honest(place, Timestamp(std::chrono::hours(1)));
     said.captured = when;
     for (BodyFrame& body : said.bodies) body.captured = when;
     return said;
   });
-  CellPlan plan{.sensors = kSensors, .neighbours = {{"x", guest.port()}}};
+  CellPlan plan{.sensors = kHonest, .neighbours = {{"x", guest.port()}}};
   plan.stored = true;
   plan.fusion = {"registration.seconds=8", "registration.good_duration_s=6"};
   auto cell = Cell::start(plan);

@@ -80,7 +80,7 @@ class Direction {
   std::size_t waiting_bytes_ = 0;
   bool reading_ = false;
   bool writing_ = false;
-  bool over_ = false;  ///< One end has hung up; the other learns it after the last message.
+  bool over_ = false;  ///< One end has hung up; the other is closed after the last message.
 };
 
 void Direction::read() {

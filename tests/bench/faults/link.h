@@ -18,7 +18,7 @@ namespace chorus::bench {
 /// Delay of one direction; both directions are alike [s].
 struct LinkModel {
   double delay = 0.0;
-  double jitter = 0.0;  ///< Added: uniform from 0 to this.
+  double jitter = 0.0;  ///< Additional delay: uniform from 0 to this.
 };
 
 /// Where a pump listens and where it connects to.  Made for the pump's io_context.
@@ -42,7 +42,7 @@ class Pump {
   [[nodiscard]] std::uint16_t port() const;
   /// Takes effect with the next message.
   void become(const LinkModel& model);
-  /// While frozen nothing passes, and no end is told: like an unplugged cable.
+  /// While frozen nothing passes, and neither end is notified, as with an unplugged cable.
   void freeze(bool frozen);
   /// Lets `bytes` more bytes of answers pass; then answers stop until freeze(false).
   void freeze_after(std::size_t bytes);

@@ -13,7 +13,7 @@ namespace chorus::bench {
 namespace {
 
 constexpr int kSensors = 4;
-constexpr double kPercent = 100.0;
+constexpr double kHundred = 100.0;
 constexpr double kMaxLater = 0.030;  // what one bad link may add to the others' age, p90 [s]
 
 CellPlan with_links(const LinkModel& link, int from, int to) {
@@ -84,7 +84,8 @@ Result<void> one_bad(Trial& trial, const LinkModel& link) {
 Result<void> used_later(Trial& trial, Cell& cell) {
   constexpr int kAsked = 60;
   constexpr double kMin = 95.0;
-  constexpr double kNear = 20.0;  // joint counts are not frame counts; both are averages [percent]
+  constexpr double kTolerance =
+      20.0;  // joint counts are not frame counts; both are averages [percent]
   const Watch watch(cell.port());
   const Timestamp begun = now();
   int with = 0;
@@ -95,18 +96,19 @@ Result<void> used_later(Trial& trial, Cell& cell) {
     const auto frame = cell.json("/frame?at=" + to_iso8601(instant));
     if (frame.dump().find("s2") != std::string::npos) ++with;
     const auto told = cell.told_of("s2");
-    shares.push_back(kPercent * told.value("share", -1.0));
-    afterwards.push_back(kPercent * told.value("shareAfterwards", -1.0));
+    shares.push_back(kHundred * told.value("share", -1.0));
+    afterwards.push_back(kHundred * told.value("shareAfterwards", -1.0));
     wait_for(0.05);
   }
-  const double used = kPercent * with / kAsked;
+  const double used = kHundred * with / kAsked;
   trial.check(used >= kMin,
               fmt::format("?at= one second later uses the late sensor in {:.0f} %", used));
   const double real = account_of(watch.seen(), begun, now()).share_of("s2");
-  trial.check(std::abs(median(shares) - real) <= kNear && median(afterwards) >= kMin - kNear,
-              fmt::format("it is in {:.0f} % of the frames; /sensors/ says {:.0f} %, {:.0f} % "
-                          "afterwards",
-                          real, median(shares), median(afterwards)));
+  trial.check(
+      std::abs(median(shares) - real) <= kTolerance && median(afterwards) >= kMin - kTolerance,
+      fmt::format("it is in {:.0f} % of the frames; /sensors/ says {:.0f} %, {:.0f} % "
+                  "afterwards",
+                  real, median(shares), median(afterwards)));
   return {};
 }
 
@@ -133,8 +135,8 @@ class BusyMachine {
   std::vector<std::jthread> threads_;
 };
 
-/// Although the busy machine delays all frames at times, one bad link must cost the other sensors
-/// nothing.
+/// The busy machine delays all frames at times; still, one bad link must not affect the other
+/// sensors.
 Result<void> jitter_busy(Trial& trial) {
   auto cell = Cell::start(with_links({}, 1, 2));
   if (!cell) return pass(cell);

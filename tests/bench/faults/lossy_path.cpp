@@ -31,7 +31,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr const char* kNear = "10.99.0.1";
+constexpr const char* kNearEnd = "10.99.0.1";
 constexpr const char* kFar = "10.99.0.2";
 constexpr const char* kDevice = "lossy";
 constexpr std::size_t kPacketBytes = 2048;  // more than a TUN device's 1500
@@ -213,9 +213,9 @@ LossyPath::LossyPath() : impl_(std::make_unique<Impl>()) {}
 LossyPath::~LossyPath() = default;
 
 Result<std::unique_ptr<LossyPath>> LossyPath::open(const PacketModel& model) {
-  auto near = in_thread([] { return make_end(kNear, kFar); });
+  auto near = in_thread([] { return make_end(kNearEnd, kFar); });
   if (!near) return pass(near);
-  auto far = in_thread([] { return make_end(kFar, kNear); });
+  auto far = in_thread([] { return make_end(kFar, kNearEnd); });
   if (!far) return pass(far);
   std::unique_ptr<LossyPath> path(new LossyPath);
   Impl& impl = *path->impl_;

@@ -11,7 +11,7 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kPatience = 3.0;  // until a client's first data [s]
+constexpr double kFirstDataPatience = 3.0;  // until a client's first data [s]
 
 /// A cell with one output that any host may use, and another host that uses it.
 struct Crowded {
@@ -76,7 +76,8 @@ Result<void> dtrack_seats(Trial& trial) {
   wait_for(0.5);
   const auto client = connect_to({.port = rig->port});
   (void)client.say(std::string_view("dtrack2 get status active\0", 26));
-  trial.check(client.hear(kPatience).starts_with("dtrack2 set status"), "another host is answered");
+  trial.check(client.hear(kFirstDataPatience).starts_with("dtrack2 set status"),
+              "another host is answered");
   check_rest(trial, *rig->cell);
   return {};
 }
@@ -93,7 +94,7 @@ bool natnet_serves(const End& end) {
   (void)client.hear(1.0);
   (void)client.say(kModels);
   const Timestamp begun = now();
-  while (seconds(now() - begun) < kPatience) {
+  while (seconds(now() - begun) < kFirstDataPatience) {
     (void)client.say(kKeepAlive);
     for (int i = 0; i < 20; ++i) {
       const std::string datagram = client.hear(0.1);
@@ -134,7 +135,7 @@ Result<void> natnet_one_datagram(Trial& trial) {
   (void)victim.say(kConnect);
   std::size_t bytes = 0;
   const Timestamp begun = now();
-  while (seconds(now() - begun) < kPatience) bytes += victim.hear(0.1).size();
+  while (seconds(now() - begun) < kFirstDataPatience) bytes += victim.hear(0.1).size();
   trial.check(bytes > 0 && bytes <= kMax,
               fmt::format("4 bytes asked, {} answered within 3 s", bytes));
   trial.check(natnet_serves({.port = rig->port}), "a client that goes on asking gets frames");

@@ -80,10 +80,10 @@ Result<void> frozen_mid_answer(Trial& trial) {
   return {};
 }
 
-/// A bad sensor beside two good ones, which must go on undisturbed.
+/// A bad sensor alongside two good ones, which must not be affected.
 struct Beside {
   Neighbour neighbour;
-  /// Set once all has settled; null: the sensor misbehaves from the start.
+  /// Set once the cell has settled; null: the sensor misbehaves from the start.
   std::atomic<bool>* misbehaves = nullptr;
   double watched = 4.0;   ///< [s]
   bool must_tell = true;  ///< /sensors/ must report an error of the bad sensor.

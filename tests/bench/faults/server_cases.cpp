@@ -186,7 +186,7 @@ struct Ending {
   std::string said;
 };
 Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
-  constexpr double kPatience = 3.0;
+  constexpr double kExitPatience = 3.0;
   constexpr int kRuns = -1;
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return fail(ErrorCode::Io, "pipe", "there is none");
@@ -202,7 +202,7 @@ Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
     ::close(ends[0]);
     return pass(fusion);
   }
-  Ending ending{fusion->wait(kPatience), {}};
+  Ending ending{fusion->wait(kExitPatience), {}};
   std::array<char, 4096> text{};
   if (ending.code != kRuns) {
     const ssize_t got = ::read(ends[0], text.data(), text.size());
@@ -213,7 +213,7 @@ Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
   return std::optional(ending);
 }
 
-/// With any amount of memory, the program either runs or says why it does not.
+/// Whatever the amount of memory, the program either runs or says why it does not.
 Result<void> little_memory(Trial& trial) {
   constexpr std::size_t kMegabyte = 1U << 20U;
   constexpr int kSignalled = 128;

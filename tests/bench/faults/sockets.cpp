@@ -81,12 +81,12 @@ RawSocket connect_to(const End& end, bool small_buffer) {
 RawSocket datagrams_to(const End& end) { return socket_to(end, SOCK_DGRAM, false); }
 
 std::string head_of_answer(const End& end, std::string_view request) {
-  constexpr double kPatience = 3.0;
+  constexpr double kAnswerPatience = 3.0;
   const RawSocket socket = connect_to(end);
   std::string answer;
   if (!socket.open() || !socket.say(request)) return answer;
   while (answer.find("\r\n\r\n") == std::string::npos) {
-    const std::string part = socket.hear(kPatience);
+    const std::string part = socket.hear(kAnswerPatience);
     if (part.empty()) break;
     answer += part;
   }

@@ -24,7 +24,7 @@ class RawSocket {
   [[nodiscard]] std::string hear(double patience) const;
   /// All data until the other side has been silent for `silence` [s], or has closed.
   [[nodiscard]] std::string hear_all(double silence) const;
-  /// Whether the other side has closed; discards what it sent before.
+  /// True if the other side has closed; discards what it sent before.
   [[nodiscard]] bool hung_up() const;
 
  private:

@@ -17,11 +17,11 @@ namespace chorus::bench {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// What a case found.
+/// The result of a case.
 class Trial {
  public:
   struct Check {
-    std::string sentence;  ///< What must hold, with what was measured.
+    std::string sentence;  ///< What must hold, and what was measured.
     bool holds = false;
   };
 
@@ -29,9 +29,9 @@ class Trial {
   /// Skips the case: this machine cannot run it.
   void leave_out(std::string reason) { left_out = std::move(reason); }
 
-  /// Checks that all but the faulty part go on: the server runs, fused frames with a body come at
-  /// 30 Hz, none is lost, and each of these sensors contributes to nearly all of them.  Sets the
-  /// measured values of this trial.
+  /// Checks that everything but the faulty part keeps working: the server runs, fused frames with a
+  /// body come at 30 Hz, none is lost, and each of these sensors contributes to nearly all of them.
+  /// Sets the measured values of this trial.
   void check_others(Cell& cell, const Account& account, const std::vector<std::string>& others);
   /// Records how long the recovery took, and checks it against a limit [s].
   void check_recovery(double took, double limit);

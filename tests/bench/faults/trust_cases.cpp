@@ -14,9 +14,9 @@
 namespace chorus::bench {
 namespace {
 
-constexpr int kSensors = 3;
-constexpr double kReturn = 1.5;  // until a repaired sensor contributes again, at most [s]
-constexpr double kPatience = 8.0;
+constexpr int kTrusting = 3;
+constexpr double kTrustedAgain = 1.5;  // until a repaired sensor contributes again, at most [s]
+constexpr double kTrustPatience = 8.0;
 
 /// An authority, and files of sensors that it vouches for.
 class Authority {
@@ -40,10 +40,10 @@ class Authority {
   }
   [[nodiscard]] CellPlan plan() const {
     CellPlan plan;
-    plan.sensors = kSensors;
+    plan.sensors = kTrusting;
     plan.secure = true;
     plan.fusion = {"poll.ca=" + path("ca.crt")};
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < kTrusting; ++i) {
       certify(i);
       plan.of_sensor[i] = of_sensor(i);
     }
@@ -63,17 +63,17 @@ class Authority {
 };
 
 /// Waits until the last error that the server reports of the sensor contains `text`; false if it
-/// does not within kPatience.
+/// does not within kTrustPatience.
 bool says(const Cell& cell, const std::string& sensor, const std::string& text) {
-  return wait_until(kPatience, [&] {
+  return wait_until(kTrustPatience, [&] {
     return cell.told_of(sensor).value("lastError", "").find(text) != std::string::npos;
   });
 }
 
 void check_return(Trial& trial, const Watch& watch, const Cell& cell, Timestamp since) {
-  (void)wait_until(kPatience,
+  (void)wait_until(kTrustPatience,
                    [&] { return std::isfinite(recovery(watch.seen(), since, cell.placed())); });
-  trial.check_recovery(recovery(watch.seen(), since, cell.placed()), kReturn);
+  trial.check_recovery(recovery(watch.seen(), since, cell.placed()), kTrustedAgain);
 }
 
 Result<void> certificate_expired(Trial& trial) {
@@ -104,7 +104,7 @@ Result<void> certificates_renewed(Trial& trial) {
   const Watch watch(cell->port());
   wait_for(1.0);
   const Timestamp begun = now();
-  for (int i = 0; i < kSensors; ++i) {
+  for (int i = 0; i < kTrusting; ++i) {
     authority.certify(i);
     cell->sensor(i).send(SIGHUP);
   }
@@ -114,7 +114,7 @@ Result<void> certificates_renewed(Trial& trial) {
 }
 
 Result<void> wrong_token(Trial& trial) {
-  auto cell = Cell::start({.sensors = kSensors});
+  auto cell = Cell::start({.sensors = kTrusting});
   if (!cell) return pass(cell);
   const Watch watch(cell->port());
   wait_for(1.0);
@@ -133,7 +133,7 @@ Result<void> wrong_token(Trial& trial) {
 }
 
 Result<void> two_servers(Trial& trial) {
-  auto cell = Cell::start({.sensors = kSensors});
+  auto cell = Cell::start({.sensors = kTrusting});
   if (!cell) return pass(cell);
   const Watch watch(cell->port());
   wait_for(1.0);
@@ -146,7 +146,7 @@ Result<void> two_servers(Trial& trial) {
        "sensors=" + cell->polled(), "--set", "viewer_dir=", "--set", "state_dir=", "--set",
        "registration.file=" + places});
   if (!second) return pass(second);
-  if (!wait_until(kPatience, [&] { return ask_port(port, {"GET", "/healthz"}).status != 0; }))
+  if (!wait_until(kTrustPatience, [&] { return ask_port(port, {"GET", "/healthz"}).status != 0; }))
     return fail(ErrorCode::Timeout, "the second chorus-fusion", "it does not answer");
   const Watch other(port);
   wait_for(2.0);

@@ -145,7 +145,7 @@ std::vector<double> ages_of(const std::vector<FusedInstant>& part) {
 }  // namespace
 
 Account account_of(std::span<const FusedInstant> seen, Timestamp from, Timestamp to) {
-  constexpr double kRate = 30.0;  // [Hz]
+  constexpr double kSensorRate = 30.0;  // [Hz]
   std::vector<FusedInstant> part;
   std::ranges::copy_if(seen, std::back_inserter(part), [&](const FusedInstant& each) {
     return each.received >= from && each.received < to;
@@ -163,7 +163,7 @@ Account account_of(std::span<const FusedInstant> seen, Timestamp from, Timestamp
     several += part[i].bodies.size() > 1 ? 1 : 0;
     for (const std::string& name : part[i].contributors) out.share[name] += 1.0;
   }
-  const double due = kRate * seconds(part.back().instant - part.front().instant);
+  const double due = kSensorRate * seconds(part.back().instant - part.front().instant);
   const auto all = static_cast<std::size_t>(std::llround(due)) + 1;
   out.lost = all - std::min(all, with_body);
   const auto frames = static_cast<double>(part.size());

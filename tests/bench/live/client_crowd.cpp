@@ -41,8 +41,8 @@ int connect_to(std::uint16_t port) {
   return -1;
 }
 
-/// Length of the WebSocket message at the beginning of `bytes` (RFC 6455, 5.2; a server masks
-/// nothing, and ours never splits a document); 0: its head is not complete yet.
+/// Length of the WebSocket message at the beginning of `bytes` (RFC 6455, 5.2; a server does not
+/// mask, and ours never splits a document); 0: its head is not complete yet.
 std::size_t message_length(std::string_view bytes) {
   constexpr std::size_t kTwoBytes = 126;  // this value says that the length follows in two bytes
   constexpr std::size_t kEightBytes = 127;

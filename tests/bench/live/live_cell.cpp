@@ -49,7 +49,7 @@ struct Received {
   Timestamp when;
 };
 
-/// Receives frames with one VRPN client, with nothing else on this thread; returns when each came.
+/// Receives frames with one VRPN client, alone on this thread; returns the time of each receipt.
 std::vector<Received> receive_frames(testing::VrpnClient& client, double run_seconds) {
   std::vector<Received> out;
   const SystemClock clock;

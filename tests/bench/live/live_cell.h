@@ -27,8 +27,8 @@ class ExactSensors {
   [[nodiscard]] std::string settings() const;
   [[nodiscard]] std::string places() const;
   /// When the last capture that the instant needs was published; it needs each sensor's first
-  /// capture at or after the instant.  None: a sensor has not captured that one yet, or has
-  /// forgotten it.
+  /// capture at or after the instant.  None: some sensor has not captured that frame yet, or no
+  /// longer remembers it.
   [[nodiscard]] std::optional<Timestamp> last_needed_capture(Timestamp instant) const;
 
  private:

@@ -31,15 +31,15 @@ constexpr int kSensors = 6;
 constexpr double kRate = 30.0;         // [Hz]
 constexpr double kLongMinutes = 60.0;  // the length that the claim states
 constexpr double kQuickMinutes = 1.0;
-constexpr double kNoise = 0.008;   // [m] of every coordinate
+constexpr double kNoise = 0.008;   // [m], on every coordinate
 constexpr double kMaxRss = 200.0;  // [MB] the claim
 constexpr std::size_t kDraws = 1 << 16;
 
 struct OfflineCase {
   const char* name;
   int people;
-  double share;             ///< Length, as a fraction of the asked one.
-  double least_real_times;  ///< Claimed least ratio of recorded time to run time.
+  double share;             ///< Length, as a fraction of the requested one.
+  double least_real_times;  ///< Claimed minimum of recorded time / run time.
 };
 constexpr std::array kCases{OfflineCase{"six-sensors", 1, 1.0, 150.0},
                             OfflineCase{"six-sensors-six-people", 6, 0.25, 30.0}};

@@ -13,7 +13,8 @@ double cpu_seconds_of(pid_t pid) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
   std::getline(stat, line);
-  // Fields 14 and 15 of proc(5), counted after the name, which may contain spaces.
+  // Reads utime and stime, fields 14 and 15 of /proc/[pid]/stat (proc(5)).  Parsing starts after
+  // field 2, the name, because it may contain spaces.
   std::istringstream fields(line.substr(std::min(line.rfind(')') + 1, line.size())));
   std::string skipped;
   constexpr int kFieldsBeforeUserTime = 11;

@@ -149,7 +149,7 @@ Answers answers_of(const std::vector<Seen>& frames, const Workshop& room, const 
   return answers;
 }
 
-/// The fused body compared with the best single sensor, whose true place and time are given.
+/// The fused body compared with the best single sensor, for which the true pose and clock are used.
 void report_accuracy(Report& report, const std::string& c, const Observed& seen,
                      const std::pair<Workshop, SensorId>& truth) {
   const auto& [room, master] = truth;
@@ -176,8 +176,8 @@ Result<SensorId> master_of(const Rig& rig) {
   return SensorId::parse(json["master"].get<std::string>());
 }
 
-/// The true capture time of a frame, from its stamp.  A clock that was set back gives the same
-/// stamp twice; then the later time is meant, unless the frame was received before it.
+/// The true capture time of a frame, from its stamp.  A clock that was set back shows the same
+/// stamp twice; then the later time is used, unless the frame was received before it.
 Timestamp true_capture(const Seen& frame, const synthetic::HostClock& clock) {
   synthetic::HostClock before = clock;
   synthetic::HostClock after = clock;
@@ -204,7 +204,7 @@ std::ptrdiff_t stepped_hosts(const Observed& seen) {
   });
 }
 
-/// Checks that clocks were set during the run, which otherwise would say nothing about clock steps.
+/// Checks that clocks were set during the run; otherwise it would not test clock steps.
 void report_steps(Report& report, const SystemCase& asked, const Observed& seen) {
   const auto due =
       std::ranges::count_if(asked.hosts, [](const HostError& h) { return h.step_ms != 0; });

@@ -8,21 +8,22 @@
 
 namespace chorus::bench::baselines {
 
-/// Sightings of a joint closer than this belong together [m] (10 cm as in Lee 2022).
+/// Views of a joint that are closer than this belong together [m] (10 cm as in Lee 2022).
 inline constexpr double kClusterReach = 0.1;
 
 /// One of the product's methods, with its memory of one person.
 [[nodiscard]] Method product(fusion::FusionConfig config);
 [[nodiscard]] Method product(fusion::Method method);
 
-/// D: the mean over the views that track a joint; where none does, over those that infer it.
+/// The mean over the views that track a joint; if none does, over those that infer it.
 [[nodiscard]] Method tracked_mean();
 
-/// Groups of points linked by steps of at most `reach`, largest first; of equals the denser first.
+/// Groups of points linked by steps of at most `reach`, largest first; of equally large ones, the
+/// denser first.
 [[nodiscard]] std::vector<std::vector<std::size_t>> clusters_of(
     const std::vector<Eigen::Vector3d>& points, double reach);
 
-/// Per joint the mean of the largest group of sightings that agree.
+/// For each joint, the mean of the largest group of joint views that agree.
 [[nodiscard]] Method largest_cluster();
 
 }  // namespace chorus::bench::baselines

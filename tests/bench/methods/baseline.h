@@ -1,7 +1,7 @@
 // Other ways to fuse the views of one person: the methods that our fusion is compared with.
 //
 // All of them get the same views as ours: the same alignment, registration, facing and association
-// (pipeline::perceive), so left and right are corrected for all of them: therefore the mean is
+// (pipeline::perceive), so left and right are corrected for all of them, which is why the mean is
 // called flip-fixed-mean.  Only what the product lacks is implemented here.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Compares methods on the same draws: one value per method and draw.
 //
-// The result is always: the median of ours with its 5-95 % range, the same of each baseline, the
+// A result consists of the median of ours with its 5-95 % range, the same for each baseline, the
 // number of draws without a value, and the number in which ours was strictly better.
 #pragma once
 
@@ -21,12 +21,12 @@ class Comparison {
   Comparison(std::string case_name, std::string metric, std::string unit,
              Better better = Better::Lower);
 
-  /// NaN: this draw gave no value; it counts as infinitely bad and as failed.  To be called once
-  /// per method and draw.
+  /// NaN: this draw gave no value; it counts as infinitely bad and as failed.  Call this once per
+  /// method and draw.
   void add(const std::string& method, std::size_t draw, double value);
 
   [[nodiscard]] Spread spread_of(const std::string& method) const;
-  /// Fraction of the common draws in which ours is strictly better [%]; not if both failed.
+  /// Fraction of the common draws in which ours is strictly better [%]; it is not if both failed.
   [[nodiscard]] double won_percent(const std::string& baseline) const;
 
   /// One row per baseline, in the order of their addition; without any, one row of ours.

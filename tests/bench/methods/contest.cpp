@@ -23,8 +23,8 @@ using baselines::Body;
 
 constexpr Duration kStart = std::chrono::milliseconds(500);  // tracks are confirmed by then
 constexpr Duration kTail = std::chrono::milliseconds(200);   // frames still under way at the end
-constexpr double kReach = 0.6;  // [m] horizontally: a farther answer belongs to another person
-constexpr Duration kFresh = std::chrono::milliseconds(100);  // largest age of a stated answer
+constexpr double kReach = 0.6;  // [m] horizontally: a body farther away belongs to another person
+constexpr Duration kFresh = std::chrono::milliseconds(100);  // largest age of a reported body
 constexpr double kPercent = 100.0;
 constexpr double kToMs = 1000.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -165,7 +165,7 @@ struct Stage {
   }
 };
 
-/// Makes the same views again, with the error covariances that only the judge knows.
+/// Builds the same views again, with the true error covariances, for the lower bounds.
 void confide(Stage& stage, const Period& period, const pipeline::PipelineConfig& config) {
   const Confided known = confided(stage.workshop);
   if (known.tracks.empty()) return;
@@ -188,7 +188,7 @@ Stage stage_of(const Contest& contest, bool with_bound) {
   return stage;
 }
 
-/// The person at that moment as the contender gets it; none: there is none.
+/// The person at that moment as the contender gets it; none if there is none.
 std::optional<Person> given_at(const Stage& stage, std::size_t at, const Contender& contender) {
   const Body& exact = stage.exact[at];
   if (contender.bound && stage.confided.empty()) return std::nullopt;
@@ -231,7 +231,7 @@ Answers answers_of(const Stage& stage, const Contender& contender) {
   return answers;
 }
 
-/// Answers made from one sensor's views alone.
+/// Results from one sensor's views alone.
 Answers answers_of_sensor(const Stage& stage, const SensorId& sensor) {
   const auto only = [&sensor](const Person& person, Timestamp) {
     const auto view = std::ranges::find(person.views, sensor, &SensorView::sensor);
@@ -254,7 +254,7 @@ Answers answers_of_best_sensor(const Stage& stage) {
   return best;
 }
 
-/// At each instant the newest answer, compared with the truth at the time that it states.
+/// At each instant the newest result, compared with the truth at the time that it states.
 Answers answers_at_arrival(const Stage& stage) {
   const auto stated = baselines::arrival_kalman(stage.workshop.tracks, stage.registration);
   Answers answers;
@@ -283,7 +283,7 @@ Scored score(std::string method, const Answers& answers) {
   return scored;
 }
 
-/// Scores again, only over joints that are in every contender's answers.
+/// Scores again, only over joints that every contender reports.
 void score_common(std::vector<Scored>& scores, std::vector<Answers>& all) {
   const auto answers_nothing = [](const Answers& answers) { return !(coverage(answers) > 0); };
   const std::size_t count = all.empty() ? 0 : all.front().size();

@@ -36,7 +36,8 @@ struct Metric {
 struct Contender {
   std::string name;
   std::function<baselines::Method()> begin;
-  bool true_labels = false;  ///< Gets each view with left and right exchanged if they truly are.
+  bool true_labels = false;  ///< Gets every view with correct labels: left and right are swapped
+                             ///< back where they are wrong.
   baselines::Told told = nullptr;  ///< Used instead of `begin`: knows the truth.
   bool bound = false;  ///< Used instead of `begin`: baselines::linear_bound() with true errors.
 };
@@ -44,7 +45,8 @@ struct Contender {
 /// The product's default method; the first column of the tables.
 [[nodiscard]] Contender ours(const fusion::FusionConfig& config = {}, std::string name = "ours");
 
-/// The same, told which views have left and right exchanged; named "NAME-true-labels".
+/// The same, but with views whose left and right are corrected by the truth; named
+/// "NAME-true-labels".
 [[nodiscard]] Contender labelled(Contender contender);
 
 /// Ours and all methods that it is compared with.
@@ -52,7 +54,8 @@ struct Contender {
 
 struct Contest {
   Setting setting;
-  bool own_registration = false;  ///< Registered from the frames themselves; else the truth.
+  /// True: registered from the frames themselves; false: the true registration.
+  bool own_registration = false;
   /// Includes the best sensor and the filter at arrival, which are not of type Method.
   bool every_method = true;
   pipeline::PipelineConfig pipeline = {};
@@ -61,14 +64,14 @@ struct Contest {
 struct Scored {
   std::string method;
   std::vector<double> values;  ///< In the order of metrics().
-  double common = 0.0;         ///< Mean error over the joints that every contender gives [m].
+  double common = 0.0;         ///< Mean error over the joints that every contender reports [m].
 };
 
 /// Runs one draw.  If registration fails, all values are NaN.
 [[nodiscard]] std::vector<Scored> hold(const Contest& contest,
                                        const std::vector<Contender>& contenders);
 
-/// A view's skeleton with left and right exchanged.
+/// A view's skeleton with left and right swapped.
 [[nodiscard]] Skeleton<WorldSpace> exchanged(const Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::bench

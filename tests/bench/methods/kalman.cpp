@@ -81,7 +81,7 @@ void update(BodyFilter& filter, const Person& person, Timestamp arrived) {
 
 std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& sensors,
                                    const Registration& registration) {
-  constexpr Duration kCoast =
+  constexpr Duration kPast =
       std::chrono::milliseconds(100);  // a joint not seen for this long is dropped
   std::map<PersonId, BodyFilter> filters;
   associate::Tracks tracks;
@@ -98,7 +98,7 @@ std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& s
       BodyFilter& filter = filters[person.id];
       facing::resolve_sides(person, arrived, sides, {});
       update(filter, person, arrived);
-      answers.push_back({arrived, person.id, filter.at(arrived, arrived - kCoast)});
+      answers.push_back({arrived, person.id, filter.at(arrived, arrived - kPast)});
     }
   }
   return answers;

@@ -10,7 +10,7 @@
 
 namespace chorus::bench::baselines {
 
-/// A body as a tracker states it, with the time stated for it.
+/// A body as a tracker reports it, with the time that it states.
 struct Stated {
   Timestamp instant;
   PersonId id;
@@ -18,8 +18,8 @@ struct Stated {
 };
 
 /// The method of OpenPTrack: each frame updates its person's joints as it arrives, at the time of
-/// arrival, and the answer has that time (but with the real elapsed time instead of a fixed one,
-/// and with noise that fits the sensors: 25 mm, 75 mm where inferred).  One answer per frame and
+/// arrival, and the result states that time (but with the real elapsed time instead of a fixed one,
+/// and with noise that fits the sensors: 25 mm, 75 mm where inferred).  One result per frame and
 /// person, in order; left and right are corrected from frame to frame.  `received` must be set in
 /// all frames.
 [[nodiscard]] std::vector<Stated> arrival_kalman(

@@ -21,7 +21,8 @@ struct Period {
   double rate_hz = 30.0;
 };
 
-/// Feeds recorded tracks as if live: the histories hold what an instant needs, and nothing later.
+/// Feeds recorded tracks as if live: the histories contain what an instant needs, and nothing
+/// later.
 class Arriving {
  public:
   explicit Arriving(const std::vector<registration::WalkTrack>& tracks)

@@ -10,10 +10,10 @@
 namespace chorus::bench::baselines {
 namespace {
 
-constexpr double kMinError = 0.001;    // [m] limits the weight of a nearly exact sighting
+constexpr double kMinError = 0.001;    // [m] limits the weight of a nearly exact joint view
 constexpr double kMinVariance = 1e-6;  // [m^2] limits the mean square, too
 
-/// A sighting with the true mean square of its error.
+/// A joint view with the true mean square of its error.
 struct Sighting {
   Eigen::Vector3d place;
   Eigen::Matrix3d root;  ///< Symmetric root of the mean square [m].
@@ -43,7 +43,7 @@ double correlation(JointId id, const Sighting& a, const Sighting& b, const Share
          (1.0 - shared.twice + shared.twice * std::cos(2.0 * apart));
 }
 
-/// The joint covariance of all sightings' errors, three rows each.
+/// The common covariance matrix of the errors of all joint views, three rows each.
 Eigen::MatrixXd errors_of(JointId id, const std::vector<Sighting>& all,
                           const SharedErrors& shared) {
   const auto count = static_cast<Eigen::Index>(all.size());

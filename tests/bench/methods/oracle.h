@@ -1,15 +1,15 @@
 // Bounds: bodies made of one instant's views with knowledge that no tracker has.
 //
-// `bound`: per joint the linear combination of the views' sightings with the least mean square
-// error, given the true mean square of each sighting's error at that instant and how the sensors'
-// errors correlate (Gauss and Markov; for Gaussian errors the Cramer-Rao bound).  Reachable: it
-// knows how large errors are on average, as a perfect error model would, but not the actual errors.
-// No method that combines one instant's sightings linearly is better on average; others can be:
-// they can remember earlier instants, know the bones or remove a bias.
+// `bound`: for each joint, the linear combination of its views with the smallest mean square error,
+// given the true mean square of each view's error at that instant and how the sensors' errors
+// correlate (Gauss and Markov; for Gaussian errors the Cramer-Rao bound).  Reachable: it knows how
+// large errors are on average, as a perfect error model would, but not the actual errors.  No
+// method that combines one instant's views linearly is better on average; others can be: they can
+// remember earlier instants, know the bones or remove a bias.
 //
 // `oracle-weights`: the weighted mean with weights 1 / e^2, where e is the actual distance of each
-// sighting from the truth: the result of a method that predicts the size of every error perfectly,
-// but not its direction.  Not reachable.
+// view from the truth: the result of a method that predicts the size of every error perfectly, but
+// not its direction.  Not reachable.
 #pragma once
 
 #include "tests/bench/methods/baseline.h"
@@ -23,11 +23,11 @@ struct SharedErrors {
   double twice = 0.0;   ///< Its part that varies with twice the angle between the views.
 };
 
-/// The views' joints must carry their true mean square errors (judge.h, confided()); the answer
-/// states its covariance.  Sightings without one are left out.
+/// The views' joints must carry their true mean square errors (judge.h, confided()); the result
+/// states its covariance.  Joint views without one are left out.
 [[nodiscard]] Body linear_bound(const Person& person, const SharedErrors& shared);
 
-/// Makes a body from a person's views and the truth.
+/// Computes a body from a person's views and the truth.
 using Told = Body (*)(const Person& person, const Body& exact);
 
 [[nodiscard]] Body error_weighted_mean(const Person& person, const Body& exact);

@@ -181,8 +181,8 @@ double spread_of(const std::vector<Eigen::Vector3d>& points) {
   return std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-/// Refuses a walk that is too narrow and an edge whose rms is too large, by our limits; ours also
-/// refuses too few inliers.
+/// Refuses a walk that is too narrow and an edge whose rms is too large, by our limits; our method
+/// also refuses pairs with too few inliers.
 Result<PairwiseRegistration> unless_refused(PairwiseRegistration edge, const Walker& target,
                                             const Walker& source,
                                             const RegistrationConfig& config) {

@@ -19,7 +19,8 @@ using registration::WalkTrack;
 constexpr double kLost = 0.1;       // a sensor farther off counts as not registered [m]
 constexpr double kChi2Of2 = 5.991;  // 95 % with two degrees of freedom
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTypicalInflation = 19.0;  // variance factor, because successive pairs correlate
+// Variance factor, because successive pairs are correlated.
+constexpr double kTypicalInflation = 19.0;
 const Eigen::Vector3d kCentreInScene(0, 1, 0);
 
 /// A method that differs by its configuration alone.

@@ -28,18 +28,19 @@ struct RegistrationMethod {
 
 /// One registration against the truth; means over the placed sensors other than the master.
 struct Score {
-  double position = 0.0;            ///< NaN where a sensor was refused [m]
-  double position_worst = 0.0;      ///< As above [m]
-  double horizontal = 0.0;          ///< As above [m]
-  double vertical = 0.0;            ///< As above [m]
-  double yaw = 0.0;                 ///< As above [rad]
-  double pitch_roll = 0.0;          ///< As above [rad]
-  double centre = 0.0;              ///< As above; at the workspace centre, 1 m above the floor [m]
-  std::size_t asked = 0;            ///< Number of sensors.
-  std::size_t refused = 0;          ///< ... that were left out, with a reason.
-  std::size_t lost = 0;             ///< ... that were placed more than 100 mm off.
-  std::size_t covered = 0;          ///< ... whose 95 % ellipse on the floor holds the truth.
-  std::size_t inside = 0;           ///< ... that are within their stated 95 % radius on the floor.
+  double position = 0.0;        ///< NaN where a sensor was refused [m]
+  double position_worst = 0.0;  ///< As above [m]
+  double horizontal = 0.0;      ///< As above [m]
+  double vertical = 0.0;        ///< As above [m]
+  double yaw = 0.0;             ///< As above [rad]
+  double pitch_roll = 0.0;      ///< As above [rad]
+  double centre = 0.0;          ///< As above; at the workspace centre, 1 m above the floor [m]
+  std::size_t asked = 0;        ///< Number of sensors.
+  std::size_t refused = 0;      ///< Number of sensors that were left out, with a reason.
+  std::size_t lost = 0;         ///< Number of sensors that were placed more than 100 mm off.
+  /// Number of sensors whose 95 % ellipse on the floor contains the truth.
+  std::size_t covered = 0;
+  std::size_t inside = 0;  ///< Number of sensors within their stated 95 % radius on the floor.
   std::vector<double> stated = {};  ///< These radii [m].
   std::vector<double> off = {};     ///< The true errors on the floor, in the same order [m].
 };

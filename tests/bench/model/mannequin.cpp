@@ -13,9 +13,9 @@ namespace {
 
 using namespace synthetic;
 
-constexpr double kTurnRate = deg(4.0);  // slow: at most 0.1 m/s at the hands
-constexpr double kDistance = 2.3;       // Otto Fig. 5 shows the body there [m]
-constexpr double kSensorHeight = 1.0;   // Otto 3.1 [m]
+constexpr double kTurnRate = deg(4.0);      // slow: at most 0.1 m/s at the hands
+constexpr double kMannequinDistance = 2.3;  // Otto Fig. 5 shows the body there [m]
+constexpr double kSensorHeight = 1.0;       // Otto 3.1 [m]
 constexpr double kBendOverStep =
     std::numbers::sqrt3;       // ratio of second to first differences of white noise
 constexpr double kArm = 0.35;  // from the mount to the body's axis [m]
@@ -60,7 +60,8 @@ std::vector<MannequinSample> film(const Scene& scene, const kinect::Profile& pro
 
 std::vector<MannequinSample> turn_full(const kinect::Profile& profile, std::uint64_t seed) {
   const Scene scene = scene_with([](Duration since) {
-    return testing::standing_person({0, 0, kDistance}, deg(180) + kTurnRate * seconds(since));
+    return testing::standing_person({0, 0, kMannequinDistance},
+                                    deg(180) + kTurnRate * seconds(since));
   });
   return film(scene, profile, seed, deg(360));
 }

@@ -209,7 +209,7 @@ struct Pair {
 };
 constexpr Pair kTable1[] = {
     {0, 9.6}, {45, 16.0}, {90, 17.8}, {135, 26.6}, {180, 12.3}};  // Otto Table 1
-constexpr std::uint64_t kSetUps = 11;                             // one alone is uncertain by 20 %
+constexpr std::uint64_t kSetUps = 11;  // a single one is uncertain by 20 %
 
 /// (c) The paper's ICP, 10 s, twenty walks per set-up; the condition is on the median set-up.
 std::vector<TableOneBar> compare_with_table1(Report& report) {
@@ -233,7 +233,7 @@ std::vector<TableOneBar> compare_with_table1(Report& report) {
   return bars;
 }
 
-/// (d) One sensor's joint error against the truth; exchanged labels are exchanged back.
+/// (d) One sensor's joint error against the truth; swapped labels are swapped back.
 double joint_error_mm(std::uint64_t seed) {
   const Scene scene = one_sensor_scene(seed + 7);
   const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[0].inverse();

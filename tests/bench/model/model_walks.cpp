@@ -17,7 +17,7 @@ constexpr double kWander = 0.45;   // [m]
 constexpr double kPeriodX = 11.0;  // [s]
 constexpr double kPeriodZ = 17.0;  // [s]
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
-constexpr std::uint64_t kPurpose = 1501;
+constexpr std::uint64_t kWalkPurpose = 1501;
 constexpr double kLogSpeed = 0.8;        // [m/s]
 constexpr double kTurnedDistance = 2.0;  // [m]
 constexpr double kTurnedBy = deg(75);
@@ -31,7 +31,7 @@ Skeleton<WorldSpace> shifted(Skeleton<WorldSpace> body, const Eigen::Vector3d& s
 
 synthetic::Person stroller(std::uint64_t seed, const Eigen::Vector2d& centre, double speed) {
   WalkerScript script{seed, PathKind::Circle, centre, kRadius, speed, 1.0};
-  Draw draw{kPurpose, seed};
+  Draw draw{kWalkPurpose, seed};
   const double x0 = kFullTurn * draw.uniform();
   const double z0 = kFullTurn * draw.uniform();
   return [walker = Walker(script), x0, z0](Duration since_epoch) {

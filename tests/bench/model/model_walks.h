@@ -8,7 +8,7 @@
 
 namespace chorus::bench {
 
-/// An arbitrary instant of the present.
+/// An arbitrary recent instant.
 inline constexpr Timestamp kSomeTime = from_unix_ns(1'795'000'000'000'000'000);
 
 /// A person who walks in loops without a pause: circles of 0.5 m about a moving centre, so that

@@ -13,7 +13,7 @@ struct TableOneSetting {
   double angle = 0.0;      ///< [rad]
   int runs = 20;           ///< Number of walks; the sensors and their errors stay the same.
   std::uint64_t seed = 1;  ///< Seed of the set-up: sensors, person, walks.
-  bool in_step = true;     ///< Otto 5.2.4: frames are moved to common instants first.
+  bool in_step = true;     ///< Otto 5.2.4: frames are first moved to common instants.
 };
 
 /// Resamples both tracks at the capture times of the first one, by interpolating the other's joints

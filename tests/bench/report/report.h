@@ -1,7 +1,7 @@
 // What a benchmark found: rows of numbers, printed as one aligned table and written as JSON.
 //
 // A subcommand is one function `Result<void> run_NAME(Report&)` in NAME_bench.cpp, listed in
-// CMakeLists.txt. It asks the report for the seed and for how long it may take, and adds rows; it
+// CMakeLists.txt.  It gets the seed and the permitted length from the report, and adds rows; it
 // prints nothing itself.
 #pragma once
 
@@ -37,7 +37,8 @@ struct Row {
   double ratio = kNoRatio;  ///< Ours / baseline, from the same run; not finite: not given.
   std::optional<Spread> spread = {};  ///< Spread of `value` over draws.
   std::optional<Spread> beside = {};  ///< Spread of the baseline over the same draws.
-  double won_percent = kNoRatio;      ///< Draws in which `value` is better than the baseline's.
+  /// Percentage of the draws in which `value` is better than the baseline's.
+  double won_percent = kNoRatio;
 };
 
 struct Options {
@@ -45,8 +46,9 @@ struct Options {
   std::uint64_t seed = 1;  ///< The first seed; runs use seed, seed + 1, ...
   bool quick = false;      ///< Fewer runs, for a smoke test; the numbers are then only indicative.
   std::string plots = {};  ///< Folder for charts, where a subcommand draws any; empty: none.
-  std::string only = {};   ///< Name of a single case to run, where a subcommand can; empty: all.
-  bool list = false;       ///< Only print the names of the cases, where a subcommand can.
+  /// Name of a single case to run, if the subcommand supports that; empty: all.
+  std::string only = {};
+  bool list = false;  ///< Only print the names of the cases, if the subcommand supports that.
 };
 
 class Report {
@@ -64,7 +66,7 @@ class Report {
   void row(Row each) { rows_.push_back(std::move(each)); }
   /// The sensor profile that the numbers come from ("gauss"); empty where none is involved.
   void profile(std::string name) { profile_ = std::move(name); }
-  /// A sentence below the table about what the numbers mean and do not mean.
+  /// A sentence below the table about what the numbers mean and what they do not.
   void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
   /// A condition that must hold; a broken one makes chorus-bench exit with 1.
   void condition(std::string sentence, bool holds);

@@ -27,10 +27,10 @@ constexpr std::size_t kBodies = 6;
 constexpr int kRounds = 21;
 constexpr int kRepeats = 40;
 
-/// Keeps the compiler from dropping work whose result nobody reads.
+/// Keeps the compiler from removing work whose result is not used.
 volatile std::size_t sink = 0;
 
-/// The best of several rounds, each the mean of many runs: other load only ever adds time.
+/// The best of several rounds, each the mean of many runs, because other load can only add time.
 class Stopwatch {
  public:
   explicit Stopwatch(std::function<std::size_t()> work) : work_(std::move(work)) {}
@@ -109,7 +109,7 @@ class SerdGraph {
       {"ch", "https://w3id.org/chorus-tracking/ns#"}, {"xsd", std::string(rdf::kXsd)}};
 };
 
-/// Parses with Serd alone and counts triples: the least cost for any of its users.
+/// Parses with Serd alone and counts triples: the minimum cost for any of its users.
 std::size_t parse_with_serd(const std::string& turtle) {
   std::size_t count = 0;
   const auto on_triple = [](void* handle, SerdStatementFlags, const SerdNode*, const SerdNode*,

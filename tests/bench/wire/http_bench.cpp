@@ -49,7 +49,7 @@ DocumentPtr frame_document(std::uint64_t sequence, std::int64_t steady_ns) {
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));
 }
 
-/// Serves /frame; publishes it anew at `rate_hz` unless that is zero.
+/// Serves /frame; publishes a new version at `rate_hz`, unless that is zero.
 ServingProcess::Serve serving(double rate_hz) {
   return [rate_hz](const auto& say_port, const auto& wait_for_end) {
     auto frame = std::make_shared<http::LiveDocument>();

@@ -40,9 +40,9 @@ class ServingProcess {
   std::optional<ScratchFolder> folder_ = {};  ///< Configuration, document and logs of nginx.
 };
 
+enum class Side { Server, Load };
 /// Pins this process, and those it starts, to one core: servers to one, load generators to another.
 /// Does nothing on a machine with one core.
-enum class Side { Server, Load };
 void keep_to_side(Side side);
 
 struct WrkResult {

@@ -27,7 +27,7 @@ struct Client {
   int socket = -1;
   std::string received;
   std::uint64_t version = 0;
-  bool asks = false;  ///< Has its answer and will ask for the next one.
+  bool asks = false;  ///< True if it has its answer and will send the next request.
 };
 
 std::uint64_t number_after(std::string_view text, std::string_view name) {

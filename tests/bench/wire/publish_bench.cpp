@@ -41,7 +41,7 @@ std::shared_ptr<const Snapshot> six_people(std::uint64_t sequence) {
   return snapshot;
 }
 
-/// Waits for units on a thread of its own and records when they came.
+/// Waits for units on its own thread and records when they arrive.
 class Watch {
  public:
   struct Arrival {

@@ -1,4 +1,5 @@
-// DTrack's command channel: any bytes, split anywhere, give the same commands and bounded answers.
+// DTrack's command channel: any bytes, however they are split, give the same commands and answers
+// of limited size.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -1,4 +1,5 @@
-// NatNet's command channel: any datagrams from any host give bounded answers and few clients.
+// NatNet's command channel: any datagrams from any host lead to answers of limited size and few
+// clients.
 #include <cstdint>
 #include <cstdlib>
 #include <span>

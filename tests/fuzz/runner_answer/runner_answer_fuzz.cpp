@@ -1,10 +1,10 @@
 // Reads any lines as what a runner says: the first as its hello, the others as its answers to one
-// image, with and without depth from people's size.  Each is read or refused with words, and what
-// is read may be published.
+// image, with and without depth from people's size.  Each is read, or refused with a message, and
+// what is read may be published.
 #include <cstddef>
 #include <cstdint>
 
-#include "services/sensor/device/camera/apparent_size.h"
+#include "common/sensor/body_placer.h"
 #include "services/sensor/device/camera/runner_wire.h"
 #include "tests/fuzz/frame_checks.h"
 
@@ -19,12 +19,14 @@ constexpr const char* kUsualHello =
     R"({"type": "hello", "version": 1, "name": "n", "layout": "mediapipe_33"})";
 constexpr double kFocalSigma = 0.1;
 
-/// Processes the bodies as the device does, and checks the frame that results.
-void check_answer(std::vector<BodyFrame> bodies) {
-  for (BodyFrame& body : bodies) {
-    for (Joint& joint : body.skeleton.joints) widen_depth(joint, kFocalSigma);
-  }
-  fuzz::check_bodies(bodies, kQuestion.captured);
+/// Checks the frame as rays, and as the device places it.
+void check_answer(bridge::PushedFrame frame) {
+  fuzz::check_bodies(frame.bodies, kQuestion.captured);
+  PlacingErrors errors;
+  errors.focal = kFocalSigma;
+  BodyPlacer placer;
+  placer.place(frame.bodies, frame.shapes, errors);
+  fuzz::check_bodies(frame.bodies, kQuestion.captured);
 }
 
 }  // namespace
@@ -43,13 +45,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   hello.focal_sigma = kFocalSigma;
   while (!text.empty()) {
     const std::string_view line = fuzz::next_line(text);
-    for (const Depth depth : {Depth::None, Depth::FromSize}) {
-      auto bodies = read_runner_answer(line, kQuestion, hello, depth);
-      if (bodies)
-        check_answer(std::move(*bodies));
-      else
-        require(!to_string(bodies.error()).empty());
-    }
+    auto frame = read_runner_answer(line, kQuestion, hello);
+    if (frame)
+      check_answer(std::move(*frame));
+    else
+      require(!to_string(frame.error()).empty());
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-// Prefer: wait with If-None-Match: held until the document changes, else answered by 304.
+// Prefer: wait with If-None-Match: held until the document changes; otherwise the answer is 304.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

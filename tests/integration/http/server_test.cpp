@@ -1,4 +1,4 @@
-// The A3/A4 checklist of linked data over HTTP, checked over a real socket.
+// Checks over a real socket what linked data requires of HTTP.
 #include "common/http/server.h"
 
 #include <gmock/gmock.h>

@@ -47,7 +47,7 @@ class TlsRawClient {
   }
   /// Reads to the end that the server announces; see said_end().
   std::string hear_all() { return hear_until("\xff nothing says this \xff"); }
-  /// Whether the last hear_all() met a proper end rather than a broken connection.
+  /// True if the last hear_all() ended with a proper TLS close, not with a broken connection.
   [[nodiscard]] bool said_end() const { return last_ == tls::Seal::Step::Ended; }
 
  private:

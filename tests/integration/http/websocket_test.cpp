@@ -291,7 +291,7 @@ TEST(WebSocket, AServerThatStopsSaysSo) {
   const auto begin = std::chrono::steady_clock::now();
   std::thread stopping([&] { service.server.stop(); });
   EXPECT_EQ(client.hear_until("\xE9"), std::string("\x88\x02\x03\xE9"));
-  client.say(std::string("\xF3\x80\x01\x02\x03\x04", 6));  // this is no valid frame
+  client.say(std::string("\xF3\x80\x01\x02\x03\x04", 6));  // not a valid frame
   stopping.join();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }

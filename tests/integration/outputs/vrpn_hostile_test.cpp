@@ -30,7 +30,7 @@ class HostileVrpn : public test::VrpnRig {
     ASSERT_TRUE(good.connect(server->port()));
     ASSERT_TRUE(good_is_served());
   }
-  /// Whether a frame published now reaches the good client.
+  /// True if a frame published now reaches the good client.
   bool good_is_served() {
     const auto begun = static_cast<double>(sequence);
     return publish_until([&] {
@@ -125,7 +125,7 @@ TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
 std::size_t bytes_taken(http::test::RawClient& client, std::string_view repeated,
                         std::size_t most) {
   std::size_t taken = 0;
-  std::size_t begun = 0;  // Where in `repeated` the next piece begins.
+  std::size_t begun = 0;  // Offset in `repeated` of the next piece.
   while (taken < most) {
     const std::size_t said = client.say_some(repeated.substr(begun), std::chrono::seconds(1));
     if (said == 0) break;

@@ -14,8 +14,8 @@
 namespace chorus::testing {
 namespace {
 
-constexpr int kFiner = 2;               // subpixels a pixel, in each direction
-constexpr double kDotsPerSquare = 120;  // of the sheet
+constexpr int kFiner = 2;               // subpixels per pixel, in each direction
+constexpr double kDotsPerSquare = 120;  // resolution of the sheet
 constexpr double kMm = 1e-3;
 
 Eigen::Vector3d middle_of(const calibration::Board& board) {
@@ -101,7 +101,7 @@ BoardCamera::BoardCamera(const calibration::Board& board, const Intrinsics& came
 
 cv::Mat BoardCamera::picture(const Eigen::Isometry3d& camera_from_board, const Flaws& flaws,
                              std::uint64_t seed) const {
-  // x_in_camera = (r1 X + r2 Y + t), so (X, Y, 1) follows from a ray up to its length.
+  // x_in_camera = (r1 X + r2 Y + t), so a ray determines (X, Y, 1) up to a factor.
   Eigen::Matrix3d camera_from_plane;
   camera_from_plane << camera_from_board.linear().leftCols<2>(), camera_from_board.translation();
   const Eigen::Matrix3d plane_from_camera = camera_from_plane.inverse();

@@ -1,4 +1,4 @@
-// Pictures of a calibration board through a known lens, and the same as exact corners.
+// Pictures of a calibration board through a known lens, or only its exact corners.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,16 @@
 
 namespace chorus::testing {
 
-/// Brown's model, forwards; OpenCV's axes.
+/// Projects by Brown's model; OpenCV's axes.
 [[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& x_in_camera,
                                         const Intrinsics& camera);
 
 struct PoseWishes {
   std::size_t count = 20;
-  double share = 0.5;  ///< Of the picture's width that the board takes.
-  double tilt = 0.6;   ///< The most [rad].
-  double reach = 0.3;  ///< How far from the middle the board's centre goes, by the side.
+  double share = 0.5;  ///< Share of the picture's width that the board takes.
+  double tilt = 0.6;   ///< Largest tilt [rad].
+  /// Largest distance of the board's centre from the picture's, as a share of its sides.
+  double reach = 0.3;
   std::uint64_t seed = 1;
 };
 
@@ -38,10 +39,10 @@ struct PoseWishes {
 
 struct Flaws {
   double blur_px = 0.7;  ///< Standard deviation of a Gaussian.
-  double noise = 4.0;    ///< Of the grey values, 0 to 255.
+  double noise = 4.0;    ///< Standard deviation of the grey values, which run from 0 to 255.
 };
 
-/// Renders pictures; the lens is evaluated once.
+/// Renders pictures.  The constructor computes the ray of each subpixel once.
 class BoardCamera {
  public:
   BoardCamera(const calibration::Board& board, const Intrinsics& camera);

@@ -14,7 +14,7 @@ using rdf::Term;
 using rdf::TermKind;
 using rdf::Triple;
 
-/// Maps the label of a blank node to what is known about it.
+/// Maps the label of a blank node to its colour, which encodes what is known about it.
 using Colours = std::map<std::string, std::string>;
 
 std::string text_of(const Term& term, const Colours& colours) {

@@ -1,7 +1,6 @@
-// `make_still VIDEO NUMBER OUT.y4m`: one picture of a video, again and again, as a film that
-// Chromium takes for a camera
-// (--use-file-for-fake-video-capture).  Nothing moves in it, so that cameras which play such films
-// see one instant.
+// `make_still VIDEO NUMBER OUT.y4m`: one picture of a video, repeated, as a film that Chromium uses
+// as a camera (--use-file-for-fake-video-capture).  Nothing moves in it, so cameras that play such
+// films all see the same instant.
 #include <cstdlib>
 #include <fstream>
 

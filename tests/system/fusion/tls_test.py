@@ -111,17 +111,17 @@ class Tls(Rig):
                 except (ssl.SSLError, OSError):
                     self.assertFalse(taken)
 
-    def expired(self, name):
-        """Made with openssl, because our own program makes no expired ones."""
+    def by_hand(self, name, days="-1", names="IP:127.0.0.1,DNS:localhost"):
+        """Made with openssl, because our own program makes none that is expired or not for this host."""
         folder = self.path / name
         shutil.copytree(self.path / "host", folder)
-        (folder / "names").write_text("subjectAltName=IP:127.0.0.1,DNS:localhost\n")
+        (folder / "names").write_text(f"subjectAltName={names}\n")
         request = subprocess.run(["openssl", "req", "-new", "-key", folder / "host.key", "-subj", "/CN=old"], capture_output=True, check=True)
-        subprocess.run(["openssl", "x509", "-req", "-CA", self.path / "ca/ca.crt", "-CAkey", self.path / "ca/ca.key", "-days", "-1",
+        subprocess.run(["openssl", "x509", "-req", "-CA", self.path / "ca/ca.crt", "-CAkey", self.path / "ca/ca.key", "-days", days,
                         "-extfile", folder / "names", "-out", folder / "host.crt"], input=request.stdout, capture_output=True, check=True)
 
     def test_an_expired_certificate_is_told_and_its_renewal_needs_no_restart(self):
-        self.expired("old")
+        self.by_hand("old")
         sensor = self.secure_sensor("old")
         fusion = self.secure_fusion(sensor)
         self.wait_error(fusion, "has expired")
@@ -186,6 +186,33 @@ class Tls(Rig):
                 wait_for("what was pushed is served", served)
                 self.assertEqual(told, [])
             pusher.close()
+
+    def circle(self, sensor, seconds, ca="ca/ca.crt"):
+        """Starts the guide's sender in C++."""
+        return subprocess.Popen([os.environ["CHORUS_PUSH_CIRCLE"], f"wss://127.0.0.1:{sensor.port}/push", str(seconds)],
+                                stderr=subprocess.PIPE, text=True, env={**os.environ, "CHORUS_CA": str(self.path / ca) if ca else ""})
+
+    def test_frames_are_pushed_over_tls_from_c_plus_plus(self):
+        sensor = self.secure_sensor(kind="bridge")
+        process = self.circle(sensor, 60)
+        wait_for("what was pushed is served", lambda: len(self.get_json(sensor.url + "frame")["bodies"]) == 1)
+        wait_for("it answers for its clock", lambda: self.get_json(sensor.url + "push")["pusher"]["frames"] > 60)
+        self.assertAlmostEqual(self.get_json(sensor.url + "push")["pusher"]["clockOffsetMilliseconds"], 0, delta=20)
+        process.terminate()
+        process.communicate()
+
+    def test_a_c_plus_plus_sender_refuses_whom_it_cannot_believe(self):
+        self.chorus("init", "ca", "--out", self.path / "other", "--name", "Somebody")
+        self.by_hand("elsewhere", "30", "DNS:sensor-9")
+        self.by_hand("old")
+        for certificate, ca, words in (("host", None, "unable to get local issuer"), ("host", "other/ca.crt", "self-signed certificate|issuer"),
+                                       ("elsewhere", "ca/ca.crt", "IP address mismatch"),
+                                       ("old", "ca/ca.crt", "certificate has expired"), ("host", "none.crt", "no certificate can be read")):
+            with self.subTest(words):
+                sensor = self.secure_sensor(certificate, kind="bridge")
+                said = self.circle(sensor, 0.1, ca).communicate(timeout=30)[1]
+                self.assertRegex(said, words)
+                sensor.stop()
 
 
 if __name__ == "__main__":

@@ -64,6 +64,27 @@ test("every channel has its schema, and every message fits it", async () => {
   assert.ok(count > 6 * 60, "two seconds of two sensors and the fused stream, each with its scene");
 });
 
+/** The first key of a document that its schema does not describe; those of JSON-LD (@id) aside. */
+function undescribed(value, schema, at = "") {
+  for (const [key, inner] of Object.entries(typeof value === "object" ? value : {})) {
+    const known = Array.isArray(value) ? schema.items : schema.properties?.[key] ?? schema.additionalProperties;
+    if (!known && !key.startsWith("@")) return `${at}.${key}`;
+    const missing = known && undescribed(inner, known, `${at}.${key}`);
+    if (missing) return missing;
+  }
+  return undefined;
+}
+
+test("the schema describes all that frames may say: rays, covariances, contributors, who is carried", async () => {
+  const schemas = [...(await open()).schemasById.values()].filter((schema) => schema.name === "chorus.Frame");
+  const schema = json(schemas[0].data);
+  for (const name of ["fused", "rays"]) {
+    const golden = JSON.parse(readFileSync(new URL(`../../../proto/golden/perfect/${name}.json`, import.meta.url)));
+    assert.equal(misfit(golden, schema), undefined);
+    assert.equal(undescribed(golden, schema), undefined, name);
+  }
+});
+
 test("checksums hold in the data section, and metadata is indexed", async () => {
   const stream = new McapStreamReader({ decompressHandlers, validateCrcs: true });
   stream.append(readFileSync(file));

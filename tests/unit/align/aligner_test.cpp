@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr Timestamp kAlignStart = from_unix_ns(1'790'000'000'000'000'000);
 const SensorId kSensor = SensorId::parse("s1").value();
 
 BodyFrame body_at(Timestamp captured, double x, std::uint64_t id = 1) {
@@ -23,7 +23,7 @@ BodyFrame body_at(Timestamp captured, double x, std::uint64_t id = 1) {
 
 SensorFrame frame_at(Duration after, double x) {
   SensorFrame frame;
-  frame.captured = kStart + after;
+  frame.captured = kAlignStart + after;
   frame.bodies = {body_at(frame.captured, x)};
   return frame;
 }
@@ -36,7 +36,7 @@ History two_frames(Duration gap) {
 }
 
 AlignedSensor ask(const History& history, Duration after, Duration age = milliseconds(50)) {
-  return at(kStart + after, kStart + after + age, kSensor, history, {});
+  return at(kAlignStart + after, kAlignStart + after + age, kSensor, history, {});
 }
 
 double neck_x(const AlignedSensor& aligned) {
@@ -53,7 +53,7 @@ TEST(Align, BetweenTwoCapturesPositionsAreLinear) {
   const AlignedSensor aligned = ask(two_frames(milliseconds(30)), milliseconds(10));
   EXPECT_EQ(aligned.basis, Basis::Interpolated);
   EXPECT_NEAR(neck_x(aligned), 0.05, 1e-12);
-  EXPECT_EQ(aligned.bodies[0].captured, kStart + milliseconds(10));
+  EXPECT_EQ(aligned.bodies[0].captured, kAlignStart + milliseconds(10));
 }
 
 TEST(Align, BeyondTheNewestCaptureIsPendingThenLost) {
@@ -122,7 +122,7 @@ History then_gap(Duration period, Duration gap) {
 TEST(Align, ASlowSensorsGapIsBridgedWhereOneFrameIsMissing) {
   const Duration period = milliseconds(200);
   const auto basis = [&](const History& history, const AlignConfig& config) {
-    const Timestamp instant = kStart + 7 * period + milliseconds(100);
+    const Timestamp instant = kAlignStart + 7 * period + milliseconds(100);
     return basis_at(instant, instant + milliseconds(50), history, config);
   };
   EXPECT_EQ(basis(then_gap(period, period), {}), Basis::Interpolated);
@@ -164,7 +164,7 @@ TEST(Align, JointsThatAreNotSeenDoNotHideThatAnIdWentToSomebodyElse) {
 TEST(Align, BasisAtAgreesWithTheFullAnswer) {
   const History history = two_frames(milliseconds(30));
   for (int ms = -10; ms < 200; ms += 5) {
-    const Timestamp instant = kStart + milliseconds(ms);
+    const Timestamp instant = kAlignStart + milliseconds(ms);
     EXPECT_EQ(basis_at(instant, instant + milliseconds(50), history, {}),
               ask(history, milliseconds(ms)).basis);
   }

@@ -6,14 +6,19 @@ namespace chorus::align {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr Timestamp kHistoryStart = from_unix_ns(1'790'000'000'000'000'000);
 
 SensorFrame frame_at(Duration after) {
   SensorFrame frame;
-  frame.captured = kStart + after;
+  frame.captured = kHistoryStart + after;
   frame.received = frame.captured + milliseconds(5);
+  return frame;
+}
+
+SensorFrame numbered(std::uint64_t sequence, Duration after) {
+  SensorFrame frame = frame_at(after);
+  frame.sequence = sequence;
   return frame;
 }
 
@@ -22,7 +27,7 @@ TEST(HistoryPush, KeepsFramesInCaptureOrder) {
   EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Added);
   EXPECT_EQ(history.push(frame_at(milliseconds(33))), PushVerdict::Added);
   ASSERT_EQ(history.frames().size(), 2u);
-  EXPECT_EQ(history.newest(), kStart + milliseconds(33));
+  EXPECT_EQ(history.newest(), kHistoryStart + milliseconds(33));
 }
 
 TEST(HistoryPush, AnEmptyHistoryHasNoNewest) { EXPECT_FALSE(History().newest().has_value()); }
@@ -32,7 +37,8 @@ TEST(HistoryPush, TheSameCaptureTimeIsTakenOnce) {
   history.push(frame_at(milliseconds(0)));
   history.push(frame_at(milliseconds(33)));
   EXPECT_EQ(history.push(frame_at(milliseconds(33))), PushVerdict::Duplicate);
-  EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Duplicate);  // as if from a cache
+  // As a cache would do.
+  EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Duplicate);
   EXPECT_EQ(history.frames().size(), 2u);
 }
 
@@ -43,25 +49,81 @@ TEST(HistoryPush, AShortStepBackIsRefused) {
   EXPECT_EQ(history.frames().size(), 1u);
 }
 
-TEST(HistoryPush, ALongStepBackStartsAnew) {
+TEST(HistoryPush, AClockThatWasSetBackIsBelievedAtTheThirdFrame) {
+  for (const Duration back : {Duration(milliseconds(100)), Duration(std::chrono::seconds(2))}) {
+    History history;
+    history.push(numbered(1, std::chrono::seconds(10)));
+    EXPECT_EQ(history.push(numbered(2, std::chrono::seconds(10) - back)), PushVerdict::Backwards);
+    EXPECT_EQ(history.push(numbered(3, std::chrono::seconds(10) - back + milliseconds(33))),
+              PushVerdict::Backwards);
+    EXPECT_EQ(history.push(numbered(4, std::chrono::seconds(10) - back + milliseconds(66))),
+              PushVerdict::Restarted);
+    ASSERT_EQ(history.frames().size(), 1u);
+    EXPECT_EQ(history.newest(), kHistoryStart + std::chrono::seconds(10) - back + milliseconds(66));
+    EXPECT_EQ(history.push(numbered(5, std::chrono::seconds(10) - back + milliseconds(99))),
+              PushVerdict::Added);
+  }
+}
+
+/// A device that starts anew numbers its frames from the beginning.
+TEST(HistoryPush, ADeviceThatRestartsWithAnotherClockIsBelievedAtTheThirdFrame) {
   History history;
-  history.push(frame_at(seconds(10)));
-  EXPECT_EQ(history.push(frame_at(seconds(8))), PushVerdict::Restarted);
-  ASSERT_EQ(history.frames().size(), 1u);
-  EXPECT_EQ(history.newest(), kStart + seconds(8));
+  history.push(numbered(100, std::chrono::seconds(10)));
+  EXPECT_EQ(history.push(numbered(1, std::chrono::seconds(2))), PushVerdict::Stale);
+  EXPECT_EQ(history.push(numbered(2, std::chrono::seconds(2) + milliseconds(33))),
+            PushVerdict::Stale);
+  EXPECT_EQ(history.push(numbered(3, std::chrono::seconds(2) + milliseconds(66))),
+            PushVerdict::Restarted);
+}
+
+TEST(HistoryPush, OneFrameFromTheNearFutureCostsTwoFramesAndNotTheTimeUntilThen) {
+  History history;
+  history.push(numbered(1, std::chrono::seconds(1)));
+  EXPECT_EQ(history.push(numbered(2, milliseconds(2500))), PushVerdict::Added);
+  EXPECT_EQ(history.push(numbered(3, milliseconds(1066))), PushVerdict::Backwards);
+  EXPECT_EQ(history.push(numbered(4, milliseconds(1100))), PushVerdict::Backwards);
+  EXPECT_EQ(history.push(numbered(5, milliseconds(1133))), PushVerdict::Restarted);
+  EXPECT_EQ(history.push(numbered(6, milliseconds(1166))), PushVerdict::Added);
+}
+
+TEST(HistoryPush, FramesThatOvertakeEachOtherAreAllKeptInOrder) {
+  History history;
+  history.push(numbered(1, milliseconds(33)));
+  history.push(numbered(4, milliseconds(133)));
+  EXPECT_EQ(history.push(numbered(2, milliseconds(66))), PushVerdict::Late);
+  EXPECT_EQ(history.push(numbered(3, milliseconds(100))), PushVerdict::Late);
+  EXPECT_EQ(history.push(numbered(3, milliseconds(100))), PushVerdict::Duplicate);
+  ASSERT_EQ(history.frames().size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(history.frames()[i].sequence, i + 1);
+}
+
+TEST(HistoryPush, WhatComesFarTooLateIsRefusedAndLosesNothing) {
+  History history;
+  history.push(numbered(1, std::chrono::seconds(1)));
+  history.push(numbered(50, std::chrono::seconds(3)));
+  EXPECT_EQ(history.push(numbered(2, milliseconds(1400))), PushVerdict::Stale);
+  EXPECT_EQ(history.frames().size(), 2u);
+}
+
+TEST(History, MovesInTimeAsAWhole) {
+  History history;
+  for (int i = 0; i < 20; ++i) history.push(frame_at(milliseconds(33 * i)));
+  history.move_in_time(milliseconds(200));
+  EXPECT_EQ(history.newest(), kHistoryStart + milliseconds(33 * 19 + 200));
+  EXPECT_EQ(history.habit()->least_delay, milliseconds(5 - 200));
 }
 
 TEST(HistoryPush, AFrameFromTheFutureIsRefused) {
   History history;
-  SensorFrame frame = frame_at(seconds(60));
-  frame.received = kStart;
+  SensorFrame frame = frame_at(std::chrono::seconds(60));
+  frame.received = kHistoryStart;
   EXPECT_EQ(history.push(frame), PushVerdict::Future);
   EXPECT_TRUE(history.frames().empty());
 }
 
 TEST(HistoryPush, WithoutAReceiveTimeNothingIsCalledFuture) {
   History history;
-  SensorFrame frame = frame_at(seconds(60));
+  SensorFrame frame = frame_at(std::chrono::seconds(60));
   frame.received = Timestamp{};
   EXPECT_EQ(history.push(frame), PushVerdict::Added);
 }
@@ -72,7 +134,7 @@ TEST(HistoryPush, ForgetsByCountAndByAge) {
   EXPECT_EQ(few.frames().size(), 3u);
   History young({.max_age = milliseconds(100)});
   for (int i = 0; i < 10; ++i) young.push(frame_at(milliseconds(30 * i)));
-  EXPECT_EQ(young.frames().front().captured, kStart + milliseconds(180));
+  EXPECT_EQ(young.frames().front().captured, kHistoryStart + milliseconds(180));
 }
 
 TEST(HistoryPush, OfTwoBodiesWithOneIdTheFirstIsKept) {

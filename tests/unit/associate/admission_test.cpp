@@ -13,7 +13,7 @@ namespace chorus::associate {
 namespace {
 
 constexpr int kSensors = 4;
-constexpr Duration kFrame = std::chrono::milliseconds(33);
+constexpr Duration kAdmissionFrame = std::chrono::milliseconds(33);
 
 Observer observer(int sensor) {
   return {testing::sensor_id("s" + std::to_string(sensor)), testing::ring_sensor(sensor, kSensors)};
@@ -44,14 +44,14 @@ SensorView view_of(const Body& body) {
 }
 
 /// A ring of four sensors at 2.5 m; a person whom a sensor does not see counts as missed by it.
-struct Room {
+struct AdmissionRoom {
   AssociationConfig config = {};
   std::vector<Observer> observers = all();
   Tracks tracks = {};
   Timestamp instant = testing::kStart;
 
   std::vector<Person> see(const std::vector<Body>& bodies) {
-    instant += kFrame;
+    instant += kAdmissionFrame;
     Scene scene{instant, {}, observers};
     for (const Body& body : bodies) scene.views.push_back(view_of(body));
     Grouping grouping = group(std::move(scene), tracks, config);
@@ -76,23 +76,23 @@ std::vector<Body> seen_by_all(double x, double z) {
 }
 
 TEST(Admission, WhomTwoSensorsSeeIsPublishedAtOnce) {
-  Room room;
+  AdmissionRoom room;
   EXPECT_LE(room.until_more_than(0, {{0, 0, 0}, {1, 0.1, 0}}, 1.0), kAtOnce);
 }
 
 TEST(Admission, AGhostThatOthersSeeThroughWaits) {
-  Room room{.observers = {observer(0), observer(1)}};
+  AdmissionRoom room{.observers = {observer(0), observer(1)}};
   const double waited = room.until_more_than(0, {{0, 0.2, 0.1}}, 10.0);
   EXPECT_NEAR(waited, seconds(room.config.alone), 0.2);
 }
 
 TEST(Admission, AGhostThatIsSeenThroughFromDifferentSidesWaitsOn) {
-  Room room;
+  AdmissionRoom room;
   EXPECT_GE(room.until_more_than(0, {{0, 0.2, 0.1}}, 20.0), 20.0);
 }
 
 TEST(Admission, ItIsPublishedAsSoonAsAnotherConfirmsIt) {
-  Room room;
+  AdmissionRoom room;
   EXPECT_GE(room.until_more_than(0, {{0, 0, 0}}, 1.0), 1.0);
   const auto people = room.see({{0, 0, 0}, {2, 0.1, 0}});
   ASSERT_EQ(people.size(), 1u);
@@ -101,21 +101,23 @@ TEST(Admission, ItIsPublishedAsSoonAsAnotherConfirmsIt) {
 }
 
 TEST(Admission, TheOnlySensorWaitsForNobody) {
-  Room room{.observers = {observer(0)}};
+  AdmissionRoom room{.observers = {observer(0)}};
   EXPECT_LE(room.until_more_than(0, {{0, 0, 0}}, 1.0), kAtOnce);
 }
 
 TEST(Admission, WhereNobodyElseLooksOneSensorIsEnough) {
-  Room behind_the_others{.observers = {observer(0), observer(2)}};
+  AdmissionRoom behind_the_others{.observers = {observer(0), observer(2)}};
   EXPECT_LE(behind_the_others.until_more_than(0, {{0, 0, 3.0}}, 1.0), kAtOnce);
-  Room out_of_reach{.config = {.look_range = 1.5}, .observers = {observer(0), observer(2)}};
+  AdmissionRoom out_of_reach{.config = {.look_range = 1.5},
+                             .observers = {observer(0), observer(2)}};
   EXPECT_LE(out_of_reach.until_more_than(0, {{0, 0, -1.0}}, 1.0), kAtOnce);
-  Room beside_the_cone{.config = {.look_angle = deg(5)}, .observers = {observer(0), observer(2)}};
+  AdmissionRoom beside_the_cone{.config = {.look_angle = deg(5)},
+                                .observers = {observer(0), observer(2)}};
   EXPECT_LE(beside_the_cone.until_more_than(0, {{0, 0.7, 0}}, 1.0), kAtOnce);
 }
 
 TEST(Admission, WhoStandsBehindSomebodyIsNotMissed) {
-  Room room{.observers = {observer(0), observer(2)}};
+  AdmissionRoom room{.observers = {observer(0), observer(2)}};
   // Sensor 2 looks along -z: for it the person at z = 0.8 occludes the one at -0.5.
   const std::vector<Body> front{{0, 0, 0.8, 1}, {2, 0, 0.8, 1}};
   for (int i = 0; i < 10; ++i) room.see(front);
@@ -125,21 +127,21 @@ TEST(Admission, WhoStandsBehindSomebodyIsNotMissed) {
 }
 
 TEST(Admission, ASensorThatDoesNotAnswerMissesNobody) {
-  Room room{.observers = {observer(0)}};
+  AdmissionRoom room{.observers = {observer(0)}};
   EXPECT_EQ(room.until_more_than(0, {{0, 0, 0}}, 1.0) <= kAtOnce, true);
   room.observers = all();
   EXPECT_EQ(room.see({{0, 0, 0}}).size(), 1u) << "whoever is published stays";
 }
 
 TEST(Admission, AMissingAnswerDoesNotEndTheWait) {
-  Room room;
+  AdmissionRoom room;
   for (int i = 0; i < 6; ++i) room.see({{0, 0, 0}});
   room.observers = {observer(0)};
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(room.see({{0, 0, 0}}).empty());
 }
 
 TEST(Admission, AMisplacedSensorMakesNoSecondPerson) {
-  Room room;
+  AdmissionRoom room;
   for (int i = 0; i < 10; ++i) room.see(seen_by_all(0, 0));
   std::vector<Body> astray = seen_by_all(0, 0);
   astray[3].x += 1.0;
@@ -147,7 +149,7 @@ TEST(Admission, AMisplacedSensorMakesNoSecondPerson) {
 }
 
 TEST(Admission, WhoSeesManyAloneIsBelievedLater) {
-  Room room{.observers = {observer(0), observer(1)}};
+  AdmissionRoom room{.observers = {observer(0), observer(1)}};
   std::vector<Body> crowd{{0, 0, 0}, {1, 0, 0}};
   for (std::uint64_t i = 0; i < 5; ++i)
     crowd.push_back({0, -0.4 + 0.2 * static_cast<double>(i), 0.9, i + 2});
@@ -155,14 +157,14 @@ TEST(Admission, WhoSeesManyAloneIsBelievedLater) {
 }
 
 TEST(Admission, ASecondBodyOfOneSensorBesideAPersonWaits) {
-  Room room;
+  AdmissionRoom room;
   std::vector<Body> bodies = seen_by_all(0, 0);
   bodies.push_back({0, 0.2, 0, 2});
   EXPECT_GE(room.until_more_than(1, bodies, 2.0), 2.0);
 }
 
 TEST(Admission, AWaitingGhostDoesNotTakeAPersonsId) {
-  Room room;
+  AdmissionRoom room;
   room.see({{0, 0, 0}});  // a ghost gets the first id
   for (int i = 0; i < 30; ++i) room.see({{0, 0, 0}});
   std::uint64_t id = 0;
@@ -177,7 +179,7 @@ TEST(Admission, AWaitingGhostDoesNotTakeAPersonsId) {
 }
 
 TEST(Admission, WithoutAWaitEverybodyIsPublished) {
-  Room room{.config = {.alone = Duration{0}}};
+  AdmissionRoom room{.config = {.alone = Duration{0}}};
   EXPECT_LE(room.until_more_than(0, {{0, 0, 0}}, 1.0), kAtOnce);
 }
 

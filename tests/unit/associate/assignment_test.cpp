@@ -30,7 +30,7 @@ TEST(Assign, EmptySidesAreFine) {
   EXPECT_EQ(assign({2, 0, {}, 1.0}), (Answer{std::nullopt, std::nullopt}));
 }
 
-/// Tries all assignments; returns the largest number of pairs, and the least cost of that many.
+/// Tries all assignments; returns the largest number of pairs, and the smallest cost of that many.
 std::pair<std::size_t, double> best_by_trying(const CostTable& table) {
   const std::size_t size = std::max(table.rows, table.columns);
   std::vector<std::size_t> order(size);
@@ -71,7 +71,7 @@ TEST(AssignProperty, EqualsTryingEverything) {
 }
 
 TEST(Assign, LeavesARowAloneWhenThatCostsLess) {
-  // Two pairs cost 1.8, one pair and a row alone 1.1.
+  // Two pairs cost 1.8; one pair and an unassigned row cost 1.1.
   CostTable table{2, 2, {0.1, 0.9, 0.9, 2.0}, 1.0};
   EXPECT_EQ(assign(table)[1], 0u);
   table.unpaired = 1.0;

@@ -9,7 +9,7 @@ namespace chorus::associate {
 namespace {
 
 constexpr Duration kFrame = std::chrono::milliseconds(33);
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr Timestamp kAssociationStart = from_unix_ns(1'790'000'000'000'000'000);
 
 SensorView view(int sensor, double x, double z, std::uint64_t body = 1) {
   SensorView sight;
@@ -25,7 +25,7 @@ SensorView view(int sensor, double x, double z, std::uint64_t body = 1) {
 /// Processes instants one frame apart and keeps the tracks.
 struct Room {
   Tracks tracks;
-  Timestamp instant = kStart;
+  Timestamp instant = kAssociationStart;
   AssociationConfig config;
 
   std::vector<Person> see(std::vector<SensorView> views) {

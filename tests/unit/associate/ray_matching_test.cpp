@@ -35,7 +35,7 @@ SensorView seen_by(const Camera& camera, const Skeleton<WorldSpace>& person, std
   return view;
 }
 
-struct Room {
+struct RayRoom {
   Tracks tracks;
   Timestamp instant = kStart;
 
@@ -59,7 +59,7 @@ struct Room {
   }
 };
 
-Eigen::Vector3d core_of_track(const Room& room, std::size_t i) {
+Eigen::Vector3d core_of_track(const RayRoom& room, std::size_t i) {
   return room.tracks.people[i].core;
 }
 
@@ -77,7 +77,7 @@ TEST(Locate, PutsAJointInTheMiddleOfItsPointsAndAsksNoRays) {
 }
 
 TEST(RayMatching, TwoCamerasMakeOnePersonAtItsPlace) {
-  Room room;
+  RayRoom room;
   std::vector<Person> people;
   for (int i = 0; i < 3; ++i) people = room.see(kTwo, {standing_person({0.4, 0, 0.2})});
   ASSERT_EQ(people.size(), 1u);
@@ -88,7 +88,7 @@ TEST(RayMatching, TwoCamerasMakeOnePersonAtItsPlace) {
 }
 
 TEST(RayMatching, ALoneCameraFoundsNobodyAndKeepsNobody) {
-  Room room;
+  RayRoom room;
   const std::vector<Camera> lone{kTwo[0]};
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(room.see(lone, {standing_person()}).empty());
   EXPECT_TRUE(room.tracks.people.empty());
@@ -102,7 +102,7 @@ TEST(RayMatching, ALoneCameraFoundsNobodyAndKeepsNobody) {
 
 TEST(RayMatching, PeopleAreToldApartByHowTheirRaysMeet) {
   for (const auto& cameras : {kTwo, kFour}) {
-    Room room;
+    RayRoom room;
     const std::vector people{standing_person({0.8, 0, 0.1}), standing_person({-0.5, 0, 0.9}, 1.0),
                              standing_person({-0.3, 0, -0.9}, 2.0)};
     std::vector<Person> found;
@@ -119,7 +119,7 @@ TEST(RayMatching, PeopleAreToldApartByHowTheirRaysMeet) {
 }
 
 TEST(RayMatching, IdsStayWhenTwoPassEachOther) {
-  Room room;
+  RayRoom room;
   for (int i = 0; i < 90; ++i) {
     const double x = -1.5 + i / 30.0;
     const auto people = room.see(
@@ -133,9 +133,9 @@ TEST(RayMatching, IdsStayWhenTwoPassEachOther) {
   }
 }
 
-/// Camera 2 sees both in line; only the size of the body shows which one is behind.
+/// Camera 2 sees one person behind the other; only the size of the bodies shows which is which.
 TEST(RayMatching, OneBehindAnotherIsToldApartBySize) {
-  Room room;
+  RayRoom room;
   const std::vector people{standing_person({1.2, 0, 0.3}), standing_person({-1.2, 0, 0.3})};
   std::vector<Person> found;
   for (int i = 0; i < 5; ++i) found = room.see(kFour, people);
@@ -152,7 +152,7 @@ TEST(RayMatching, OneBehindAnotherIsToldApartBySize) {
 }
 
 TEST(RayMatching, ACameraJoinsSomebodyWhomADepthSensorSees) {
-  Room room;
+  RayRoom room;
   std::vector<Person> people;
   for (int i = 0; i < 4; ++i) {
     SensorView kinect = seen_by({9, {1, 1, -3}}, standing_person({0.4, 0, 0.2}), 1);
@@ -164,14 +164,14 @@ TEST(RayMatching, ACameraJoinsSomebodyWhomADepthSensorSees) {
 }
 
 TEST(RayMatching, RaysThatMeetBeyondTheRoomAreNobody) {
-  Room room;
+  RayRoom room;
   const std::vector<Camera> far{{1, {0, 1.4, -20}}, {2, {20, 1.6, 0.3}}};
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(room.see(far, {standing_person()}).empty());
   EXPECT_TRUE(room.tracks.people.empty());
 }
 
 TEST(RayMatching, LiarsWithManyBodiesCostLittle) {
-  Room room;
+  RayRoom room;
   std::vector<SensorView> views;
   for (int camera = 0; camera < 16; ++camera) {
     for (std::uint64_t body = 0; body < 16; ++body) {

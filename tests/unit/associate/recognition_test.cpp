@@ -1,4 +1,5 @@
-// Who comes, goes and comes back: known again by their build, or not taken for somebody else.
+// People come, leave and return: they are recognised by their build, and not taken for somebody
+// else.
 #include "fusion-server/associate/recognition.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ SensorView view_of(const Somebody& who, int sensor, std::uint64_t body) {
 }
 
 /// Four sensors that all see everybody; a test that needs their poses sets `observers`.
-struct Room {
+struct RecognitionRoom {
   AssociationConfig config = {};
   std::vector<Observer> observers = {};
   Tracks tracks = {};
@@ -72,7 +73,7 @@ struct Room {
 constexpr PersonId kFirst{1};
 
 TEST(Recognition, WhoComesBackAfterTwentySecondsIsTheSamePerson) {
-  Room room;
+  RecognitionRoom room;
   EXPECT_EQ(room.see_for(3.0, {{0.0}}).at(0).id, kFirst);
   EXPECT_TRUE(room.see_for(20.0, {}).empty());
   EXPECT_TRUE(room.see_for(0.3, {{2.0}}).empty()) << "not before it is known who it is";
@@ -82,7 +83,7 @@ TEST(Recognition, WhoComesBackAfterTwentySecondsIsTheSamePerson) {
 }
 
 TEST(Recognition, OneSensorAloneNeedsNoLongerThanIsConfigured) {
-  Room room{.sensors = 1};
+  RecognitionRoom room{.sensors = 1};
   EXPECT_EQ(room.see_for(3.0, {{0.0}}).at(0).id, kFirst);
   room.see_for(10.0, {});
   const double took = room.until_seen({{0.0}});
@@ -91,7 +92,7 @@ TEST(Recognition, OneSensorAloneNeedsNoLongerThanIsConfigured) {
 }
 
 TEST(Recognition, OfTwoWhoLeftTheRightOneComesBack) {
-  Room room;
+  RecognitionRoom room;
   const auto both = room.see_for(3.0, {{0.0, 1.0}, {2.0, 1.08}});
   ASSERT_EQ(both.size(), 2u);
   room.see_for(10.0, {});
@@ -101,7 +102,7 @@ TEST(Recognition, OfTwoWhoLeftTheRightOneComesBack) {
 }
 
 TEST(Recognition, SomebodyElseGetsAnIdOfTheirOwnAndInheritsNone) {
-  Room room;
+  RecognitionRoom room;
   room.see_for(3.0, {{0.0}});
   room.see_for(5.0, {});
   for (int i = 0; i < 60; ++i) {
@@ -111,7 +112,7 @@ TEST(Recognition, SomebodyElseGetsAnIdOfTheirOwnAndInheritsNone) {
 }
 
 TEST(Recognition, NobodyWaitsWhileNobodyIsMissing) {
-  Room room;
+  RecognitionRoom room;
   EXPECT_LE(room.until_seen({{0.0}}), 0.15);
   const Timestamp begun = room.instant;
   while (room.see({{0.0}, {2.0, 1.08}}).size() < 2) {
@@ -120,19 +121,19 @@ TEST(Recognition, NobodyWaitsWhileNobodyIsMissing) {
 }
 
 TEST(Recognition, AfterAMinuteNobodyIsRemembered) {
-  Room room;
+  RecognitionRoom room;
   room.see_for(3.0, {{0.0}});
   room.see_for(64.5, {});
   EXPECT_LE(room.until_seen({{0.0}}), 0.15);
   EXPECT_NE(room.see({{0.0}}).at(0).id, kFirst);
-  Room forgetful{.config = {.remember = Duration{0}}};
+  RecognitionRoom forgetful{.config = {.remember = Duration{0}}};
   forgetful.see_for(3.0, {{0.0}});
   forgetful.see_for(5.0, {});
   EXPECT_LE(forgetful.until_seen({{0.0}}), 0.15);
 }
 
 TEST(Recognition, ContinuityIsQuestionedAfterAGap) {
-  Room room;
+  RecognitionRoom room;
   room.see_for(3.0, {{0.0}});
   room.see_for(0.5, {});
   room.see_for(1.5, {{0.0, 1.1}});  // somebody larger comes out
@@ -144,7 +145,7 @@ TEST(Recognition, ContinuityIsQuestionedAfterAGap) {
 }
 
 TEST(Recognition, WhoIsLostAndFoundKeepsTheIdAllTheTime) {
-  Room room;
+  RecognitionRoom room;
   room.see_for(3.0, {{0.0}});
   room.see_for(0.5, {});
   for (int i = 0; i < 60; ++i) {
@@ -154,7 +155,7 @@ TEST(Recognition, WhoIsLostAndFoundKeepsTheIdAllTheTime) {
   }
 }
 
-/// Somebody of this size: if `gone`, a person who has left, else one whom four sensors see now.
+/// Somebody of this size: a person who has left if `gone`, otherwise one whom four sensors see now.
 Candidate candidate(std::uint64_t id, double size, bool gone) {
   Candidate out;
   out.track.id = PersonId{id};
@@ -191,7 +192,7 @@ TEST(Recognition, AnIdThatNobodyHasSeenIsNotMissed) {
 }
 
 TEST(Carried, SomebodyWhomNobodySeesIsAnsweredForASecond) {
-  Room room;
+  RecognitionRoom room;
   room.see_for(2.0, {{0.0}});
   const auto people = room.see_for(0.5, {});
   ASSERT_EQ(people.size(), 1u);
@@ -210,18 +211,18 @@ std::vector<Observer> on_a_ring(const std::vector<int>& places) {
 }
 
 TEST(Carried, WhomSensorsOnDifferentSidesSeeThroughHasLeft) {
-  Room room{.observers = on_a_ring({0, 1, 2, 3})};
+  RecognitionRoom room{.observers = on_a_ring({0, 1, 2, 3})};
   room.see_for(2.0, {{0.0}});
   EXPECT_TRUE(room.see_for(0.4, {}).empty());
   EXPECT_TRUE(room.tracks.people.empty());
   ASSERT_EQ(room.tracks.missing.size(), 1u);
-  Room one_side{.observers = on_a_ring({0})};
+  RecognitionRoom one_side{.observers = on_a_ring({0})};
   one_side.see_for(2.0, {{0.0}});
   EXPECT_EQ(one_side.see_for(0.4, {}).size(), 1u) << "something may stand in the way";
 }
 
 TEST(Rivals, ASecondBodyOfOneSensorBesideAPersonFoundsNobody) {
-  Room room;
+  RecognitionRoom room;
   room.see_for(2.0, {{0.0}});
   room.instant += kFrameInterval;
   Scene scene{room.instant, {}};

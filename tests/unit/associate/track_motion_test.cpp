@@ -9,7 +9,7 @@
 namespace chorus::associate {
 namespace {
 
-constexpr Duration kFrame = std::chrono::milliseconds(33);
+constexpr Duration kMotionFrame = std::chrono::milliseconds(33);
 constexpr double kFrameSeconds = 0.033;
 
 SensorView view_at(const Eigen::Vector3d& place, int sensor = 1) {
@@ -29,7 +29,7 @@ struct Floor {
   Timestamp instant = from_unix_ns(1'790'000'000'000'000'000);
 
   std::vector<Person> see(std::vector<SensorView> views) {
-    instant += kFrame;
+    instant += kMotionFrame;
     Grouping grouping = group({instant, std::move(views)}, tracks, {});
     tracks = grouping.tracks;
     return grouping.people;

@@ -103,7 +103,7 @@ TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
   ASSERT_GT(stated.size(), 100u);
   const Stated& last = stated.back();
   EXPECT_EQ(last.instant, at_frame(199) + late);
-  // The answer is stated for 0.1 s after the capture, so it is 100 mm behind the walker.
+  // The body is reported for an instant 0.1 s after the capture, so it is 100 mm behind the walker.
   EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);
 }
 

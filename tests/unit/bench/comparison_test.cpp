@@ -33,7 +33,7 @@ TEST(Comparison, WinsOnlyWhereStrictlyBetterOnTheSameDraw) {
   Comparison comparison = three_draws();
   comparison.add("equal-and-failed", 1, 1.0);
   comparison.add("equal-and-failed", 3, kNone);
-  comparison.add("worse", 3, 9.0);  // ours failed there
+  comparison.add("worse", 3, 9.0);  // our method failed for this seed
   comparison.add("worse", 2, 9.0);
   comparison.add("worse", 1, kNone);
   EXPECT_DOUBLE_EQ(comparison.won_percent("equal-and-failed"), 0.0);

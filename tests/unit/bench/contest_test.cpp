@@ -59,7 +59,7 @@ TEST(Contest, TrueLabelsPutRightWhatTheSensorsExchange) {
   EXPECT_EQ(value_of(of(scores, "ours-true-labels"), "flip_percent"), 0.0);
 }
 
-/// A method that answers with all joints of the view except the hands.
+/// A method that reports all joints of the view except the hands.
 Contender without_hands() {
   return {"without-hands", [] {
             return baselines::Method([](const Person& person, Timestamp) {

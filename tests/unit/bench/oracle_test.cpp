@@ -16,7 +16,8 @@ namespace {
 using enum JointId;
 constexpr SharedErrors kApart{};
 
-/// A person seen from all around; each view has an error of its own covariance, and states it.
+/// A person seen from all sides.  The error of view i is drawn from the covariance `squares[i]`,
+/// which its joints state.
 Person views_of(const std::vector<Eigen::Matrix3d>& squares, std::mt19937& dice) {
   std::normal_distribution<double> unit(0.0, 1.0);
   Person person{PersonId{1}, {}};
@@ -66,7 +67,7 @@ TEST(LinearBound, IsBetterThanAnyFixedWayToCombineOnAverageAndHonest) {
     answers.push_back({at_frame(draw), linear_bound(person, kApart), exact, {}});
     bound += mean_error(answers.back().body, exact);
     mean += mean_error(product(fusion::Method::Mean)(person, at_frame(0)), exact);
-    Person silent = person;  // as in the contest: only the bound is given the covariances
+    Person silent = person;  // as in the contest: only the bound gets the covariances
     for (SensorView& view : silent.views) {
       for (Joint& joint : view.skeleton.joints) joint.covariance = {};
     }

@@ -46,7 +46,7 @@ TEST(FacingAngle, FollowsTheTurnWithItsSign) {
 }
 
 TEST(FacingAngle, SwappedSidesReadAsTheBack) {
-  // From behind, a frontal tracker exchanges left and right (Otto 3.2).
+  // From behind, a frontal tracker swaps left and right (Otto 3.2).
   auto body = person_before_sensor(0, 2.5, deg(20));
   std::swap(body[JointId::ShoulderLeft], body[JointId::ShoulderRight]);
   EXPECT_NEAR(facing_angle(body).value(), deg(20) - std::numbers::pi, kExact);

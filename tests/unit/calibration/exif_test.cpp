@@ -7,7 +7,7 @@
 namespace chorus::calibration {
 namespace {
 
-/// A number of that many bytes, in the order that `little` says.
+/// A number of `size` bytes, little-endian if `little`.
 std::string bytes(std::uint32_t value, int size, bool little) {
   std::string out;
   for (int i = 0; i < size; ++i) {
@@ -17,7 +17,8 @@ std::string bytes(std::uint32_t value, int size, bool little) {
   return out;
 }
 
-/// A JPEG's beginning with one folder that leads to Exif's, which holds the focal length.
+/// The beginning of a JPEG, with one directory that points to Exif's, which contains the focal
+/// length.
 std::string photo(std::uint32_t focal, bool little) {
   const auto n = [&](std::uint32_t value, int size) { return bytes(value, size, little); };
   std::string tiff = (little ? "II" : "MM") + n(42, 2) + n(8, 4);

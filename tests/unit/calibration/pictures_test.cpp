@@ -1,4 +1,5 @@
-// From rendered pictures to the lens: blur, noise, distortion, and a board partly out of sight.
+// From rendered pictures to the lens: blur, noise, distortion, and a board partly outside the
+// picture.
 #include <gtest/gtest.h>
 
 #include "common/calibration/board_finder.h"

@@ -16,7 +16,8 @@ std::vector<std::string> weak(const std::vector<View>& views) {
   return weaknesses(calibrate(views, kSize).value());
 }
 
-/// Without the corners for which `drop` holds, and views that have hardly any left.
+/// The views without the corners that `drop` selects, and without views that then have hardly any
+/// left.
 template <class Drop>
 std::vector<View> without(std::vector<View> views, Drop drop) {
   for (View& view : views)

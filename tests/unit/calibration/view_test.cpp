@@ -19,7 +19,7 @@ TEST(VariedViews, TheMostDifferentAreKeptInTheirOrder) {
   auto views = views_of({.count = 9});
   const auto all = varied_views(views, kSize, 40);
   ASSERT_EQ(all.size(), 9u);
-  // Each twice, nearly the same: one of each pair is taken.
+  // Each view twice, nearly the same: only one of each pair is used.
   auto twice = views;
   for (View view : views) {
     for (Corner& corner : view.corners) corner.pixel.x() += 0.5;

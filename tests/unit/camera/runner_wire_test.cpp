@@ -69,27 +69,42 @@ TEST(RunnerWire, WhatIsNoHelloIsRefused) {
 TEST(RunnerWire, PixelsBecomeRays) {
   std::string pixels = R"([{"id": 3, "pixels": [[178, 72, 0.9])";
   for (int i = 1; i < 17; ++i) pixels += ",null";
-  const auto bodies = read_runner_answer(answer(pixels + "]}]"), kQuestion, hello(), Depth::None);
-  ASSERT_TRUE(bodies) << to_string(bodies.error());
-  ASSERT_EQ(bodies->size(), 1u);
-  EXPECT_EQ(bodies->front().id, BodyId{3});
-  EXPECT_EQ(bodies->front().captured, kNoon);
-  const Joint& head = bodies->front().skeleton.joints[index_of(JointId::Head)];
+  const auto frame = read_runner_answer(answer(pixels + "]}]"), kQuestion, hello());
+  ASSERT_TRUE(frame) << to_string(frame.error());
+  ASSERT_EQ(frame->bodies.size(), 1u);
+  const BodyFrame& body = frame->bodies.front();
+  EXPECT_EQ(body.id, BodyId{3});
+  EXPECT_EQ(body.captured, kNoon);
+  const Joint& head = body.skeleton[JointId::Head];
   EXPECT_TRUE(head.bears());
   // A quarter of the focal length to the right of the centre; the sensor's x points left.
   EXPECT_NEAR((head.position - Eigen::Vector3d(-0.25, 0, 1).normalized()).norm(), 0.0, 1e-9);
   EXPECT_TRUE(head.covariance.known());
 }
 
+TEST(RunnerWire, AWorldBesideThePixelsIsTheShape) {
+  std::string body = R"([{"id": 3, "pixels": [[178, 72])";
+  for (int i = 1; i < 17; ++i) body += ",null";
+  body += R"(], "world": [[0.1, -0.6, -0.2])";
+  for (int i = 1; i < 17; ++i) body += ",null";
+  const auto frame = read_runner_answer(answer(body + "]}]"), kQuestion, hello());
+  ASSERT_TRUE(frame) << to_string(frame.error());
+  ASSERT_EQ(frame->shapes.size(), 1u);
+  EXPECT_TRUE(frame->bodies.front().skeleton[JointId::Head].bears());
+  const Joint& head = frame->shapes.front()[JointId::Head];
+  EXPECT_TRUE(head.seen());
+  EXPECT_EQ(head.position, Eigen::Vector3d(-0.1, 0.6, -0.2));
+}
+
 TEST(RunnerWire, AnAnswerBelongsToItsImage) {
-  EXPECT_TRUE(read_runner_answer(answer("[]"), kQuestion, hello(), Depth::None));
+  EXPECT_TRUE(read_runner_answer(answer("[]"), kQuestion, hello()));
   for (const std::string& wrong : {answer("[]", "41"), answer("[]", "42", "1795246200250000001")}) {
-    const auto read = read_runner_answer(wrong, kQuestion, hello(), Depth::None);
+    const auto read = read_runner_answer(wrong, kQuestion, hello());
     ASSERT_FALSE(read);
     EXPECT_THAT(read.error().message, HasSubstr("must be 42"));
   }
   EXPECT_FALSE(read_runner_answer(R"({"type": "hello", "name": "n", "layout": "coco_17"})",
-                                  kQuestion, hello(), Depth::None));
+                                  kQuestion, hello()));
 }
 
 }  // namespace

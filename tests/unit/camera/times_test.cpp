@@ -12,13 +12,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Timestamp kNoon = from_unix_ns(1'795'246'200'000'000'000);
+const Timestamp kTimesNoon = from_unix_ns(1'795'246'200'000'000'000);
 
 TEST(CapturedByDriver, TheDriversStampCountsUnlessItCannotBeTrue) {
-  EXPECT_EQ(captured_by_driver(kNoon, 25ms, 60ms), kNoon - 25ms);
-  EXPECT_EQ(captured_by_driver(kNoon, std::nullopt, 60ms), kNoon - 60ms);
-  EXPECT_EQ(captured_by_driver(kNoon, -1ms, 60ms), kNoon - 60ms);
-  EXPECT_EQ(captured_by_driver(kNoon, 3s, 60ms), kNoon - 60ms);
+  EXPECT_EQ(captured_by_driver(kTimesNoon, 25ms, 60ms), kTimesNoon - 25ms);
+  EXPECT_EQ(captured_by_driver(kTimesNoon, std::nullopt, 60ms), kTimesNoon - 60ms);
+  EXPECT_EQ(captured_by_driver(kTimesNoon, -1ms, 60ms), kTimesNoon - 60ms);
+  EXPECT_EQ(captured_by_driver(kTimesNoon, 3s, 60ms), kTimesNoon - 60ms);
 }
 
 TEST(StreamClock, StepsAreTheStreamsAndTheFastestPictureSetsTheRest) {
@@ -28,10 +28,10 @@ TEST(StreamClock, StepsAreTheStreamsAndTheFastestPictureSetsTheRest) {
   std::vector<Timestamp> captured;
   for (int i = 0; i < 5; ++i) {
     const Duration position = i * 40ms;
-    captured.push_back(clock.captured(kNoon + 100ms + position + jitter[i], position));
+    captured.push_back(clock.captured(kTimesNoon + 100ms + position + jitter[i], position));
   }
   for (int i = 2; i < 5; ++i) EXPECT_NEAR(seconds(captured[i] - captured[i - 1]), 0.040, 1e-4);
-  EXPECT_NEAR(seconds(captured[4] - (kNoon + 100ms + 160ms - 50ms)), 0.0, 1e-4);
+  EXPECT_NEAR(seconds(captured[4] - (kTimesNoon + 100ms + 160ms - 50ms)), 0.0, 1e-4);
 }
 
 TEST(StreamClock, FollowsAStreamWhoseClockIsSlower) {
@@ -39,53 +39,53 @@ TEST(StreamClock, FollowsAStreamWhoseClockIsSlower) {
   Timestamp last{};
   for (int i = 0; i < 3000; ++i) {  // 2 minutes with a clock that is 100 ppm slow
     const Duration position = i * 40ms;
-    last = clock.captured(kNoon + i * (40ms + 4us), position);
+    last = clock.captured(kTimesNoon + i * (40ms + 4us), position);
   }
-  EXPECT_LT(seconds(kNoon + 2999 * (40ms + 4us) - last), 0.001);
+  EXPECT_LT(seconds(kTimesNoon + 2999 * (40ms + 4us) - last), 0.001);
 }
 
 TEST(StreamClock, BeginsAnewWhenTheStreamDoes) {
   StreamClock clock(0ms);
-  (void)clock.captured(kNoon, 100s);
-  (void)clock.captured(kNoon + 1s, 101s);
-  EXPECT_EQ(clock.captured(kNoon + 10s, 0s), kNoon + 10s);
-  EXPECT_EQ(clock.captured(kNoon + 11s, 1s), kNoon + 11s);
-  EXPECT_EQ(clock.captured(kNoon + 60s, 2s), kNoon + 60s);
+  (void)clock.captured(kTimesNoon, 100s);
+  (void)clock.captured(kTimesNoon + 1s, 101s);
+  EXPECT_EQ(clock.captured(kTimesNoon + 10s, 0s), kTimesNoon + 10s);
+  EXPECT_EQ(clock.captured(kTimesNoon + 11s, 1s), kTimesNoon + 11s);
+  EXPECT_EQ(clock.captured(kTimesNoon + 60s, 2s), kTimesNoon + 60s);
 }
 
 TEST(StreamClock, WithoutPositionsArrivalCounts) {
   StreamClock clock(60ms);
-  EXPECT_EQ(clock.captured(kNoon, std::nullopt), kNoon - 60ms);
-  (void)clock.captured(kNoon + 1s, 0s);
-  EXPECT_EQ(clock.captured(kNoon + 2s, 0s), kNoon + 2s - 60ms);
+  EXPECT_EQ(clock.captured(kTimesNoon, std::nullopt), kTimesNoon - 60ms);
+  (void)clock.captured(kTimesNoon + 1s, 0s);
+  EXPECT_EQ(clock.captured(kTimesNoon + 2s, 0s), kTimesNoon + 2s - 60ms);
 }
 
 TEST(FilePace, OneRoundBeginsNow) {
   FilePace pace(false);
-  EXPECT_EQ(pace.begin({40ms, 10s}, kNoon), 0s);
-  EXPECT_EQ(pace.due(0s), kNoon);
-  EXPECT_EQ(pace.due(40ms), kNoon + 40ms);
-  EXPECT_EQ(pace.due(0s), kNoon + 80ms) << "a picture without a time follows the one before";
-  EXPECT_EQ(pace.due(std::nullopt), kNoon + 120ms);
+  EXPECT_EQ(pace.begin({40ms, 10s}, kTimesNoon), 0s);
+  EXPECT_EQ(pace.due(0s), kTimesNoon);
+  EXPECT_EQ(pace.due(40ms), kTimesNoon + 40ms);
+  EXPECT_EQ(pace.due(0s), kTimesNoon + 80ms) << "a picture without a time follows the one before";
+  EXPECT_EQ(pace.due(std::nullopt), kTimesNoon + 120ms);
 }
 
 TEST(FilePace, RoundsOfFilesOfOneLengthAreInStepWhoeverBeginsWhen) {
   const FileTiming timing{40ms, 7s};
   FilePace one(true);
   FilePace other(true);
-  const Duration over = one.begin(timing, kNoon);
+  const Duration over = one.begin(timing, kTimesNoon);
   EXPECT_LT(over, 7s);
-  EXPECT_EQ(one.due(0s), kNoon - over);
-  EXPECT_EQ(other.begin(timing, kNoon + 1s), (over + 1s) % 7s);
+  EXPECT_EQ(one.due(0s), kTimesNoon - over);
+  EXPECT_EQ(other.begin(timing, kTimesNoon + 1s), (over + 1s) % 7s);
   EXPECT_EQ((one.due(3s) - other.due(3s)) % 7s, 0s);
   EXPECT_EQ(one.begin(timing, one.due(6960ms)), 0s);
-  EXPECT_EQ(one.due(0s), kNoon - over + 7s) << "the next round follows the one before";
+  EXPECT_EQ(one.due(0s), kTimesNoon - over + 7s) << "the next round follows the one before";
 }
 
 TEST(FilePace, ARoundThatEndsEarlyOrLateStillFollows) {
   FilePace pace(true);
   const FileTiming timing{40ms, 7s};
-  const Timestamp began = kNoon - pace.begin(timing, kNoon);
+  const Timestamp began = kTimesNoon - pace.begin(timing, kTimesNoon);
   EXPECT_EQ(pace.begin(timing, began + 6500ms), 0s);
   EXPECT_EQ(pace.due(0s), began + 7s);
   EXPECT_EQ(pace.begin(timing, began + 14s + 400ms), 0s);
@@ -96,19 +96,19 @@ TEST(FilePace, ARoundThatEndsEarlyOrLateStillFollows) {
 
 TEST(FilePace, WithoutALengthRoundsFollowEachOther) {
   FilePace pace(true);
-  EXPECT_EQ(pace.begin({40ms, std::nullopt}, kNoon), 0s);
+  EXPECT_EQ(pace.begin({40ms, std::nullopt}, kTimesNoon), 0s);
   (void)pace.due(0s);
   (void)pace.due(40ms);
-  EXPECT_EQ(pace.begin({40ms, std::nullopt}, kNoon + 50ms), 0s);
-  EXPECT_EQ(pace.due(0s), kNoon + 80ms);
+  EXPECT_EQ(pace.begin({40ms, std::nullopt}, kTimesNoon + 50ms), 0s);
+  EXPECT_EQ(pace.due(0s), kTimesNoon + 80ms);
 }
 
 TEST(FilePace, WhoFallsBehindGoesOnFromThere) {
   FilePace pace(false);
-  (void)pace.begin({40ms, 10s}, kNoon);
+  (void)pace.begin({40ms, 10s}, kTimesNoon);
   (void)pace.due(0s);
   pace.fall_behind(2s);
-  EXPECT_EQ(pace.due(40ms), kNoon + 2040ms);
+  EXPECT_EQ(pace.due(40ms), kTimesNoon + 2040ms);
 }
 
 TEST(RestartPause, DoublesAndForgetsAfterGoodTimes) {

@@ -10,19 +10,21 @@
 namespace chorus::core {
 namespace {
 
-SensorId id(const char* text) { return *SensorId::parse(text); }
+SensorId named(const char* text) { return *SensorId::parse(text); }
 
-constexpr int kRing = 5;
+constexpr int kAdoptionRing = 5;
 
 /// Sensors s1, s2, ... of the ring, in a world moved by `world_from_ring`.
-Registration ring(Verdict verdict, std::vector<int> members,
-                  const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
+Registration adopted_ring(
+    Verdict verdict, std::vector<int> members,
+    const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
   Registration r;
   r.verdict = verdict;
   for (const int i : members) {
-    const SensorId sensor = id(("s" + std::to_string(i)).c_str());
+    const SensorId sensor = named(("s" + std::to_string(i)).c_str());
     if (r.sensors.empty()) r.master = sensor;
-    r.sensors[sensor].world_from_sensor = world_from_ring * testing::ring_sensor(i - 1, kRing);
+    r.sensors[sensor].world_from_sensor =
+        world_from_ring * testing::ring_sensor(i - 1, kAdoptionRing);
     r.sensors[sensor].chain = {r.master, sensor};
     r.verdicts[sensor] = {verdict, {}};
   }
@@ -37,40 +39,69 @@ Eigen::Isometry3d elsewhere() {
 }
 
 TEST(Replacing, AFailingSolveNeverReplacesAnything) {
-  const Registration good = ring(Verdict::Good, {1, 2});
+  const Registration good = adopted_ring(Verdict::Good, {1, 2});
   for (const Verdict verdict : {Verdict::None, Verdict::Refused}) {
-    EXPECT_FALSE(adopted(good, ring(verdict, {1, 2, 3}), SolveKind::Final, false));
-    EXPECT_FALSE(adopted({}, ring(verdict, {1}), SolveKind::Final, false));
+    EXPECT_FALSE(adopted(good, adopted_ring(verdict, {1, 2, 3}), SolveKind::Final, false));
+    EXPECT_FALSE(adopted({}, adopted_ring(verdict, {1}), SolveKind::Final, false));
   }
-  EXPECT_FALSE(adopted({}, ring(Verdict::Good, {}), SolveKind::Final, false));
+  EXPECT_FALSE(adopted({}, adopted_ring(Verdict::Good, {}), SolveKind::Final, false));
 }
 
 TEST(Replacing, AnythingUsableReplacesNothing) {
-  EXPECT_TRUE(should_replace({}, ring(Verdict::Provisional, {1, 2}), SolveKind::Provisional));
+  EXPECT_TRUE(
+      should_replace({}, adopted_ring(Verdict::Provisional, {1, 2}), SolveKind::Provisional));
 }
 
 TEST(Replacing, NeverByASmallerCircle) {
-  const Registration three = ring(Verdict::Provisional, {1, 2, 3});
-  EXPECT_FALSE(should_replace(three, ring(Verdict::Good, {1, 2}), SolveKind::Final));
-  EXPECT_FALSE(should_replace(three, ring(Verdict::Good, {1, 2, 4}), SolveKind::Final));
+  const Registration three = adopted_ring(Verdict::Provisional, {1, 2, 3});
+  EXPECT_FALSE(should_replace(three, adopted_ring(Verdict::Good, {1, 2}), SolveKind::Final));
+  EXPECT_FALSE(should_replace(three, adopted_ring(Verdict::Good, {1, 2, 4}), SolveKind::Final));
 }
 
 TEST(Replacing, AFinishedGoodWalkReplacesAnOlderGoodOneButNotHalfway) {
-  const Registration good = ring(Verdict::Good, {1, 2});
+  const Registration good = adopted_ring(Verdict::Good, {1, 2});
   EXPECT_TRUE(should_replace(good, good, SolveKind::Final));
   EXPECT_FALSE(should_replace(good, good, SolveKind::Provisional));
-  EXPECT_FALSE(should_replace(good, ring(Verdict::Provisional, {1, 2}), SolveKind::Final));
+  EXPECT_FALSE(should_replace(good, adopted_ring(Verdict::Provisional, {1, 2}), SolveKind::Final));
 }
 
 TEST(Replacing, ProvisionalOnesFollowEachOtherDuringAWalk) {
-  const Registration provisional = ring(Verdict::Provisional, {1, 2});
+  const Registration provisional = adopted_ring(Verdict::Provisional, {1, 2});
   EXPECT_TRUE(should_replace(provisional, provisional, SolveKind::Provisional));
-  EXPECT_TRUE(should_replace(provisional, ring(Verdict::Good, {1, 2}), SolveKind::Provisional));
+  EXPECT_TRUE(
+      should_replace(provisional, adopted_ring(Verdict::Good, {1, 2}), SolveKind::Provisional));
+}
+
+/// The candidate's clocks are by another common clock: 30 ms off ours, as the held s2 shows, whose
+/// clock has drifted by 5 ms since.
+TEST(Extending, TakesTheNewcomersClockByOurCommonClock) {
+  using std::chrono::milliseconds;
+  Registration current = ring(Verdict::Good, {1, 2, 3});
+  current.clocks[id("s1")] = {milliseconds(0), milliseconds(0)};
+  current.clocks[id("s2")] = {milliseconds(100), milliseconds(3)};
+  current.clocks[id("s2")].least_age = milliseconds(110);
+  Registration candidate = ring(Verdict::Good, {1, 2, 3, 4});
+  candidate.clocks[id("s2")] = {milliseconds(75), milliseconds(4)};
+  candidate.clocks[id("s2")].least_age = milliseconds(115);
+  candidate.clocks[id("s4")] = {milliseconds(-50), milliseconds(0)};
+  const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
+  ASSERT_TRUE(wider) << wider.error().message;
+  EXPECT_EQ(wider->clocks.at(id("s2")).added, milliseconds(100)) << "held";
+  EXPECT_EQ(wider->clocks.at(id("s4")).added, milliseconds(-20));
+  EXPECT_NEAR(chorus::seconds(wider->clocks.at(id("s4")).sigma), 0.005, 1e-6);
+
+  // Where all held clocks are known by exchange, theirs is the common one.
+  current.clocks.clear();
+  candidate.clocks[id("s2")] = {milliseconds(1), milliseconds(4), milliseconds(1), {}};
+  const auto known = adopted(current, candidate, SolveKind::Provisional, true);
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->clocks.at(id("s4")).added, milliseconds(-51));
+  EXPECT_FALSE(known->clocks.contains(id("s2")));
 }
 
 TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
-  const Registration current = ring(Verdict::Good, {1, 2, 3});
-  const Registration candidate = ring(Verdict::Good, {1, 2, 3, 4}, elsewhere());
+  const Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
+  const Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3, 4}, elsewhere());
   const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
   ASSERT_TRUE(wider) << wider.error().message;
   ASSERT_EQ(wider->sensors.size(), 4u);
@@ -78,93 +109,96 @@ TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
     EXPECT_EQ(wider->sensors.at(sensor).world_from_sensor.matrix(),
               place.world_from_sensor.matrix());
   }
-  EXPECT_TRUE(
-      wider->sensors.at(id("s4")).world_from_sensor.isApprox(testing::ring_sensor(3, kRing), 1e-9));
+  EXPECT_TRUE(wider->sensors.at(named("s4"))
+                  .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
   EXPECT_EQ(wider->verdict, Verdict::Good);
   EXPECT_EQ(wider->master, current.master);
-  EXPECT_EQ(wider->sensors.at(id("s4")).chain.front(), current.master);
+  EXPECT_EQ(wider->sensors.at(named("s4")).chain.front(), current.master);
 }
 
 TEST(Extending, OneHeldSensorIsEnough) {
-  const auto wider = adopted(ring(Verdict::Good, {2}), ring(Verdict::Good, {2, 4}, elsewhere()),
-                             SolveKind::Final, true);
+  const auto wider =
+      adopted(adopted_ring(Verdict::Good, {2}), adopted_ring(Verdict::Good, {2, 4}, elsewhere()),
+              SolveKind::Final, true);
   ASSERT_TRUE(wider) << wider.error().message;
-  EXPECT_TRUE(
-      wider->sensors.at(id("s4")).world_from_sensor.isApprox(testing::ring_sensor(3, kRing), 1e-9));
+  EXPECT_TRUE(wider->sensors.at(named("s4"))
+                  .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
 }
 
 TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVerdict) {
-  const Registration current = ring(Verdict::Good, {1, 2});
-  Registration candidate = ring(Verdict::Provisional, {1, 2, 3});
+  const Registration current = adopted_ring(Verdict::Good, {1, 2});
+  Registration candidate = adopted_ring(Verdict::Provisional, {1, 2, 3});
   candidate.reasons = {"the walk lasted only 8 s"};
   EXPECT_EQ(adopted(current, candidate, SolveKind::Provisional, true).error().code,
             ErrorCode::NotFound);
   const auto wider = adopted(current, candidate, SolveKind::Final, true);
   ASSERT_TRUE(wider);
-  EXPECT_EQ(verdict_of(*wider, id("s1")), Verdict::Good);
-  EXPECT_EQ(verdict_of(*wider, id("s2")), Verdict::Good);
-  EXPECT_EQ(verdict_of(*wider, id("s3")), Verdict::Provisional);
-  EXPECT_EQ(wider->verdicts.at(id("s3")).reasons, candidate.reasons);
+  EXPECT_EQ(verdict_of(*wider, named("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, named("s2")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, named("s3")), Verdict::Provisional);
+  EXPECT_EQ(wider->verdicts.at(named("s3")).reasons, candidate.reasons);
   EXPECT_EQ(wider->verdict, Verdict::Provisional);
 }
 
 TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {
-  Registration given = ring(Verdict::Good, {1, 2});
+  Registration given = adopted_ring(Verdict::Good, {1, 2});
   given.verdicts.clear();
   const auto wider =
-      adopted(given, ring(Verdict::Good, {1, 2, 3}, elsewhere()), SolveKind::Final, true);
+      adopted(given, adopted_ring(Verdict::Good, {1, 2, 3}, elsewhere()), SolveKind::Final, true);
   ASSERT_TRUE(wider);
   EXPECT_EQ(wider->verdict, Verdict::Good);
   EXPECT_EQ(wider->verdicts.size(), 3u);
 }
 
 TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
-  Registration candidate = ring(Verdict::Good, {1, 2, 3});
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3});
   // Somebody has moved s2 by accident.
-  candidate.sensors.at(id("s2")).world_from_sensor.translation().x() += 2.0;
-  const auto wider = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
+  candidate.sensors.at(named("s2")).world_from_sensor.translation().x() += 2.0;
+  const auto wider =
+      adopted(adopted_ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
   ASSERT_FALSE(wider);
   EXPECT_EQ(wider.error().code, ErrorCode::Conflict);
   EXPECT_NE(wider.error().message.find("--fresh"), std::string::npos);
 }
 
 TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
-  const Registration current = ring(Verdict::Good, {1, 2});
-  Registration candidate = ring(Verdict::Good, {1, 2, 3}, elsewhere());
-  candidate.sensors.at(id("s2")).error = 0.007;
+  const Registration current = adopted_ring(Verdict::Good, {1, 2});
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3}, elsewhere());
+  candidate.sensors.at(named("s2")).error = 0.007;
   const auto next = adopted(current, candidate, SolveKind::Final, false);
   ASSERT_TRUE(next);
-  EXPECT_EQ(next->sensors.at(id("s2")).error, 0.007) << "nobody is held";
+  EXPECT_EQ(next->sensors.at(named("s2")).error, 0.007) << "nobody is held";
   EXPECT_EQ(next->sensors.size(), 3u);
-  const Eigen::Vector3d jump = next->sensors.at(id("s1")).world_from_sensor.translation() -
-                               current.sensors.at(id("s1")).world_from_sensor.translation();
+  const Eigen::Vector3d jump = next->sensors.at(named("s1")).world_from_sensor.translation() -
+                               current.sensors.at(named("s1")).world_from_sensor.translation();
   EXPECT_LT(std::hypot(jump.x(), jump.z()), 1e-9);
   EXPECT_NEAR(jump.y(), 0.02, 1e-9) << "the floor is the new walk's";
 }
 
 TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
-  Registration current = ring(Verdict::Good, {1, 2});
-  Registration candidate = ring(Verdict::Good, {1, 2});
-  candidate.verdicts[id("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
-  candidate.verdicts[id("s1")] = {Verdict::Refused, {"not this time"}};
+  Registration current = adopted_ring(Verdict::Good, {1, 2});
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2});
+  candidate.verdicts[named("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
+  candidate.verdicts[named("s1")] = {Verdict::Refused, {"not this time"}};
   note_refusals(current, candidate);
   note_refusals(current, candidate);
   EXPECT_EQ(current.verdict, Verdict::Good);
   EXPECT_EQ(current.reasons, std::vector<std::string>{"s5 saw a coat stand"});
-  EXPECT_EQ(verdict_of(current, id("s1")), Verdict::Good);
-  EXPECT_EQ(verdict_of(current, id("s5")), Verdict::None);
-  EXPECT_EQ(current.verdicts.at(id("s5")).verdict, Verdict::Refused);
+  EXPECT_EQ(verdict_of(current, named("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(current, named("s5")), Verdict::None);
+  EXPECT_EQ(current.verdicts.at(named("s5")).verdict, Verdict::Refused);
   // Once s5 is placed, its old refusal is gone.
-  const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
+  const auto wider =
+      adopted(current, adopted_ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);
   EXPECT_TRUE(wider->reasons.empty());
 }
 
 TEST(Unplaced, NamesTheSensorsThatSeeButHaveNoPlace) {
-  const Registration r = ring(Verdict::Good, {1, 2});
-  EXPECT_TRUE(unplaced(r, {id("s1"), id("s2")}).empty());
-  EXPECT_EQ(unplaced(r, {id("s1"), id("s3")}), std::set<SensorId>{id("s3")});
-  EXPECT_EQ(unplaced({}, {id("s1")}).size(), 1u);
+  const Registration r = adopted_ring(Verdict::Good, {1, 2});
+  EXPECT_TRUE(unplaced(r, {named("s1"), named("s2")}).empty());
+  EXPECT_EQ(unplaced(r, {named("s1"), named("s3")}), std::set<SensorId>{named("s3")});
+  EXPECT_EQ(unplaced({}, {named("s1")}).size(), 1u);
 }
 
 }  // namespace

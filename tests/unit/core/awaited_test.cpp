@@ -1,5 +1,4 @@
-// A person in the room is told what to do next, in each state in which the server waits for
-// something.
+// The server tells a person in the room what to do next, whatever it is waiting for.
 #include "fusion-server/core/awaited.h"
 
 #include <gmock/gmock.h>

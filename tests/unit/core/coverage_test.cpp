@@ -30,7 +30,7 @@ SensorFrame frame(const char* sensor, Duration t, const Eigen::Vector3d& neck, i
   return out;
 }
 
-/// Both see a circle of this radius, 2.5 m away, for so many frames.
+/// Both sensors see somebody walk in a circle of this radius, 2.5 m away, for this many frames.
 void walk(Coverage& coverage, const char* a, const char* b, double radius, int frames) {
   for (int i = 0; i < frames; ++i) {
     const Eigen::Vector3d neck(radius * std::cos(0.1 * i), 0.0, 2.5 + radius * std::sin(0.1 * i));

@@ -1,4 +1,4 @@
-// Bodies move from the places before to the places now little by little.
+// Bodies move gradually from where the old registration puts them to where the new one does.
 #include "fusion-server/core/cross_fade.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,6 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 
 std::vector<FusedBody> body_at(double x, std::uint64_t id = 1) {
@@ -27,7 +26,7 @@ TEST(CrossFade, BeginsWhereBodiesWereAndEndsWhereTheyAre) {
   CrossFade fade;
   fade.begin(body_at(0.1), body_at(0.0), kStart);
   double last = 0.1;
-  for (Duration t{0}; t <= seconds(1); t += milliseconds(33)) {
+  for (Duration t{0}; t <= std::chrono::seconds(1); t += milliseconds(33)) {
     auto bodies = body_at(0.0);
     fade.apply(bodies, kStart + t);
     EXPECT_LE(place_of(bodies), last + 1e-9);
@@ -38,7 +37,7 @@ TEST(CrossFade, BeginsWhereBodiesWereAndEndsWhereTheyAre) {
   fade.apply(bodies, kStart);
   EXPECT_NEAR(place_of(bodies), 0.1, 1e-9);
   bodies = body_at(0.0);
-  fade.apply(bodies, kStart + seconds(2));
+  fade.apply(bodies, kStart + std::chrono::seconds(2));
   EXPECT_EQ(place_of(bodies), 0.0);
 }
 

@@ -1,4 +1,4 @@
-// What people are told of a sensor that was moved, and what happens to its place.
+// What is reported about a sensor that was moved, and what happens to its registration.
 #include "fusion-server/core/guard.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,6 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::kStart;
@@ -25,7 +24,7 @@ TEST(Alarms, AreSentencesForPeople) {
             "s3 was moved by about 60 mm 12 s ago; it is being placed anew: walk where it and "
             "others see you");
   EXPECT_THAT(sentence_of(sensor_id("s3"), alarm, now, false), HasSubstr("run chorus register"));
-  EXPECT_THAT(sentence_of(sensor_id("s3"), alarm, now + seconds(300), true),
+  EXPECT_THAT(sentence_of(sensor_id("s3"), alarm, now + std::chrono::seconds(300), true),
               HasSubstr("5 min ago"));
   const SensorAlarm pair{0.05, kStart, false, sensor_id("s1")};
   EXPECT_THAT(sentence_of(sensor_id("s3"), pair, now, true), HasSubstr("s3 or s1 was moved"));
@@ -83,11 +82,11 @@ class Pushed : public ::testing::Test {
 };
 
 TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
-  const double usual = run(seconds(40));
+  const double usual = run(std::chrono::seconds(40));
   pushed_ = 1;
   push_ = 0.08;
   run(milliseconds(200));  // the push itself shows
-  EXPECT_LT(run(seconds(8)), usual + 0.005);
+  EXPECT_LT(run(std::chrono::seconds(8)), usual + 0.005);
   const SensorId moved = sensor_id("s2");
   ASSERT_FALSE(core_.registration().sensors.contains(moved));
   EXPECT_EQ(core_.registration().sensors.size(), 2u);
@@ -100,7 +99,7 @@ TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
 
   const auto job = [&] {
     std::optional<SolveJob> due;
-    while (!due && t_ < seconds(120)) {
+    while (!due && t_ < std::chrono::seconds(120)) {
       run(milliseconds(100));
       due = core_.due_job(kStart + t_);
     }
@@ -112,14 +111,14 @@ TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
   EXPECT_EQ(core_.solved({job->session, job->kind, solved}, kStart + t_), Outcome::Adopted);
   EXPECT_TRUE(core_.registration().sensors.contains(moved));
   EXPECT_FALSE(core_.alarm(moved));
-  EXPECT_LT(run(seconds(2)), usual + 0.005);
+  EXPECT_LT(run(std::chrono::seconds(2)), usual + 0.005);
 }
 
 TEST_F(Pushed, APlaceThatWasChangedOnPurposeIsNoAlarm) {
-  run(seconds(40));
+  run(std::chrono::seconds(40));
   ASSERT_TRUE(core_.move_origin({1.0, 2.0, 0.5}));
   neck_.reset();
-  run(seconds(40));
+  run(std::chrono::seconds(40));
   EXPECT_EQ(core_.displaced(), 0u);
   for (int i = 0; i < kSensors; ++i) EXPECT_FALSE(core_.alarm(sensor_id(name(i))));
 }

@@ -11,13 +11,12 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::kStart;
 using testing::sensor_id;
 
-RegistrarConfig config() { return of_three<RegistrarConfig>(); }
+RegistrarConfig registrar_config() { return of_three<RegistrarConfig>(); }
 
 Registration refused(const std::string& reason = "sensors s1 and s2 disagree") {
   Registration r;
@@ -40,7 +39,7 @@ Registration all_but_the_last() {
 class Sessions : public ::testing::Test {
  protected:
   void begin_with(Registration registration, std::uint64_t first = 7) {
-    registrar_.emplace(config(), std::move(registration), first);
+    registrar_.emplace(registrar_config(), std::move(registration), first);
   }
   Registrar& registrar() { return *registrar_; }
 
@@ -67,15 +66,15 @@ class Sessions : public ::testing::Test {
 
 TEST_F(Sessions, HaveANumberFromTheStartAndStayReadable) {
   begin_with(ring());
-  const auto id = registrar().start(seconds(8), now_);
+  const auto id = registrar().start(std::chrono::seconds(8), now_);
   ASSERT_TRUE(id);
   EXPECT_EQ(*id, 7u);
   EXPECT_EQ(newest().state, SessionState::Collecting);
-  auto job = walk(seconds(20));
+  auto job = walk(std::chrono::seconds(20));
   ASSERT_TRUE(job);
   EXPECT_EQ(job->kind, SolveKind::Provisional);
   EXPECT_EQ(answer(*job, ring()), Outcome::Nothing);  // half a walk replaces no good registration
-  job = walk(seconds(20));
+  job = walk(std::chrono::seconds(20));
   ASSERT_EQ(job->kind, SolveKind::Final);
   EXPECT_EQ(newest().state, SessionState::Solving);
   EXPECT_EQ(answer(*job, ring()), Outcome::Adopted);
@@ -84,7 +83,7 @@ TEST_F(Sessions, HaveANumberFromTheStartAndStayReadable) {
   EXPECT_TRUE(newest().adopted);
   EXPECT_NEAR(newest().elapsed, 8.0, 0.1);
   for (int i = 0; i < 20; ++i) {
-    EXPECT_EQ(*registrar().start(seconds(8), now_), 8u + static_cast<unsigned>(i));
+    EXPECT_EQ(*registrar().start(std::chrono::seconds(8), now_), 8u + static_cast<unsigned>(i));
     ASSERT_TRUE(registrar().cancel(newest().id, now_));
   }
   EXPECT_EQ(registrar().sessions().size(), 8u);
@@ -94,18 +93,49 @@ TEST_F(Sessions, HaveANumberFromTheStartAndStayReadable) {
 
 TEST_F(Sessions, OneThatStartedByItselfBecomesTheClientsOwnAndAnotherClientsIsRefused) {
   begin_with({});
-  ASSERT_FALSE(walk(seconds(3)));
+  ASSERT_FALSE(walk(std::chrono::seconds(3)));
   ASSERT_TRUE(newest().automatic);
-  EXPECT_EQ(*registrar().start(seconds(60), now_), newest().id);
+  EXPECT_EQ(*registrar().start(std::chrono::seconds(60), now_), newest().id);
   EXPECT_FALSE(newest().automatic);
   EXPECT_EQ(newest().target, 60.0);
   EXPECT_GT(newest().elapsed, 2.5) << "what was collected stays";
-  EXPECT_EQ(registrar().start(seconds(8), now_).error().code, ErrorCode::Conflict);
+  EXPECT_EQ(registrar().start(std::chrono::seconds(8), now_).error().code, ErrorCode::Conflict);
+}
+
+TEST_F(Sessions, OneEndsByItselfOnceAllSensorsArePlacedWellEnough) {
+  RegistrarConfig ambitious = config();
+  ambitious.session.target_radius = 0.03;
+  registrar_.emplace(ambitious, Registration{}, 7);
+  ASSERT_TRUE(registrar().start(seconds(60), now_));
+  const auto placed_to = [](double sigma) {
+    Registration r = ring();
+    for (auto& [sensor, place] : r.sensors)
+      place.covariance = sigma * sigma * Eigen::Matrix<double, 6, 6>::Identity();
+    return r;
+  };
+  auto job = walk(seconds(20));
+  ASSERT_TRUE(job);
+  (void)answer(*job, placed_to(0.02));
+  EXPECT_FALSE(newest().reached);
+  ASSERT_EQ(newest().accuracy.size(), 3U);
+  EXPECT_NEAR(*newest().accuracy[1].radius, 2.45 * 0.02, 1e-3);
+  job = walk(seconds(20));
+  ASSERT_EQ(job->kind, SolveKind::Provisional);
+  Registration short_walk = placed_to(0.01);
+  short_walk.verdict = Verdict::Provisional;
+  (void)answer(*job, short_walk);
+  EXPECT_FALSE(newest().reached) << "a walk that is too short stays provisional";
+  (void)answer(*walk(seconds(20)), placed_to(0.01));
+  EXPECT_TRUE(newest().reached);
+  job = walk(seconds(1));
+  EXPECT_EQ(job->kind, SolveKind::Final);
+  EXPECT_LT(newest().elapsed, 20.0);
+  EXPECT_EQ(newest().target, 60.0);
 }
 
 TEST_F(Sessions, AFailingOneLeavesTheRegistrationAndSaysWhy) {
   begin_with(ring());
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   EXPECT_EQ(registrar().solved({7, SolveKind::Final, refused()}, now_), Outcome::Nothing);
   EXPECT_EQ(registrar().registration().verdict, Verdict::Good);
   EXPECT_EQ(registrar().registration().version, 4u);
@@ -116,7 +146,7 @@ TEST_F(Sessions, AFailingOneLeavesTheRegistrationAndSaysWhy) {
 
 TEST_F(Sessions, AWalkThatMissesASensorSaysWhatToDo) {
   begin_with(ring());
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring(2)}, now_), Outcome::Nothing);
   EXPECT_THAT(newest().reasons,
               Contains("the registration in use places sensor s3, this walk does not; chorus "
@@ -125,7 +155,7 @@ TEST_F(Sessions, AWalkThatMissesASensorSaysWhatToDo) {
 
 TEST_F(Sessions, ARefusedEndTakesTheSessionsOwnProvisionalBackAndSaysSo) {
   begin_with({});
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, ring(3, Verdict::Provisional)}, now_),
             Outcome::Adopted);
   EXPECT_TRUE(newest().adopted);
@@ -140,7 +170,7 @@ TEST_F(Sessions, ARefusedEndTakesTheSessionsOwnProvisionalBackAndSaysSo) {
 
 TEST_F(Sessions, TheOneFromBeforeIsInUseAgainWhenTheEndIsRefused) {
   begin_with(ring(3, Verdict::Provisional));
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   Registration moved = ring();
   for (auto& [sensor, place] : moved.sensors) place.world_from_sensor.translation().x() += 1.0;
   EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, moved}, now_), Outcome::Adopted);
@@ -153,22 +183,22 @@ TEST_F(Sessions, TheOneFromBeforeIsInUseAgainWhenTheEndIsRefused) {
 
 TEST_F(Sessions, CancellingIsAsIfItHadNeverBeenAndNoneStartsByItselfForAWhile) {
   begin_with({});
-  ASSERT_FALSE(walk(seconds(2)));
+  ASSERT_FALSE(walk(std::chrono::seconds(2)));
   ASSERT_EQ(registrar().solved({7, SolveKind::Provisional, ring(3, Verdict::Provisional)}, now_),
             Outcome::Adopted);
   ASSERT_TRUE(registrar().cancel(7, now_));
   EXPECT_TRUE(registrar().registration().sensors.empty());
   EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring()}, now_), Outcome::Nothing);
-  ASSERT_FALSE(walk(seconds(5)));
+  ASSERT_FALSE(walk(std::chrono::seconds(5)));
   EXPECT_EQ(newest().state, SessionState::Cancelled);
   EXPECT_THAT(registrar().awaits(now_), Contains(HasSubstr("the next try by itself is in")));
-  ASSERT_TRUE(walk(seconds(70)));
+  ASSERT_TRUE(walk(std::chrono::seconds(70)));
   EXPECT_EQ(newest().id, 8u);
 }
 
 TEST_F(Sessions, ForgettingCancelsAndTheVersionGoesOn) {
   begin_with(ring());
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   registrar().forget();
   EXPECT_EQ(newest().state, SessionState::Cancelled);
   EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring()}, now_), Outcome::Nothing);
@@ -181,7 +211,7 @@ TEST_F(Sessions, ASensorAddedLaterIsPlacedAndTheOthersStayGoodAllTheWay) {
   const Registration before = registrar().registration();
   bool added = false;
   for (int solves = 0; solves < 40 && !(added && newest().state == SessionState::Done); ++solves) {
-    const auto job = walk(seconds(10));
+    const auto job = walk(std::chrono::seconds(10));
     ASSERT_TRUE(job);
     const bool long_enough = newest().elapsed > 20.0;
     Registration candidate = ring(3, long_enough ? Verdict::Good : Verdict::Provisional);
@@ -201,7 +231,7 @@ TEST_F(Sessions, ACoatStandNeitherKeepsTheVerdictFromGoodNorStartsSessionAfterSe
   int finals = 0;
   std::uint64_t version = 0;
   for (const Timestamp end = kStart + std::chrono::minutes(10); now_ < end;) {
-    const auto job = walk(seconds(40));
+    const auto job = walk(std::chrono::seconds(40));
     if (!job) continue;
     (void)answer(*job, all_but_the_last());
     if (job->kind != SolveKind::Final) continue;
@@ -219,23 +249,23 @@ TEST_F(Sessions, ACoatStandNeitherKeepsTheVerdictFromGoodNorStartsSessionAfterSe
 
 TEST_F(Sessions, NobodyWaitsForAProvisionalSolveAtTheEndOfTheWalk) {
   begin_with(ring());
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
-  const auto job = walk(seconds(10));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
+  const auto job = walk(std::chrono::seconds(10));
   ASSERT_TRUE(job);
   ASSERT_EQ(job->kind, SolveKind::Provisional);
   EXPECT_FALSE(job->stop.stop_requested());
-  ASSERT_FALSE(walk(seconds(3)));  // the solve is still running when the walk ends
+  ASSERT_FALSE(walk(std::chrono::seconds(3)));  // the solve is still running when the walk ends
   EXPECT_TRUE(job->stop.stop_requested());
   Solution nothing{job->session, job->kind, {}};
   nothing.given_up = true;
   EXPECT_EQ(registrar().solved(std::move(nothing), now_), Outcome::Nothing);
-  const auto last = walk(seconds(1));
+  const auto last = walk(std::chrono::seconds(1));
   ASSERT_TRUE(last);
   EXPECT_EQ(last->kind, SolveKind::Final);
 }
 
 /// The ring as seen by a walk whose world is different: rotated, and 3 m away.
-Registration elsewhere(Verdict verdict = Verdict::Good) {
+Registration placed_elsewhere(Verdict verdict = Verdict::Good) {
   const auto moved_there = with_origin(ring(kSensors, verdict), {3.0, -1.0, 1.2});
   return *moved_there;
 }
@@ -249,8 +279,8 @@ double off(const Registration& registration, const char* sensor, const Registrat
 
 TEST_F(Sessions, ANewWalkLeavesTheWorldWhereItWas) {
   begin_with(ring());
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
-  EXPECT_EQ(registrar().solved({7, SolveKind::Final, elsewhere()}, now_), Outcome::Adopted);
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, placed_elsewhere()}, now_), Outcome::Adopted);
   EXPECT_LT(off(registrar().registration(), "s2", ring()), 1e-9);
 }
 
@@ -258,26 +288,27 @@ TEST_F(Sessions, TheWorldIsRememberedWhenTheRegistrationIsForgotten) {
   begin_with(ring());
   registrar().forget();
   registrar().forget();
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
-  EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, elsewhere(Verdict::Provisional)}, now_),
-            Outcome::Adopted);
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
+  EXPECT_EQ(
+      registrar().solved({7, SolveKind::Provisional, placed_elsewhere(Verdict::Provisional)}, now_),
+      Outcome::Adopted);
   EXPECT_LT(off(registrar().registration(), "s2", ring()), 1e-9);
-  EXPECT_EQ(registrar().solved({7, SolveKind::Final, elsewhere()}, now_), Outcome::Adopted);
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, placed_elsewhere()}, now_), Outcome::Adopted);
   EXPECT_LT(off(registrar().registration(), "s3", ring()), 1e-9);
 }
 
 TEST_F(Sessions, TheOriginIsMovedBetweenSessionsOnly) {
   begin_with(ring());
   const Origin origin{3.0, -1.0, 1.2};
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   EXPECT_EQ(registrar().move_origin(origin).error().code, ErrorCode::Conflict);
   ASSERT_TRUE(registrar().cancel(7, now_));
   ASSERT_TRUE(registrar().move_origin(origin));
-  EXPECT_LT(off(registrar().registration(), "s1", elsewhere()), 1e-9);
+  EXPECT_LT(off(registrar().registration(), "s1", placed_elsewhere()), 1e-9);
   EXPECT_EQ(registrar().registration().version, 5u);
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   EXPECT_EQ(registrar().solved({8, SolveKind::Final, ring()}, now_), Outcome::Adopted);
-  EXPECT_LT(off(registrar().registration(), "s3", elsewhere()), 1e-9) << "it stays there";
+  EXPECT_LT(off(registrar().registration(), "s3", placed_elsewhere()), 1e-9) << "it stays there";
 }
 
 TEST_F(Sessions, ASensorThatWasMovedLosesItsPlaceAndOneForItStartsAtOnce) {
@@ -293,7 +324,7 @@ TEST_F(Sessions, ASensorThatWasMovedLosesItsPlaceAndOneForItStartsAtOnce) {
   EXPECT_EQ(left.verdicts.at(moved).verdict, Verdict::Refused);
   EXPECT_THAT(left.reasons, Contains("sensor s1 was moved"));
   EXPECT_FALSE(registrar().displace(sensor_id("s2"), "two of two")) << "nobody could tell";
-  walk(seconds(1));
+  walk(std::chrono::seconds(1));
   EXPECT_EQ(newest().state, SessionState::Collecting);
   EXPECT_TRUE(newest().automatic);
   EXPECT_FALSE(registrar().displace(sensor_id("s2"), "during a session"));
@@ -324,7 +355,7 @@ TEST_F(Sessions, AMoveThatWasNoneIsUndoneAlsoAfterTheSensorWasPlacedAnew) {
   begin_with(ring());
   const SensorId moved = sensor_id("s3");
   ASSERT_TRUE(registrar().displace(moved, "sensor s3 was moved"));
-  walk(seconds(1));
+  walk(std::chrono::seconds(1));
   Registration anew = ring();
   anew.sensors.at(moved).world_from_sensor.translation().x() += 0.2;
   EXPECT_EQ(registrar().solved({newest().id, SolveKind::Final, anew}, now_), Outcome::Adopted);
@@ -337,7 +368,7 @@ TEST_F(Sessions, AMoveThatWasNoneIsUndoneAlsoAfterTheSensorWasPlacedAnew) {
 TEST_F(Sessions, AnUndoAfterTheMasterIsGoneStandsOnAnotherSensor) {
   begin_with(ring());
   ASSERT_TRUE(registrar().move_origin({1.0, 0.0, 0.0}));
-  RegistrarConfig fewer = config();
+  RegistrarConfig fewer = registrar_config();
   fewer.sensors.erase(registrar().registration().master);
   registrar().reconfigure(fewer);
   ASSERT_TRUE(registrar().undo());
@@ -352,12 +383,12 @@ TEST_F(Sessions, AnUndoAfterTheMasterIsGoneStandsOnAnotherSensor) {
 
 TEST_F(Sessions, AnUndoAfterAWalkGoesBackToBeforeItsProvisionalOnes) {
   begin_with(ring(kSensors, Verdict::Provisional));
-  ASSERT_TRUE(registrar().start(seconds(8), now_));
-  auto job = walk(seconds(20));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
+  auto job = walk(std::chrono::seconds(20));
   ASSERT_TRUE(job);
   ASSERT_EQ(answer(*job, ring()), Outcome::Adopted);
   EXPECT_FALSE(registrar().earlier());
-  job = walk(seconds(20));
+  job = walk(std::chrono::seconds(20));
   ASSERT_EQ(job->kind, SolveKind::Final);
   ASSERT_EQ(answer(*job, ring()), Outcome::Adopted);
   ASSERT_TRUE(registrar().undo());

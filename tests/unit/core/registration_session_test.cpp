@@ -7,7 +7,6 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
 
@@ -42,15 +41,15 @@ std::size_t frames_of(const SharedTrack& track) {
 TEST(RegistrationSession, IsIdleUntilStarted) {
   RegistrationSession session({});
   EXPECT_FALSE(session.collecting());
-  EXPECT_TRUE(walk(session, seconds(0), seconds(60)).empty());
+  EXPECT_TRUE(walk(session, std::chrono::seconds(0), std::chrono::seconds(60)).empty());
   EXPECT_TRUE(session.walk().empty());
 }
 
 TEST(RegistrationSession, SolvesProvisionallyFromSixSecondsEveryTwoAndFinallyAtTheTarget) {
   RegistrationSession session({});
-  session.start(seconds(12));
-  EXPECT_TRUE(walk(session, seconds(0), milliseconds(5900)).empty());
-  const auto due = walk(session, milliseconds(5900), seconds(7));
+  session.start(std::chrono::seconds(12));
+  EXPECT_TRUE(walk(session, std::chrono::seconds(0), milliseconds(5900)).empty());
+  const auto due = walk(session, milliseconds(5900), std::chrono::seconds(7));
   ASSERT_EQ(due.size(), 4u);  // due after about 6, 8, 10 and 12 s
   EXPECT_EQ(due[0], SolveKind::Provisional);
   EXPECT_EQ(due[2], SolveKind::Provisional);
@@ -63,21 +62,22 @@ TEST(RegistrationSession, SolvesProvisionallyFromSixSecondsEveryTwoAndFinallyAtT
 
 TEST(RegistrationSession, AnEmptyRoomIsNotAWalk) {
   RegistrationSession session({});
-  session.start(seconds(30));
-  (void)walk(session, seconds(0), seconds(3));
+  session.start(std::chrono::seconds(30));
+  (void)walk(session, std::chrono::seconds(0), std::chrono::seconds(3));
   const Duration before = session.elapsed();
-  for (int i = 0; i < 300; ++i) session.add(frame("s1", seconds(3) + milliseconds(33 * i), 0));
+  for (int i = 0; i < 300; ++i)
+    session.add(frame("s1", std::chrono::seconds(3) + milliseconds(33 * i), 0));
   EXPECT_EQ(session.elapsed(), before);
-  session.add(frame("s1", seconds(20)));  // back after a pause, which does not count
+  session.add(frame("s1", std::chrono::seconds(20)));  // back after a pause, which does not count
   EXPECT_EQ(session.elapsed(), before);
 }
 
 TEST(RegistrationSession, FramesThatGoBackAreLeftOut) {
   RegistrationSession session({});
-  session.start(seconds(30));
-  session.add(frame("s1", seconds(1)));
+  session.start(std::chrono::seconds(30));
+  session.add(frame("s1", std::chrono::seconds(1)));
   session.add(frame("s1", milliseconds(500)));
-  session.add(frame("s1", seconds(1)));
+  session.add(frame("s1", std::chrono::seconds(1)));
   EXPECT_EQ(frames_of(session.walk().front()), 1u);
 }
 
@@ -86,28 +86,28 @@ TEST(RegistrationSession, MemoryIsBounded) {
   config.max_frames = 10;
   RegistrationSession session(config);
   session.start(std::chrono::hours(1));
-  (void)walk(session, seconds(0), seconds(5));
+  (void)walk(session, std::chrono::seconds(0), std::chrono::seconds(5));
   EXPECT_EQ(frames_of(session.walk().front()), 10u);
 }
 
 TEST(RegistrationSession, CancelForgetsAndStartBeginsAnew) {
   RegistrationSession session({});
-  session.start(seconds(30));
-  (void)walk(session, seconds(0), seconds(8));
+  session.start(std::chrono::seconds(30));
+  (void)walk(session, std::chrono::seconds(0), std::chrono::seconds(8));
   session.cancel();
   EXPECT_FALSE(session.collecting());
   EXPECT_TRUE(session.walk().empty());
-  session.start(seconds(20));
+  session.start(std::chrono::seconds(20));
   EXPECT_EQ(session.elapsed(), Duration{0});
-  EXPECT_EQ(session.target(), seconds(20));
+  EXPECT_EQ(session.target(), std::chrono::seconds(20));
 }
 
 TEST(RegistrationSession, TheWalkIsSharedAndNotCopied) {
   RegistrationSession session({});
-  session.start(seconds(60));
-  (void)walk(session, seconds(0), seconds(8));
+  session.start(std::chrono::seconds(60));
+  (void)walk(session, std::chrono::seconds(0), std::chrono::seconds(8));
   const SharedWalk first = session.walk();
-  (void)walk(session, seconds(8), seconds(2));
+  (void)walk(session, std::chrono::seconds(8), std::chrono::seconds(2));
   const SharedWalk second = session.walk();
   ASSERT_EQ(first.size(), 2u);
   for (std::size_t i = 0; i < first[0].chunks.size(); ++i)
@@ -121,8 +121,8 @@ TEST(RegistrationSession, TheWalkIsSharedAndNotCopied) {
 
 TEST(RegistrationSession, TheWholeWalkIsHandedOverAtItsEnd) {
   RegistrationSession session({});
-  session.start(seconds(8));
-  const auto due = walk(session, seconds(0), seconds(9));
+  session.start(std::chrono::seconds(8));
+  const auto due = walk(session, std::chrono::seconds(0), std::chrono::seconds(9));
   ASSERT_EQ(due.back(), SolveKind::Final);
   const SharedWalk last = session.walk();
   EXPECT_GT(frames_of(last[0]), 230u);
@@ -132,12 +132,12 @@ TEST(RegistrationSession, TheWholeWalkIsHandedOverAtItsEnd) {
 
 TEST(RegistrationSession, ASlowSolveRestsTwiceAsLongAsItWorked) {
   RegistrationSession session({});
-  session.start(seconds(60));
-  EXPECT_EQ(walk(session, seconds(0), seconds(7)).size(), 1u);
-  session.solved_in(seconds(3));
-  EXPECT_TRUE(walk(session, seconds(7), milliseconds(7500)).empty());
+  session.start(std::chrono::seconds(60));
+  EXPECT_EQ(walk(session, std::chrono::seconds(0), std::chrono::seconds(7)).size(), 1u);
+  session.solved_in(std::chrono::seconds(3));
+  EXPECT_TRUE(walk(session, std::chrono::seconds(7), milliseconds(7500)).empty());
   // This is 9 s after the first solve was due.
-  EXPECT_EQ(walk(session, milliseconds(14500), seconds(1)).size(), 1u);
+  EXPECT_EQ(walk(session, milliseconds(14500), std::chrono::seconds(1)).size(), 1u);
 }
 
 }  // namespace

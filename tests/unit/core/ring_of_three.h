@@ -1,6 +1,7 @@
 // Three sensors on a ring, and registrations for them.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "fusion-server/flow.h"
@@ -19,6 +20,17 @@ template <class Config>
   Config config;
   for (int i = 0; i < kSensors; ++i) config.sensors.insert(testing::sensor_id(name(i)));
   return config;
+}
+
+/// The sensor's view of a person walking in a small circle, `t` after the start.
+[[nodiscard]] inline SensorFrame sight(int sensor, Duration t) {
+  const double angle = 0.6 * chorus::seconds(t);
+  const auto person =
+      testing::standing_person({0.6 * std::cos(angle), 0, 0.6 * std::sin(angle)}, angle);
+  const Timestamp captured = testing::kStart + t;
+  return testing::sensor_frame(
+      name(sensor), captured,
+      {testing::body_seen_from(testing::ring_sensor(sensor, kSensors), person, captured)});
 }
 
 /// Registration version 4, in which the first `count` sensors have a place; its verdict and theirs

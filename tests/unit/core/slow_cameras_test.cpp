@@ -12,13 +12,12 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
 struct Source {
   Duration period;
-  Duration jitter;  ///< Added to the period and to the delay, at most.
+  Duration jitter;  ///< Largest time added to the period and to the delay.
   Duration delay;
   bool rays = true;
 };
@@ -26,7 +25,7 @@ struct Source {
 constexpr Source kMoveNet{milliseconds(185), milliseconds(40), milliseconds(250)};
 constexpr Source kDepthCamera{milliseconds(33), milliseconds(0), milliseconds(20), false};
 
-std::string name(std::size_t i) { return "cam" + std::to_string(i); }
+std::string camera_name(std::size_t i) { return "cam" + std::to_string(i); }
 
 Eigen::Isometry3d place(std::size_t i) {
   return testing::ring_sensor(static_cast<int>(i), 4, 3.5, 1.5);
@@ -46,7 +45,7 @@ SensorFrame picture(std::size_t i, const Source& source, Duration t) {
     joint.measurement = Measurement::Ray;
     joint.orientation.coeffs().setZero();
   }
-  return testing::sensor_frame(name(i), captured, {body});
+  return testing::sensor_frame(camera_name(i), captured, {body});
 }
 
 /// A delay from 0 to `most`: the same sequence in all runs, a different one for each sensor.
@@ -80,13 +79,14 @@ struct Outcome {
 
 /// What the instants from `settled` to the end show; fractions are of all of them.
 Outcome run(const std::vector<Source>& sources, CoreConfig config = {},
-            Duration length = seconds(20), Duration settled = seconds(6)) {
+            Duration length = std::chrono::seconds(20),
+            Duration settled = std::chrono::seconds(6)) {
   Registration registration;
   registration.verdict = Verdict::Good;
-  registration.master = sensor_id(name(0));
+  registration.master = sensor_id(camera_name(0));
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    config.sensors.insert(sensor_id(name(i)));
-    registration.sensors[sensor_id(name(i))].world_from_sensor = place(i);
+    config.sensors.insert(sensor_id(camera_name(i)));
+    registration.sensors[sensor_id(camera_name(i))].world_from_sensor = place(i);
   }
   config.session.automatic = false;
   FusionCore core(config, registration);

@@ -8,11 +8,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
+const Timestamp kFirstTick = from_unix_ns(1'790'000'000'000'000'000);
 
 TEST(Grid, IndexAndInstantUndoEachOther) {
   for (const int rate : {1, 7, 30, 60, 90, 240}) {
-    const std::int64_t start = grid_index(kT0, rate);
+    const std::int64_t start = grid_index(kFirstTick, rate);
     for (std::int64_t k = start; k < start + 3 * rate; ++k) {
       EXPECT_EQ(grid_index(grid_instant(k, rate), rate), k) << rate;
       EXPECT_EQ(grid_index(grid_instant(k + 1, rate) - Duration{1}, rate), k) << rate;
@@ -23,16 +23,17 @@ TEST(Grid, IndexAndInstantUndoEachOther) {
 
 TEST(Grid, WholeSecondsAreOnEveryGrid) {
   for (const int rate : {1, 7, 30, 60}) {
-    EXPECT_EQ(grid_instant(grid_index(kT0, rate), rate), kT0) << rate;
+    EXPECT_EQ(grid_instant(grid_index(kFirstTick, rate), rate), kFirstTick) << rate;
   }
 }
 
 TEST(TickSchedule, AnswersWhenReadyAndAtTheDeadlineWhenNot) {
   TickSchedule schedule({.alignment_delay = milliseconds(80)});
-  const Tick tick = schedule.next(kT0);
+  const Tick tick = schedule.next(kFirstTick);
   EXPECT_EQ(tick.sequence, 1u);
-  EXPECT_GT(tick.instant, kT0);
-  EXPECT_EQ(schedule.wait(kT0, true), tick.instant - kT0);  // never before the instant itself
+  EXPECT_GT(tick.instant, kFirstTick);
+  EXPECT_EQ(schedule.wait(kFirstTick, true),
+            tick.instant - kFirstTick);  // never before the instant itself
   EXPECT_EQ(schedule.wait(tick.instant + milliseconds(5), true), Duration{0});
   EXPECT_EQ(schedule.wait(tick.instant + milliseconds(5), false), milliseconds(75));
   EXPECT_EQ(schedule.wait(tick.instant + milliseconds(80), false), Duration{0});
@@ -41,7 +42,7 @@ TEST(TickSchedule, AnswersWhenReadyAndAtTheDeadlineWhenNot) {
 TEST(TickSchedule, WaitsLongerForSlowSensorsWithoutSkipping) {
   TickSchedule schedule({.alignment_delay = milliseconds(80), .max_lag = milliseconds(100)});
   schedule.extend(milliseconds(500));
-  const Tick tick = schedule.next(kT0);
+  const Tick tick = schedule.next(kFirstTick);
   const Timestamp later = tick.instant + milliseconds(570);
   EXPECT_EQ(schedule.next(later).instant, tick.instant);
   EXPECT_EQ(schedule.wait(later, false), milliseconds(10));
@@ -51,11 +52,11 @@ TEST(TickSchedule, WaitsLongerForSlowSensorsWithoutSkipping) {
 
 TEST(TickSchedule, NoInstantIsLostOrDoubledOverAMinuteOfUnevenWork) {
   TickSchedule schedule({});
-  Timestamp now = kT0;
+  Timestamp now = kFirstTick;
   Timestamp last{};
   std::uint64_t sequence = 0;
   int answers = 0;
-  for (int i = 0; now < kT0 + std::chrono::seconds(60); ++i) {
+  for (int i = 0; now < kFirstTick + std::chrono::seconds(60); ++i) {
     const Tick tick = schedule.next(now);
     // Frames arrive unevenly; now and then nothing is ready for longer than the deadline.
     const Duration wait = schedule.wait(now, i % 7 != 0);
@@ -78,7 +79,7 @@ TEST(TickSchedule, NoInstantIsLostOrDoubledOverAMinuteOfUnevenWork) {
 
 TEST(TickSchedule, LateAnswersAreSpacedSoThatReadersSeeEachOfThem) {
   TickSchedule schedule({});
-  const Tick first = schedule.next(kT0);
+  const Tick first = schedule.next(kFirstTick);
   const Timestamp late = first.instant + milliseconds(200);
   schedule.answered(late);
   (void)schedule.next(late);
@@ -90,21 +91,21 @@ TEST(TickSchedule, TheSpacingNeverSlowsAFastOutputDown) {
   TickConfig fast;
   fast.rate_hz = 240;
   TickSchedule schedule(fast);
-  Timestamp now = schedule.next(kT0).instant;
+  Timestamp now = schedule.next(kFirstTick).instant;
   for (int i = 0; i < 240; ++i) {
     while (schedule.wait(now, true) > Duration{0}) now += schedule.wait(now, true);
     schedule.answered(now);
     (void)schedule.next(now);
   }
-  EXPECT_LE(now - kT0, std::chrono::milliseconds(1010));
+  EXPECT_LE(now - kFirstTick, std::chrono::milliseconds(1010));
   EXPECT_EQ(schedule.skipped(), 0u);
 }
 
 TEST(TickSchedule, ASuspendedHostSkipsAndCountsWhatItSkipped) {
   TickSchedule schedule({});
-  const Tick before = schedule.next(kT0);
+  const Tick before = schedule.next(kFirstTick);
   schedule.answered(before.instant);
-  const Timestamp later = kT0 + std::chrono::seconds(100);
+  const Timestamp later = kFirstTick + std::chrono::seconds(100);
   const Tick after = schedule.next(later);
   EXPECT_LE(later - after.instant, milliseconds(34));
   EXPECT_NEAR(static_cast<double>(after.sequence), 3000.0, 2.0);
@@ -113,9 +114,9 @@ TEST(TickSchedule, ASuspendedHostSkipsAndCountsWhatItSkipped) {
 
 TEST(TickSchedule, AClockSetBackStartsAnewAndTheSequenceStillRises) {
   TickSchedule schedule({});
-  const Tick before = schedule.next(kT0);
+  const Tick before = schedule.next(kFirstTick);
   schedule.answered(before.instant);
-  const Timestamp earlier = kT0 - std::chrono::hours(1);
+  const Timestamp earlier = kFirstTick - std::chrono::hours(1);
   const Tick after = schedule.next(earlier);
   EXPECT_GT(after.sequence, before.sequence);
   EXPECT_LE(after.instant - earlier, milliseconds(34));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kRing = 5;
 
-SensorId name(int i) { return testing::sensor_id("s" + std::to_string(i)); }
+SensorId named_sensor(int i) { return testing::sensor_id("s" + std::to_string(i)); }
 
 Eigen::Isometry3d along_the_floor(double x, double z, double yaw) {
   Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
@@ -25,72 +25,74 @@ Eigen::Isometry3d along_the_floor(double x, double z, double yaw) {
 }
 
 /// Sensors of the ring in a world moved by `world_from_ring`; the first is the master.
-Registration ring(std::vector<int> members,
-                  const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
+Registration world_ring(std::vector<int> members,
+                        const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
   Registration r;
-  r.master = name(members.front());
+  r.master = named_sensor(members.front());
   for (const int i : members)
-    r.sensors[name(i)].world_from_sensor = world_from_ring * testing::ring_sensor(i - 1, kRing);
+    r.sensors[named_sensor(i)].world_from_sensor =
+        world_from_ring * testing::ring_sensor(i - 1, kRing);
   return r;
 }
 
 double apart(const Registration& a, const Registration& b, int i) {
-  const auto difference =
-      a.sensors.at(name(i)).world_from_sensor.inverse() * b.sensors.at(name(i)).world_from_sensor;
+  const auto difference = a.sensors.at(named_sensor(i)).world_from_sensor.inverse() *
+                          b.sensors.at(named_sensor(i)).world_from_sensor;
   return difference.translation().norm() + Eigen::AngleAxisd(difference.linear()).angle();
 }
 
 const Eigen::Isometry3d kElsewhere = along_the_floor(3.0, -7.0, 2.5);
 
 TEST(World, AnotherMastersIsMovedIntoTheOneBefore) {
-  const Registration before = ring({1, 2, 3});
-  const Registration after = in_world_of(before.sensors, ring({3, 1, 2, 4}, kElsewhere));
+  const Registration before = world_ring({1, 2, 3});
+  const Registration after = in_world_of(before.sensors, world_ring({3, 1, 2, 4}, kElsewhere));
   for (const int i : {1, 2, 3}) EXPECT_LT(apart(before, after, i), 1e-9) << i;
-  EXPECT_LT(apart(ring({4}), after, 4), 1e-9) << "the new one comes along";
-  EXPECT_EQ(after.master, name(3));
+  EXPECT_LT(apart(world_ring({4}), after, 4), 1e-9) << "the new one comes along";
+  EXPECT_EQ(after.master, named_sensor(3));
 }
 
 TEST(World, OneCommonSensorIsEnough) {
-  const Registration after = in_world_of(ring({2}).sensors, ring({1, 2}, kElsewhere));
-  EXPECT_LT(apart(ring({1}), after, 1), 1e-9);
+  const Registration after = in_world_of(world_ring({2}).sensors, world_ring({1, 2}, kElsewhere));
+  EXPECT_LT(apart(world_ring({1}), after, 1), 1e-9);
 }
 
 TEST(World, ASensorThatWasMovedDoesNotPullTheOthers) {
-  Registration before = ring({1, 2, 3, 4});
-  auto& carried = before.sensors.at(name(1)).world_from_sensor;
+  Registration before = world_ring({1, 2, 3, 4});
+  auto& carried = before.sensors.at(named_sensor(1)).world_from_sensor;
   carried = along_the_floor(0.8, 0.0, 0.3) * carried;
-  const Registration after = in_world_of(before.sensors, ring({1, 2, 3, 4}, kElsewhere));
+  const Registration after = in_world_of(before.sensors, world_ring({1, 2, 3, 4}, kElsewhere));
   for (const int i : {2, 3, 4}) EXPECT_LT(apart(before, after, i), 1e-9) << i;
   EXPECT_GT(apart(before, after, 1), 0.4) << "it stands elsewhere now";
 }
 
 TEST(World, OfTwoTheMasterDecidesWhichWasMoved) {
-  Registration before = ring({1, 2});
-  auto& carried = before.sensors.at(name(1)).world_from_sensor;
+  Registration before = world_ring({1, 2});
+  auto& carried = before.sensors.at(named_sensor(1)).world_from_sensor;
   carried = along_the_floor(0.8, 0.0, 0.0) * carried;
-  EXPECT_LT(apart(before, in_world_of(before.sensors, ring({2, 1}, kElsewhere)), 2), 1e-9);
-  EXPECT_LT(apart(before, in_world_of(before.sensors, ring({1, 2}, kElsewhere)), 1), 1e-9);
+  EXPECT_LT(apart(before, in_world_of(before.sensors, world_ring({2, 1}, kElsewhere)), 2), 1e-9);
+  EXPECT_LT(apart(before, in_world_of(before.sensors, world_ring({1, 2}, kElsewhere)), 1), 1e-9);
 }
 
 TEST(World, SmallErrorsAreSharedByAll) {
-  Registration before = ring({1, 2, 3, 4, 5});
+  Registration before = world_ring({1, 2, 3, 4, 5});
   for (int i = 1; i <= kRing; ++i)
-    before.sensors.at(name(i)).world_from_sensor.translation().x() += i % 2 == 0 ? 0.01 : -0.01;
-  const Registration after = in_world_of(before.sensors, ring({1, 2, 3, 4, 5}, kElsewhere));
+    before.sensors.at(named_sensor(i)).world_from_sensor.translation().x() +=
+        i % 2 == 0 ? 0.01 : -0.01;
+  const Registration after = in_world_of(before.sensors, world_ring({1, 2, 3, 4, 5}, kElsewhere));
   for (int i = 1; i <= kRing; ++i) EXPECT_LT(apart(before, after, i), 0.02) << i;
 }
 
 TEST(World, FloorsStayWhatTheNewWalkSays) {
   Eigen::Isometry3d higher = kElsewhere;
   higher.translation().y() = 0.05;
-  const Registration before = ring({1, 2, 3});
-  const Registration after = in_world_of(before.sensors, ring({1, 2, 3}, higher));
+  const Registration before = world_ring({1, 2, 3});
+  const Registration after = in_world_of(before.sensors, world_ring({1, 2, 3}, higher));
   EXPECT_NEAR(apart(before, after, 2), 0.05, 1e-9);
 }
 
 TEST(World, WithoutACommonSensorItIsTheMasters) {
-  const Registration alone = ring({4, 5}, kElsewhere);
-  EXPECT_LT(apart(alone, in_world_of(ring({1, 2}).sensors, alone), 4), 1e-12);
+  const Registration alone = world_ring({4, 5}, kElsewhere);
+  EXPECT_LT(apart(alone, in_world_of(world_ring({1, 2}).sensors, alone), 4), 1e-12);
   EXPECT_LT(apart(alone, in_world_of({}, alone), 4), 1e-12);
 }
 
@@ -104,11 +106,12 @@ TEST(Moved, TurnsTheCovarianceAlong) {
 }
 
 TEST(Origin, WhatStoodThereIsAtTheBeginningAndItsFrontIsTheFront) {
-  const Registration before = ring({1, 2, 3});
+  const Registration before = world_ring({1, 2, 3});
   const auto after = with_origin(before, {1.5, -2.0, deg(90)});
   ASSERT_TRUE(after);
-  const Eigen::Isometry3d new_from_old = after->sensors.at(name(1)).world_from_sensor *
-                                         before.sensors.at(name(1)).world_from_sensor.inverse();
+  const Eigen::Isometry3d new_from_old =
+      after->sensors.at(named_sensor(1)).world_from_sensor *
+      before.sensors.at(named_sensor(1)).world_from_sensor.inverse();
   EXPECT_LT((new_from_old * Eigen::Vector3d(1.5, 0.3, -2.0) - Eigen::Vector3d(0, 0.3, 0)).norm(),
             1e-9);
   // Yaw 90 degrees turns +z to +x, so moving 1 m along the old +x gives new z = 1.
@@ -122,7 +125,7 @@ TEST(Origin, NeedsAPlaceAndSaneNumbers) {
   const double nan = std::nan("");
   for (const Origin& wrong : {Origin{nan, 0, 0}, Origin{0, 1001, 0}, Origin{0, 0, nan},
                               Origin{-2000, 0, 0}, Origin{0, 0, INFINITY}})
-    EXPECT_EQ(with_origin(ring({1, 2}), wrong).error().code, ErrorCode::InvalidArgument);
+    EXPECT_EQ(with_origin(world_ring({1, 2}), wrong).error().code, ErrorCode::InvalidArgument);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ void photograph(const fs::path& folder, const chorus::testing::PoseWishes& wishe
   }
 }
 
-/// What the camera device reads from the file.
+/// The settings that the device `camera` reads from the file.
 camera::CameraSettings lens_in(const fs::path& file) {
   const std::string section = R"({"intrinsics": )" + chorus::testing::bytes_of(file) + "}";
   auto reader = ConfigReader::parse(section, file.string());

@@ -27,7 +27,7 @@ TEST(ChildProcesses, SayWhenAProgramCannotBeStarted) {
 }
 
 TEST(ChildProcesses, StopAllWhenWeAreToldToStop) {
-  // The child tells its parent, this process, to stop: like Ctrl-C.
+  // The child sends SIGINT to its parent, which is this process, as Ctrl-C would.
   const Child teller{"teller", {"sh", "-c", "kill -INT $PPID; exec sleep 60"}};
   EXPECT_THAT(run_children({kLasting, teller}), testing::IsOk());
 }

@@ -44,6 +44,20 @@ TEST(Discovery, AStrangerWithTheSameIdIsShownBesidesTheSensor) {
               ElementsAre(::testing::_, stranger, sensor));
 }
 
+TEST(Discovery, WithoutTlsAnAddressIsAllThatTellsAStrangerApart) {
+  const auto at = [](const std::string& address, bool tls) {
+    return "=;d0;IPv4;x;_chorus-sensor._tcp;local;a2.local;" + address +
+           ";9000;\"tls=" + (tls ? "1" : "0") + "\" \"id=a2\"\n";
+  };
+  EXPECT_EQ(read_browsed(at("10.9.0.66", false) + at("10.9.0.2", false)).size(), 2u);
+  EXPECT_EQ(read_browsed(at("10.9.0.2", false) + at("fd00::66", false)).size(), 2u);
+  EXPECT_EQ(read_browsed(at("10.9.0.66", true) + at("10.9.0.2", true)).size(), 1u)
+      << "it is asked by name, and the certificate tells";
+  const FoundSensor sensor{"a2", "a2.local", "10.9.0.2", 9000, false};
+  EXPECT_THAT(read_browsed(at("fe80::1", false) + at("10.9.0.2", false) + at("127.0.0.1", false)),
+              ElementsAre(sensor));
+}
+
 /// An avahi-browse that prints this, for as long as it lives.
 class Browsed {
  public:

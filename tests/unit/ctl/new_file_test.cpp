@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using fs::perms;
 
-/// The umask of the process, for as long as it lives.
+/// Sets the umask of the process while the object exists.
 class Umask {
  public:
   explicit Umask(mode_t mask) : before_(::umask(mask)) {}

@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 /// A person who stands at (1, -2) and faces +z.
-std::string frame(int index) {
+std::string frame_text(int index) {
   const auto at = [](double left) { return Json{{"x", 1.0 + left}, {"y", 1.0}, {"z", -2.0}}; };
   const Json joints{{"SpineBase", at(0)},
                     {"HipLeft", at(0.1)},
@@ -28,10 +28,10 @@ std::string frame(int index) {
 
 TEST(Origin, ThePersonIsWatchedOnOneConnection) {
   std::vector<std::string> frames;
-  for (int i = 0; i < 40; ++i) frames.push_back(frame(i));
+  for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
   const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
-  // The server of this test knows no origins; what is asked of it is what counts.
+  // The server of this test has no /registration/origin; only the request counts.
   EXPECT_THAT(done.error, HasSubstr("/registration/origin"));
   EXPECT_LE(server.connections(), 2u) << "one for the frames, one to set the origin";
 }

@@ -219,6 +219,38 @@ TEST(Register, ReportsAsJson) {
   EXPECT_EQ(json.at("registration").at("master"), "s1");
 }
 
+TEST(Register, UndoesAndSaysSoInWordsOrInJson) {
+  const ScriptedServer server(ScriptedServer::Texts{{"/registration", {kIdle}}});
+  EXPECT_THAT(register_at(server, {"--undo"}).out, HasSubstr("in use again"));
+  const Outcome told = register_at(server, {"--undo", "--json"});
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_EQ(Json::parse(told.out).at("master"), "s1");
+  EXPECT_THAT(server.written(), ElementsAre("POST /registration/undo", "POST /registration/undo"));
+}
+
+TEST(Register, ListsTheLastSessions) {
+  const ScriptedServer server(ScriptedServer::Texts{
+      {"/registration", {R"({"verdict": "Good", "sessions": ["/sessions/7", "/sessions/6"]})"}},
+      {"/sessions/7", {session("done", "Refused", false)}},
+      {"/sessions/6", {session("done", "Good", true)}}});
+  const Outcome told = register_at(server, {"--history"});
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_THAT(told.out, HasSubstr("the walk lasted only 2 s"));
+  EXPECT_LT(told.out.find("Refused"), told.out.find("Good"));
+  EXPECT_EQ(Json::parse(register_at(server, {"--history", "--json"}).out).size(), 2u);
+  EXPECT_TRUE(server.written().empty());
+}
+
+TEST(Register, SaysHowWellTheWalkPlacesTheSensorsSoFar) {
+  auto running = Json::parse(session("collecting", "Provisional", true));
+  running["targetRadius"] = 0.03;
+  running["accuracy"] = {{{"sensorId", "s2"}, {"expectedRadius", 0.02}},
+                         {{"sensorId", "s3"}, {"expectedRadius", 0.041}}};
+  auto texts = walk(session("done", "Good", true));
+  texts["/sessions/7"].insert(texts["/sessions/7"].begin(), running.dump());
+  EXPECT_THAT(register_at(ScriptedServer(texts)).error, HasSubstr("worst s3 41 mm of 30"));
+}
+
 TEST(Register, RefusesWalksThatAreNoWalks) {
   for (const auto& words : std::vector<std::vector<std::string>>{{"--seconds", "0"},
                                                                  {"--seconds", "1e9"},

@@ -1,4 +1,4 @@
-// The command channel without a network: where commands end, what each is answered.
+// The command channel without a network: where commands end, and the answer to each.
 #include "fusion-server/dtrack/dtrack_commands.h"
 
 #include <vector>

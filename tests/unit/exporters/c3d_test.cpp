@@ -22,13 +22,13 @@ using chorus::testing::IsOk;
 using chorus::testing::VectorNear;
 
 /// Words are 1-based, as in the guide.
-struct Decoded {
+struct DecodedC3d {
   std::string bytes;
   std::map<std::string, std::string> values;  ///< "POINT:USED" -> raw bytes
   std::map<std::string, std::vector<int>> dimensions;
   std::map<std::string, int> types;
 
-  explicit Decoded(std::string all) : bytes(std::move(all)) {
+  explicit DecodedC3d(std::string all) : bytes(std::move(all)) {
     const std::size_t start = static_cast<std::size_t>(bytes.at(0) - 1) * 512;
     EXPECT_EQ(bytes.at(1), 0x50);
     EXPECT_EQ(static_cast<unsigned char>(bytes.at(start + 3)), 84) << "Intel";
@@ -104,7 +104,7 @@ Take two_frames() {
 }
 
 TEST(C3dExport, HeaderAndParametersSayTheSame) {
-  const Decoded c3d(c3d_of(two_frames()).value());
+  const DecodedC3d c3d(c3d_of(two_frames()).value());
   EXPECT_EQ(c3d.bytes.size() % 512, 0u);
   EXPECT_EQ(c3d.header_word(2), 25u);
   EXPECT_EQ(c3d.integer("POINT:USED"), 25u);
@@ -128,7 +128,7 @@ TEST(C3dExport, HeaderAndParametersSayTheSame) {
 }
 
 TEST(C3dExport, PointsAreMillimetresAndMissingOnesInvalid) {
-  const Decoded c3d(c3d_of(two_frames()).value());
+  const DecodedC3d c3d(c3d_of(two_frames()).value());
   const auto person = asymmetric_person();
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto xyzr = c3d.point(0, j);
@@ -148,7 +148,7 @@ TEST(C3dExport, MoreThan65535FramesAreCountedElsewhere) {
   Take take = take_of({std::vector(70'000, Skeleton<WorldSpace>())}, 100.0);
   take.persons[0].poses[69'999].skeleton = asymmetric_person();
   const auto bytes = c3d_of(take).value();
-  const Decoded c3d(bytes);
+  const DecodedC3d c3d(bytes);
   EXPECT_EQ(c3d.header_word(5), 65535u);
   EXPECT_EQ(c3d.integer("POINT:FRAMES"), 65535u);
   EXPECT_EQ(c3d.real("POINT:LONG_FRAMES"), 70'000.0f);
@@ -162,7 +162,8 @@ TEST(C3dExport, MoreThan65535FramesAreCountedElsewhere) {
 }
 
 TEST(C3dExport, SeveralPersonsHavePrefixesAndMoreThan255PointsASecondParameter) {
-  const Decoded c3d(c3d_of(take_of(std::vector(11, std::vector{asymmetric_person()}), 30)).value());
+  const DecodedC3d c3d(
+      c3d_of(take_of(std::vector(11, std::vector{asymmetric_person()}), 30)).value());
   EXPECT_EQ(c3d.header_word(2), 275u);
   EXPECT_EQ(c3d.label(25), "P2:SpineBase");
   EXPECT_EQ(c3d.dimensions.at("POINT:LABELS")[1], 255);

@@ -20,11 +20,11 @@ namespace {
 using chorus::testing::VectorNear;
 using nlohmann::json;
 
-struct Decoded {
+struct DecodedGltf {
   json document;
   std::string binary;
 
-  explicit Decoded(const std::string& glb) {
+  explicit DecodedGltf(const std::string& glb) {
     EXPECT_EQ(glb.substr(0, 4), "glTF");
     EXPECT_EQ(u32(glb, 4), 2u);
     EXPECT_EQ(u32(glb, 8), glb.size());
@@ -109,7 +109,7 @@ std::vector<SkeletonFit> fits_of(const Take& take) {
 TEST(GltfExport, AnAsymmetricPoseComesBackWhereItWas) {
   const auto person = asymmetric_person();
   const auto fits = fits_of(take_of({{person}}, 30));
-  const Decoded gltf(gltf_of(fits, 30));
+  const DecodedGltf gltf(gltf_of(fits, 30));
   const auto world = gltf.world(0);
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const auto joint = joint_named(gltf.document["nodes"][i]["name"].get<std::string>());
@@ -121,7 +121,7 @@ TEST(GltfExport, AnAsymmetricPoseComesBackWhereItWas) {
 
 TEST(GltfExport, AnimatesEveryPersonOnOneTimeLine) {
   const auto fits = fits_of(take_of({walk(), breathing_walk()}, 30));
-  const Decoded gltf(gltf_of(fits, 30));
+  const DecodedGltf gltf(gltf_of(fits, 30));
   ASSERT_EQ(gltf.document["skins"].size(), 2u);
   ASSERT_EQ(gltf.document["animations"].size(), 1u);
   const std::size_t keys = fits[0].poses.size();
@@ -145,7 +145,7 @@ TEST(GltfExport, AnimatesEveryPersonOnOneTimeLine) {
 
 TEST(GltfExport, RotationsAreUnitAndContinuous) {
   const auto fits = fits_of(take_of({turning()}, 30));
-  const Decoded gltf(gltf_of(fits, 30));
+  const DecodedGltf gltf(gltf_of(fits, 30));
   for (const json& channel : gltf.document["animations"][0]["channels"]) {
     if (channel["target"]["path"] != "rotation") continue;
     const json& sampler =
@@ -163,7 +163,7 @@ TEST(GltfExport, RotationsAreUnitAndContinuous) {
 }
 
 /// A vertex as a viewer shows it: joint matrix times inverse bind matrix.
-Eigen::Vector3d skinned(const Decoded& gltf, const std::vector<Eigen::Matrix4d>& world,
+Eigen::Vector3d skinned(const DecodedGltf& gltf, const std::vector<Eigen::Matrix4d>& world,
                         std::size_t vertex) {
   const json& skin = gltf.document["skins"][0];
   const json& attributes = gltf.document["meshes"][0]["primitives"][0]["attributes"];
@@ -179,7 +179,7 @@ Eigen::Vector3d skinned(const Decoded& gltf, const std::vector<Eigen::Matrix4d>&
 
 TEST(GltfExport, TheMeshStandsOnTheFloorAtRestAndFollowsTheJoints) {
   const auto person = asymmetric_person();
-  const Decoded gltf(gltf_of(fits_of(take_of({{person}}, 30)), 30));
+  const DecodedGltf gltf(gltf_of(fits_of(take_of({{person}}, 30)), 30));
   const json& primitive = gltf.document["meshes"][0]["primitives"][0];
   const std::size_t vertices = gltf.count(primitive["attributes"]["POSITION"]);
   ASSERT_EQ(vertices, 6 * (kJointCount - 1));
@@ -202,7 +202,7 @@ TEST(GltfExport, TheMeshStandsOnTheFloorAtRestAndFollowsTheJoints) {
 }
 
 TEST(GltfExport, TrianglesFaceOutwards) {
-  const Decoded gltf(gltf_of(fits_of(take_of({{asymmetric_person()}}, 30)), 30));
+  const DecodedGltf gltf(gltf_of(fits_of(take_of({{asymmetric_person()}}, 30)), 30));
   const json& primitive = gltf.document["meshes"][0]["primitives"][0];
   const std::size_t corners = gltf.count(primitive["indices"]);
   const auto place = [&](std::size_t corner) {
@@ -225,7 +225,7 @@ TEST(GltfExport, TrianglesFaceOutwards) {
 TEST(GltfExport, APersonOfOneJointHasNoMeshAndNoEmptyLists) {
   Skeleton<WorldSpace> point;
   point[JointId::SpineBase] = asymmetric_person()[JointId::SpineBase];
-  const Decoded gltf(gltf_of(fits_of(take_of({{point}}, 30)), 30));
+  const DecodedGltf gltf(gltf_of(fits_of(take_of({{point}}, 30)), 30));
   EXPECT_FALSE(gltf.document.contains("meshes"));
   for (const auto& [key, value] : gltf.document.items()) EXPECT_FALSE(value.empty()) << key;
 }

@@ -50,7 +50,7 @@ inline std::vector<Skeleton<WorldSpace>> walk() {
   return frames;
 }
 
-/// walk() with 20 mm of noise on every joint, as fused joints have it; the same noise every time.
+/// walk() with 20 mm of noise on every joint, like that of fused joints; the same noise every time.
 inline std::vector<Skeleton<WorldSpace>> breathing_walk() {
   auto frames = walk();
   std::uint32_t state = 1;

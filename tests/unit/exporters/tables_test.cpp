@@ -28,7 +28,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-Take two_frames() {
+Take two_rows() {
   auto second = asymmetric_person();
   testing::hide(second[JointId::Head]);
   Take take = take_of({{asymmetric_person(), second}}, 25.0);
@@ -37,7 +37,7 @@ Take two_frames() {
 }
 
 TEST(TrcExport, HasTheRowsOfMotionAnalysis) {
-  const auto lines = split(trc_of(two_frames(), "walk.trc"), '\n');
+  const auto lines = split(trc_of(two_rows(), "walk.trc"), '\n');
   ASSERT_EQ(lines.size(), 9u);
   EXPECT_EQ(lines[0], "PathFileType\t4\t(X/Y/Z)\twalk.trc");
   EXPECT_EQ(lines[1],
@@ -70,7 +70,7 @@ TEST(TrcExport, OpenSimCountsTheColumnsOfEveryRowEvenIfTheLastIsMissing) {
 }
 
 TEST(TrcExport, CoordinatesAreMillimetresAndMissingOnesEmpty) {
-  const auto lines = split(trc_of(two_frames(), "walk.trc"), '\n');
+  const auto lines = split(trc_of(two_rows(), "walk.trc"), '\n');
   const auto first = split(lines[6], '\t');
   const auto second = split(lines[7], '\t');
   EXPECT_EQ(first[0], "1");
@@ -94,7 +94,7 @@ TEST(TrcExport, SeveralPersonsHaveNamesOfTheirOwn) {
 }
 
 TEST(CsvExport, SaysEverythingThereIsToSayOfAJoint) {
-  const auto lines = split(csv_of(two_frames()), '\n');
+  const auto lines = split(csv_of(two_rows()), '\n');
   ASSERT_EQ(lines.size(), 1 + 2 * kJointCount + 1);
   EXPECT_EQ(lines[0], "frame,time_s,utc,person,joint,state,x_m,y_m,z_m,qx,qy,qz,qw,sd_mm");
   const auto person = asymmetric_person();

@@ -7,15 +7,15 @@
 namespace chorus::facing {
 namespace {
 
-const HabitPrior kPrior;
+const HabitPrior kHabitPrior;
 
 double chance(const ExchangeHabit& habit, double facing) {
-  return habit.at(facing, kPrior).exchanged();
+  return habit.at(facing, kHabitPrior).exchanged();
 }
 
 void watch(ExchangeHabit& habit, double facing, double time, bool exchanged) {
   for (double t = 0.0; t < time; t += 0.1)
-    habit.learn({facing, 0.1, 0.0, 0.0, exchanged ? 1.0 : 0.0}, kPrior);
+    habit.learn({facing, 0.1, 0.0, 0.0, exchanged ? 1.0 : 0.0}, kHabitPrior);
 }
 
 TEST(ExchangeHabit, FavoursNoAngleBeyondTheSideViewBeforeAnythingIsSeen) {
@@ -30,19 +30,19 @@ TEST(ExchangeHabit, OfASensorThatNeverExchangesIsKnownWithinSeconds) {
   ExchangeHabit camera;
   watch(camera, deg(170), 10.0, false);
   EXPECT_LT(chance(camera, deg(170)), 0.1);
-  EXPECT_LT(chance(camera, deg(110)), 0.2);  // also predicted for angles not observed
+  EXPECT_LT(chance(camera, deg(110)), 0.2);  // also predicted for angles that were never seen
 }
 
 TEST(ExchangeHabit, KeepsTheWayOutApartFromTheWayBack) {
   ExchangeHabit tracker;
   for (int turn = 0; turn < 3; ++turn) {
     watch(tracker, deg(110), 1.0, false);
-    tracker.learn({deg(130), 0.1, 1.0, 0.0, 0.5}, kPrior);
+    tracker.learn({deg(130), 0.1, 1.0, 0.0, 0.5}, kHabitPrior);
     watch(tracker, deg(110), 1.0, true);
-    tracker.learn({deg(82), 0.1, 0.0, 1.0, 0.5}, kPrior);
+    tracker.learn({deg(82), 0.1, 0.0, 1.0, 0.5}, kHabitPrior);
   }
-  EXPECT_GT(tracker.at(deg(130), kPrior).out, 5.0 * tracker.at(deg(110), kPrior).out);
-  EXPECT_GT(tracker.at(deg(82), kPrior).back, 5.0 * tracker.at(deg(110), kPrior).back);
+  EXPECT_GT(tracker.at(deg(130), kHabitPrior).out, 5.0 * tracker.at(deg(110), kHabitPrior).out);
+  EXPECT_GT(tracker.at(deg(82), kHabitPrior).back, 5.0 * tracker.at(deg(110), kHabitPrior).back);
 }
 
 TEST(ExchangeHabit, ChangesPerTimeNotPerFrame) {
@@ -56,8 +56,8 @@ TEST(ExchangeHabit, ChangesPerTimeNotPerFrame) {
 TEST(ExchangeHabit, OldWatchingFades) {
   ExchangeHabit sensor;
   watch(sensor, deg(170), 2000.0, false);
-  for (int i = 0; i < 3; ++i) sensor.learn({deg(170), 0.1, 1.0, 0.0, 0.0}, kPrior);
-  EXPECT_GT(sensor.at(deg(170), kPrior).out, 2.0 / (kPrior.most_time + 1.0));
+  for (int i = 0; i < 3; ++i) sensor.learn({deg(170), 0.1, 1.0, 0.0, 0.0}, kHabitPrior);
+  EXPECT_GT(sensor.at(deg(170), kHabitPrior).out, 2.0 / (kHabitPrior.most_time + 1.0));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 const PersonPrior kPrior;
 
-/// Processes `seconds` of the same walking.
+/// Feeds the filter the same evidence for `seconds`.
 void walk(PersonFilter& filter, double log_odds, double seconds) {
   constexpr double kStep = 0.05;
   for (double t = 0.0; t < seconds; t += kStep) {

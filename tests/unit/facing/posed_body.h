@@ -13,7 +13,7 @@
 
 namespace chorus::facing {
 
-/// How far joints are in front of those of a person standing straight as a plank [m].
+/// How far joints are in front of those of a body as flat as a plank [m].
 struct Posture {
   double knees = 0.0;
   double wrists = 0.0;
@@ -73,14 +73,14 @@ inline constexpr Posture kAtWork{0.02, 0.25, -0.02, 0.05};
   return view;
 }
 
-/// Whether the left shoulder is truly on the left.
+/// True if the view's left shoulder is the person's left one.
 [[nodiscard]] inline bool is_right(const SensorView& view, const Skeleton<WorldSpace>& exact) {
   const auto& shown = view.skeleton[JointId::ShoulderLeft].position;
   return (shown - exact[JointId::ShoulderLeft].position).norm() < 0.1;
 }
 
-/// The angles at which a tracker exchanges left and right of a person turning away, and exchanges
-/// them back [rad].
+/// The angles at which a tracker swaps left and right of a person turning away, and swaps them back
+/// [rad].
 struct Flips {
   double out = deg(130);
   double back = deg(100);

@@ -55,7 +55,8 @@ TEST(Posture, ThatStaysTheSameIsHardlyNews) {
   EXPECT_NEAR(posture_news(2.0, -1.0, 1e3, 5.0), 2.0, 1e-9);
   double sum = 0.0;
   for (int i = 0; i < 300; ++i) sum += posture_news(2.0, 2.0, 0.033, 5.0);
-  EXPECT_NEAR(sum, posture_news(2.0, 2.0, 9.9, 5.0), 0.6);  // one long step tells slightly less
+  // One long step contains slightly less information.
+  EXPECT_NEAR(sum, posture_news(2.0, 2.0, 9.9, 5.0), 0.6);
 }
 
 TEST(Posture, OfNobodyOrWithoutDirectionOrWithoutJointsTellsNothing) {

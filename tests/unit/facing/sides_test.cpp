@@ -13,7 +13,7 @@ namespace {
 
 constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
 constexpr Duration kFrame = std::chrono::milliseconds(33);
-constexpr double kStep = 0.033;  // [s]
+constexpr double kSidesStep = 0.033;  // [s]
 
 /// The habits that real trackers have shown; the model contains none of them.
 const std::vector<std::vector<Flips>> kTrackers{
@@ -30,7 +30,7 @@ double wrong_share(Ring ring, double seconds, const Heading& heading, const Post
   SidesMemory memory;
   int wrong = 0;
   int all = 0;
-  for (double t = 0.0; t < seconds; t += kStep, ++all) {
+  for (double t = 0.0; t < seconds; t += kSidesStep, ++all) {
     const auto exact = body_at({0, 0, 0}, heading(t), posture(t));
     Person person = ring.look(exact, heading(t));
     resolve_sides(person, kStart + from_seconds(t), memory, {});
@@ -116,8 +116,8 @@ TEST(Sides, OutlastHandsBehindTheBack) {
   EXPECT_EQ(wrong_share(Ring({0.0}, {{deg(130), deg(55)}}), 30, standing, hands), 0.0);
 }
 
-/// By labels alone, a body seen by sensors that exchange sides cannot be told from its mirror
-/// image; sensors that never exchange them settle it at once.
+/// By labels alone, a body seen by sensors that swap sides cannot be distinguished from its mirror
+/// image; sensors that never swap them settle it at once.
 TEST(Sides, OfAPlankAreToldBySensorsThatLabelRight) {
   for (double heading = 0.0; heading < 2.0 * std::numbers::pi; heading += deg(20)) {
     const auto standing = [&](double) { return wrap_angle(heading); };
@@ -126,7 +126,7 @@ TEST(Sides, OfAPlankAreToldBySensorsThatLabelRight) {
   }
 }
 
-/// A person walks in front of one sensor that exchanges the sides of everybody seen from behind.
+/// A person walks in front of one sensor that swaps the sides of everybody seen from behind.
 TEST(Sides, WalkingForwardsPutsAWrongBeginningRight) {
   SidesMemory memory;
   bool right = false;
@@ -183,7 +183,7 @@ TEST(Sides, AreKeptThroughAnInstantInWhichNobodyCanTell) {
   const auto exact = body_at({0, 0, 0}, deg(90));
   Person person{PersonId{1}, {view_from(1, 0, exact)}};
   resolve_sides(person, kStart, memory, {});
-  auto narrow = exact;  // between front and rear the tracker draws the sides together
+  auto narrow = exact;  // between front and rear the tracker moves both sides to the middle
   for (const auto& [left, right] : kMirrorPairs) {
     narrow[left].position = narrow[right].position =
         0.5 * (exact[left].position + exact[right].position);
@@ -207,11 +207,11 @@ Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<World
 }
 
 /// A tracker shows 65 deg until it takes the back for the front, then 120 deg.  In between, for
-/// three frames, it draws the sides together and sweeps them to the other side.
+/// three frames, it moves left and right joints through the middle to the other side.
 TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   const auto front = body_at({0, 0, 0}, deg(65));
   const auto rear = exchanged(body_at({0, 0, 0}, deg(120)));
-  for (const bool second : {false, true}) {  // also beside a second view that hardly shows sides
+  for (const bool second : {false, true}) {  // also with a second view that hardly shows sides
     SidesMemory memory;
     const auto narrow = between(front, exchanged(front), 0.45);
     for (int i = 0; i < 30; ++i) {
@@ -226,8 +226,9 @@ TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   }
 }
 
-/// A person at work turns in front of a camera that never exchanges sides.  Then a plank is first
-/// seen from its side, at an angle that decides nothing for a camera whose habit is unknown.
+/// A person at work turns in front of a camera that never swaps sides.  Then a flat body ("plank")
+/// is first seen from its side, at an angle that decides nothing for a camera whose habit is
+/// unknown.
 TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   const auto plank = body_at({0, 0, 0}, deg(150));
   const auto first_odds = [&](const SidesMemory& from) {
@@ -239,7 +240,7 @@ TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   };
   SidesMemory memory;
   Ring ring({0.0}, {kNever});
-  for (double t = 0.0; t < 30.0; t += kStep) {
+  for (double t = 0.0; t < 30.0; t += kSidesStep) {
     const double heading = wrap_angle(deg(40) * t);
     Person person = ring.look(body_at({0, 0, 0}, heading, kAtWork), heading);
     resolve_sides(person, kStart + from_seconds(t), memory, {});

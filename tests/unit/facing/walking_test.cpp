@@ -7,9 +7,9 @@
 namespace chorus::facing {
 namespace {
 
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
-constexpr Duration kFrame = std::chrono::milliseconds(33);
-const Eigen::Vector3d kAhead = Eigen::Vector3d::UnitZ();
+constexpr Timestamp kWalkStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr Duration kWalkFrame = std::chrono::milliseconds(33);
+const Eigen::Vector3d kWalkAhead = Eigen::Vector3d::UnitZ();
 
 TEST(Walk, SpeaksForTheWayThatIsWalkedInProportionToSpeed) {
   const WalkingCue cue;
@@ -17,11 +17,11 @@ TEST(Walk, SpeaksForTheWayThatIsWalkedInProportionToSpeed) {
   for (const double speed : {0.5, 0.8, 1.2}) {
     Walk walk;
     for (int i = 0; i < 60; ++i)
-      walk.follow({view_from(1, 0, body_at({0, 0, speed * 0.033 * i}, 0))}, kStart + i * kFrame,
-                  cue);
-    const double odds = walk.log_odds(kAhead, cue);
+      walk.follow({view_from(1, 0, body_at({0, 0, speed * 0.033 * i}, 0))},
+                  kWalkStart + i * kWalkFrame, cue);
+    const double odds = walk.log_odds(kWalkAhead, cue);
     EXPECT_GT(odds, before);
-    EXPECT_NEAR(walk.log_odds(-kAhead, cue), -odds, 1e-12);
+    EXPECT_NEAR(walk.log_odds(-kWalkAhead, cue), -odds, 1e-12);
     EXPECT_NEAR(walk.log_odds(Eigen::Vector3d::UnitX(), cue), 0.0, 1e-9);
     before = odds;
   }
@@ -33,23 +33,24 @@ TEST(Walk, IsNotFakedByAViewThatComesAndGoes) {
   for (int i = 0; i < 60; ++i) {
     std::vector<SensorView> views{view_from(1, 0, body_at({0, 0, 0}, 0))};
     if (i % 4 < 2) views.push_back(view_from(2, 0, body_at({0, 0, 0.2}, 0)));
-    walk.follow(views, kStart + i * kFrame, {});
-    EXPECT_EQ(walk.log_odds(kAhead, {}), 0.0) << i;
+    walk.follow(views, kWalkStart + i * kWalkFrame, {});
+    EXPECT_EQ(walk.log_odds(kWalkAhead, {}), 0.0) << i;
   }
 }
 
 TEST(Walk, IsSeenAlsoWhenSensorsAnswerInTurn) {
   Walk walk;
   for (int i = 0; i < 120; ++i)
-    walk.follow({view_from(i % 2, 0, body_at({0, 0, 0.0165 * i}, 0))}, kStart + i * kFrame / 2, {});
-  EXPECT_GT(walk.log_odds(kAhead, {}), 2.0);
+    walk.follow({view_from(i % 2, 0, body_at({0, 0, 0.0165 * i}, 0))},
+                kWalkStart + i * kWalkFrame / 2, {});
+  EXPECT_GT(walk.log_odds(kWalkAhead, {}), 2.0);
 }
 
 TEST(Walk, OfNobodyIsNone) {
   Walk walk;
-  walk.follow({}, kStart, {});
-  walk.follow({view_from(1, 0, {})}, kStart + kFrame, {});
-  EXPECT_EQ(walk.log_odds(kAhead, {}), 0.0);
+  walk.follow({}, kWalkStart, {});
+  walk.follow({view_from(1, 0, {})}, kWalkStart + kWalkFrame, {});
+  EXPECT_EQ(walk.log_odds(kWalkAhead, {}), 0.0);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ using enum JointId;
 
 const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3), sensor(4)};
 constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
-constexpr int kSteps = 90;
+constexpr int kFilterSteps = 90;
 
 /// A standing body with arms stretched out, facing +z.
 Skeleton<WorldSpace> standing() {
@@ -81,8 +81,8 @@ struct Room {
     return at(step, {view_of(1, body), view_of(2, body), view_of(3, body), view_of(4, body)});
   }
   FusedBody settled(const Skeleton<WorldSpace>& body) {
-    for (int i = 0; i < kSteps; ++i) (void)all_see(i, body);
-    return all_see(kSteps, body);
+    for (int i = 0; i < kFilterSteps; ++i) (void)all_see(i, body);
+    return all_see(kFilterSteps, body);
   }
 
   FusionConfig config;
@@ -114,13 +114,14 @@ TEST(BodyFilter, AViewThatIsTooLargeAsAWholeIsShrunk) {
     const auto two_see = [&](int step, double by) {
       return room.at(step, {view_of(1, exact), view_of(2, scaled(exact, by))});
     };
-    for (int i = 0; i < kSteps; ++i) (void)two_see(i, i % 2 == 0 ? 1.06 : 0.94);
-    return wrist_off(two_see(kSteps, 1.08), exact);
+    for (int i = 0; i < kFilterSteps; ++i) (void)two_see(i, i % 2 == 0 ? 1.06 : 0.94);
+    return wrist_off(two_see(kFilterSteps, 1.08), exact);
   };
   EXPECT_LT(error(0.06), 0.5 * error(0.0));
 }
 
-/// A camera that guesses depth has everything too far along its line of sight, and says so.
+/// A camera that guesses depth puts everything too far away along its line of sight, and states
+/// that uncertainty.
 TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
   const auto exact = standing();
   const auto guessed = [&](int number) {
@@ -137,7 +138,7 @@ TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
   Room room;
   FusedBody body;
   for (int i = 0; i < 30; ++i) {
-    // One joint of known depth, or the person would be one for points-and-rays.
+    // One joint has a known depth; without it, points-and-rays would fuse this person.
     std::vector<SensorView> views{guessed(1), guessed(2), guessed(3), guessed(4)};
     views[0].skeleton[SpineMid].covariance = {};
     body = room.at(i, views);
@@ -156,7 +157,7 @@ TEST(BodyFilter, AViewThatStaysWrongPullsNoMoreThanAtFirst) {
   };
   const double first = step(0);
   double last = 0.0;
-  for (int i = 1; i < kSteps; ++i) last = step(i);
+  for (int i = 1; i < kFilterSteps; ++i) last = step(i);
   EXPECT_LT(last, 1.2 * first);
 }
 
@@ -193,7 +194,7 @@ TEST(BodyFilter, BonesHoldAJointAtTheLengthThatWasLearned) {
     (void)room.settled(exact);
     auto stretched = exact;
     stretched[WristLeft].position.x() += 0.1;
-    const FusedBody body = room.all_see(kSteps + 1, stretched);
+    const FusedBody body = room.all_see(kFilterSteps + 1, stretched);
     return (body.skeleton[WristLeft].position - body.skeleton[ElbowLeft].position).norm();
   };
   const double length = (exact[WristLeft].position - exact[ElbowLeft].position).norm();
@@ -207,14 +208,14 @@ TEST(BodyFilter, AJointThatNobodySeesIsCarriedForAWhileAndSaidToBe) {
   (void)room.settled(exact);
   auto without = exact;
   without[WristLeft] = {};
-  const double before = room.all_see(kSteps + 1, exact).variance[index_of(WristLeft)];
+  const double before = room.all_see(kFilterSteps + 1, exact).variance[index_of(WristLeft)];
   FusedBody body;
-  for (int i = 2; i < 20; ++i) body = room.all_see(kSteps + i, without);
+  for (int i = 2; i < 20; ++i) body = room.all_see(kFilterSteps + i, without);
   EXPECT_EQ(body.skeleton[WristLeft].state, JointState::Inferred);
   EXPECT_EQ(body.contributors[index_of(WristLeft)], 0U);
   EXPECT_LT(wrist_off(body, exact), 0.01);
   EXPECT_GT(body.variance[index_of(WristLeft)], before);
-  for (int i = 20; i < 40; ++i) body = room.all_see(kSteps + i, without);
+  for (int i = 20; i < 40; ++i) body = room.all_see(kFilterSteps + i, without);
   EXPECT_EQ(body.skeleton[WristLeft].state, JointState::NotTracked);
 }
 
@@ -224,9 +225,9 @@ TEST(BodyFilter, ACarriedBodyMovesOn) {
   const auto move = [&] {
     for (Joint& joint : exact.joints) joint.position.z() += 0.02;
   };
-  for (int i = 0; i < kSteps; ++i, move()) (void)room.all_see(i, exact);
-  for (int i = 0; i < 3; ++i, move()) (void)room.at(kSteps + i, {});
-  EXPECT_LT(wrist_off(room.at(kSteps + 3, {}), exact), 0.02);
+  for (int i = 0; i < kFilterSteps; ++i, move()) (void)room.all_see(i, exact);
+  for (int i = 0; i < 3; ++i, move()) (void)room.at(kFilterSteps + i, {});
+  EXPECT_LT(wrist_off(room.at(kFilterSteps + 3, {}), exact), 0.02);
 }
 
 TEST(BodyFilter, RestIsSmoothAndMotionDoesNotLag) {
@@ -240,7 +241,8 @@ TEST(BodyFilter, RestIsSmoothAndMotionDoesNotLag) {
     for (int i = 1; i <= 40; ++i) {
       auto noisy = exact;
       noisy[WristLeft].position.y() += i % 2 == 0 ? 0.003 : -0.003;
-      const Eigen::Vector3d now = room.all_see(kSteps + i, noisy).skeleton[WristLeft].position;
+      const Eigen::Vector3d now =
+          room.all_see(kFilterSteps + i, noisy).skeleton[WristLeft].position;
       steps += (now - last).norm() / 40.0;
       last = now;
     }
@@ -253,7 +255,7 @@ TEST(BodyFilter, RestIsSmoothAndMotionDoesNotLag) {
   FusedBody body;
   for (int i = 1; i <= 15; ++i) {
     for (Joint& joint : moving.joints) joint.position.z() += 0.03;  // a sudden speed of 0.9 m/s
-    body = room.all_see(kSteps + i, moving);
+    body = room.all_see(kFilterSteps + i, moving);
   }
   EXPECT_LT(wrist_off(body, moving), 0.012);
 }
@@ -264,8 +266,8 @@ TEST(BodyFilter, OneViewThatJumpsMovesNobodyByAJump) {
   const FusedBody before = room.settled(exact);
   auto gone = exact;
   for (Joint& joint : gone.joints) joint.position.x() += 0.5;
-  const FusedBody body = room.at(
-      kSteps + 1, {view_of(1, exact), view_of(2, exact), view_of(3, exact), view_of(4, gone)});
+  const FusedBody body = room.at(kFilterSteps + 1, {view_of(1, exact), view_of(2, exact),
+                                                    view_of(3, exact), view_of(4, gone)});
   EXPECT_LT((body.skeleton[Head].position - before.skeleton[Head].position).norm(), 0.015);
 }
 
@@ -276,7 +278,7 @@ TEST(BodyFilter, SensorsThatDifferInSizeAreSaidToErrByMoreFarFromTheTrunk) {
     const auto large = scaled(standing(), 1.0 + scale);
     const auto small = scaled(standing(), 1.0 - scale);
     FusedBody body;
-    for (int i = 0; i < kSteps; ++i) {
+    for (int i = 0; i < kFilterSteps; ++i) {
       body = room.at(i, {view_of(1, large), view_of(2, small), view_of(3, standing())});
     }
     return std::pair{body.variance[index_of(AnkleLeft)], body.variance[index_of(SpineMid)]};

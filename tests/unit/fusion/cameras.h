@@ -1,4 +1,4 @@
-// Cameras without depth around the middle of a room, and the rays they show of a point.
+// Cameras without depth around the middle of a room, and their rays to a point.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace chorus::fusion {
 
-/// Place of a camera on a circle with a radius of 3 m, 1.5 m high.
+/// Position of a camera on a circle with a radius of 3 m, 1.5 m high.
 inline Eigen::Vector3d camera_eye(double angle) {
   return {3.0 * std::sin(angle), 1.5, 3.0 * std::cos(angle)};
 }

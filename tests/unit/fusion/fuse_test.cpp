@@ -13,8 +13,8 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3), sensor(4)};
+constexpr double kFuseNan = std::numeric_limits<double>::quiet_NaN();
+const std::vector<SensorId> kFuseSensors{sensor(1), sensor(2), sensor(3), sensor(4)};
 constexpr std::array kMethods{
     Method::Otto,         Method::Mean,       Method::BestView,      Method::InverseVariance,
     Method::BestSkeleton, Method::OttoKalman, Method::PointsAndRays, Method::BodyFilter};
@@ -26,13 +26,13 @@ FusionConfig by(Method method) {
 }
 
 Joint fused_neck(const Person& person, const FusionConfig& config) {
-  return fuse(person, kSensors, config).skeleton[JointId::Neck];
+  return fuse(person, kFuseSensors, config).skeleton[JointId::Neck];
 }
 
 TEST(OttoFusion, IsTheWeightedMean) {
   const Person person{PersonId{1},
                       {neck_view(1, {0, 1, 0}, 0.75), neck_view(2, {0.4, 1, 0}, 0.25)}};
-  const FusedBody body = fuse(person, kSensors, by(Method::Otto));
+  const FusedBody body = fuse(person, kFuseSensors, by(Method::Otto));
   EXPECT_EQ(body.id, PersonId{1});
   EXPECT_NEAR(body.skeleton[JointId::Neck].position.x(), 0.1, 1e-12);
   EXPECT_EQ(body.contributors[index_of(JointId::Neck)], 0b11u);
@@ -40,7 +40,7 @@ TEST(OttoFusion, IsTheWeightedMean) {
 
 TEST(OttoFusion, AViewOfWeightZeroIsIgnored) {
   const Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.01), neck_view(3, {9, 9, 9}, 0)}};
-  const FusedBody body = fuse(person, kSensors, by(Method::Otto));
+  const FusedBody body = fuse(person, kFuseSensors, by(Method::Otto));
   EXPECT_EQ(body.skeleton[JointId::Neck].position, Eigen::Vector3d(0, 1, 0));
   EXPECT_EQ(body.contributors[index_of(JointId::Neck)], 0b001u);
 }
@@ -60,7 +60,8 @@ TEST(OttoFusion, AJointSeenOnlyByZeroWeightViewsIsStillAnswered) {
 }
 
 TEST(OttoFusion, AWeightThatIsNotANumberIsZero) {
-  const Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5), neck_view(2, {9, 9, 9}, kNan)}};
+  const Person person{PersonId{1},
+                      {neck_view(1, {0, 1, 0}, 0.5), neck_view(2, {9, 9, 9}, kFuseNan)}};
   EXPECT_EQ(fused_neck(person, by(Method::Otto)).position, Eigen::Vector3d(0, 1, 0));
 }
 
@@ -83,7 +84,7 @@ TEST(BestViewFusion, TakesTheHeaviestAloneAndBreaksTiesBySeenJoints) {
 TEST(Fuse, AJointNobodySawIsNotTracked) {
   for (const Method method : kMethods) {
     const Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5)}};
-    const FusedBody body = fuse(person, kSensors, by(method));
+    const FusedBody body = fuse(person, kFuseSensors, by(method));
     const Joint& head = body.skeleton[JointId::Head];
     EXPECT_EQ(head.state, JointState::NotTracked) << name_of(method);
     EXPECT_EQ(head.position, Eigen::Vector3d::Zero());
@@ -99,8 +100,8 @@ TEST(Fuse, APersonWithoutViewsIsEmptyNotACrash) {
 }
 
 TEST(Fuse, CoordinatesThatAreNotNumbersNeverReachTheResult) {
-  Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5), neck_view(2, {kNan, 1, 0}, 0.5)}};
-  person.views[0].eye = {kNan, kNan, kNan};
+  Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5), neck_view(2, {kFuseNan, 1, 0}, 0.5)}};
+  person.views[0].eye = {kFuseNan, kFuseNan, kFuseNan};
   for (const Method method : {Method::Otto, Method::Mean, Method::InverseVariance}) {
     EXPECT_TRUE(fused_neck(person, by(method)).position.isApprox(Eigen::Vector3d(0, 1, 0)))
         << name_of(method);
@@ -129,7 +130,7 @@ TEST(Fuse, OrientationNobodyGaveStaysAllZero) {
 
 TEST(Fuse, ASensorBeyondTheListContributesWithoutABit) {
   const Person person{PersonId{1}, {neck_view(9, {0, 1, 0}, 0.5)}};
-  const FusedBody body = fuse(person, kSensors, by(Method::Mean));
+  const FusedBody body = fuse(person, kFuseSensors, by(Method::Mean));
   EXPECT_EQ(body.skeleton[JointId::Neck].state, JointState::Tracked);
   EXPECT_EQ(body.contributors[index_of(JointId::Neck)], 0u);
 }
@@ -138,9 +139,9 @@ TEST(Fuse, MoreViewsMeanLessVarianceAndTheCommonPartStays) {
   FusionConfig config = by(Method::InverseVariance);
   config.common_sigma = 0.015;
   Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5)}};
-  const double one = fuse(person, kSensors, config).variance[index_of(JointId::Neck)];
+  const double one = fuse(person, kFuseSensors, config).variance[index_of(JointId::Neck)];
   person.views.push_back(neck_view(2, {0, 1, 0}, 0.5, {5, 1, 0}));
-  const double two = fuse(person, kSensors, config).variance[index_of(JointId::Neck)];
+  const double two = fuse(person, kFuseSensors, config).variance[index_of(JointId::Neck)];
   EXPECT_LT(two, one);
   EXPECT_GT(two, 0.015 * 0.015);
 }
@@ -152,7 +153,7 @@ TEST(Fuse, StatesMoreErrorFartherOutAndForGuesses) {
                            JointId::HandTipLeft})
     body[id] = body[JointId::Neck];
   const auto variance = [&](JointId id) {
-    return fuse(person, kSensors, by(Method::InverseVariance)).variance[index_of(id)];
+    return fuse(person, kFuseSensors, by(Method::InverseVariance)).variance[index_of(id)];
   };
   EXPECT_LT(variance(JointId::Neck), variance(JointId::Head));
   EXPECT_LT(variance(JointId::Head), variance(JointId::HipLeft));
@@ -169,8 +170,8 @@ TEST(Fuse, BelievesACovarianceThatAMeasurementBrings) {
   Joint& tip = person.views[0].skeleton[JointId::HandTipLeft];
   tip = person.views[0].skeleton[JointId::Neck];
   tip.covariance = Covariance(Eigen::Matrix3d(1e-4 * Eigen::Matrix3d::Identity()));
-  const double variance =
-      fuse(person, kSensors, by(Method::InverseVariance)).variance[index_of(JointId::HandTipLeft)];
+  const double variance = fuse(person, kFuseSensors, by(Method::InverseVariance))
+                              .variance[index_of(JointId::HandTipLeft)];
   EXPECT_NEAR(variance, 1e-4 + 0.004 * 0.004, 1e-6);
 }
 
@@ -195,9 +196,9 @@ TEST(FuseProperty, TheOrderOfViewsDoesNotMatter) {
   for (int round = 0; round < 50; ++round) {
     Person person = random_person(random, 4);
     for (const Method method : kMethods) {
-      const FusedBody before = fuse(person, kSensors, by(method));
+      const FusedBody before = fuse(person, kFuseSensors, by(method));
       std::shuffle(person.views.begin(), person.views.end(), random);
-      const FusedBody after = fuse(person, kSensors, by(method));
+      const FusedBody after = fuse(person, kFuseSensors, by(method));
       for (std::size_t i = 0; i < kJointCount; ++i) {
         const Joint& a = before.skeleton.joints[i];
         const Joint& b = after.skeleton.joints[i];
@@ -221,8 +222,8 @@ void expect_same_when_moved(const Eigen::Isometry3d& moved_from_world,
       for (Joint& joint : view.skeleton.joints) joint.position = moved_from_world * joint.position;
     }
     for (const Method method : methods) {
-      const FusedBody before = fuse(person, kSensors, by(method));
-      const FusedBody after = fuse(moved, kSensors, by(method));
+      const FusedBody before = fuse(person, kFuseSensors, by(method));
+      const FusedBody after = fuse(moved, kFuseSensors, by(method));
       for (std::size_t i = 0; i < kJointCount; ++i) {
         const Eigen::Vector3d expected = moved_from_world * before.skeleton.joints[i].position;
         EXPECT_LT((expected - after.skeleton.joints[i].position).norm(), 1e-9) << name_of(method);

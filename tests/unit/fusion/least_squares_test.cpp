@@ -9,7 +9,7 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kHuber = 1.5;
+constexpr double kSquaresHuber = 1.5;
 constexpr double kSigma = deg(0.3);
 const Eigen::Vector3d kPoint(0.3, 1.1, -0.4);
 
@@ -36,7 +36,7 @@ double nees_of(const LeastSquares& found, const Eigen::Vector3d& truth) {
 TEST(LeastSquares, ExactRaysMeetInThePoint) {
   for (const int cameras : {2, 3, 5, 8}) {
     RayDraw exact(1, 0.0);
-    const auto found = least_squares(rays_of(cameras, exact), kHuber);
+    const auto found = least_squares(rays_of(cameras, exact), kSquaresHuber);
     ASSERT_TRUE(found) << cameras;
     EXPECT_LT((found->position - kPoint).norm(), 1e-9) << cameras;
   }
@@ -61,7 +61,7 @@ TEST(LeastSquares, StatesWhatTwoHundredDrawsErrBy) {
     double nees = 0.0;
     int inside = 0;
     for (int i = 0; i < kDraws; ++i) {
-      const auto found = least_squares(rays_of(cameras, draw), kHuber);
+      const auto found = least_squares(rays_of(cameras, draw), kSquaresHuber);
       ASSERT_TRUE(found);
       const double one = nees_of(*found, kPoint);
       nees += one / kDraws;
@@ -79,7 +79,7 @@ TEST(LeastSquares, NoiseThatNobodyStatedShowsInTheScaleOfTheResiduals) {
   for (int i = 0; i < 200; ++i) {
     auto views = rays_of(8, draw);
     for (JointView& view : views) view.covariance /= 25.0;
-    nees += nees_of(*least_squares(views, kHuber), kPoint) / 200;
+    nees += nees_of(*least_squares(views, kSquaresHuber), kPoint) / 200;
   }
   EXPECT_LT(nees, 4.0) << "25 without the scale";
 }
@@ -89,7 +89,7 @@ TEST(LeastSquares, OneCameraThatLooksElsewhereIsOutvoted) {
   for (const int cameras : {4, 6, 8}) {
     auto views = rays_of(cameras, draw);
     views[1] = draw(views[1].eye, kPoint + Eigen::Vector3d(0.2, 0.8, 0.2));
-    const auto found = least_squares(views, kHuber);
+    const auto found = least_squares(views, kSquaresHuber);
     ASSERT_TRUE(found);
     EXPECT_LT((found->position - kPoint).norm(), 0.03) << cameras;
     EXPECT_LT(found->trust[1], 0.1) << cameras;
@@ -102,13 +102,13 @@ TEST(LeastSquares, ThreeOfEightCamerasThatAgreeOnAnotherPlaceAreOutvoted) {
   auto views = rays_of(8, draw);
   for (const std::size_t i : {0U, 3U, 6U})
     views[i] = draw(views[i].eye, kPoint + Eigen::Vector3d(0.3, 0.2, 0.3));
-  EXPECT_LT((least_squares(views, kHuber)->position - kPoint).norm(), 0.04);
+  EXPECT_LT((least_squares(views, kSquaresHuber)->position - kPoint).norm(), 0.04);
 }
 
 TEST(LeastSquares, NearlyParallelRaysSayHowLittleTheyKnowOfTheDepth) {
   RayDraw draw(7, kSigma);
   const std::vector views{draw(camera_eye(0.0), kPoint), draw(camera_eye(deg(3)), kPoint)};
-  const auto found = least_squares(views, kHuber);
+  const auto found = least_squares(views, kSquaresHuber);
   ASSERT_TRUE(found);
   const Eigen::Vector3d along = views[0].joint.position;
   EXPECT_GT(std::sqrt(along.dot(found->covariance * along)), 0.2);
@@ -118,17 +118,17 @@ TEST(LeastSquares, NearlyParallelRaysSayHowLittleTheyKnowOfTheDepth) {
 
 TEST(LeastSquares, OneRayOrParallelOnesMakeNoPoint) {
   RayDraw exact(1, 0.0);
-  EXPECT_FALSE(least_squares({}, kHuber));
-  EXPECT_FALSE(least_squares(std::vector{exact(camera_eye(0), kPoint)}, kHuber));
+  EXPECT_FALSE(least_squares({}, kSquaresHuber));
+  EXPECT_FALSE(least_squares(std::vector{exact(camera_eye(0), kPoint)}, kSquaresHuber));
   const JointView one = exact(camera_eye(0), kPoint);
-  EXPECT_FALSE(least_squares(std::vector{one, one}, kHuber));
+  EXPECT_FALSE(least_squares(std::vector{one, one}, kSquaresHuber));
 }
 
 TEST(LeastSquares, ACameraThatTheJointIsBehindIsNotBelieved) {
   RayDraw draw(8, kSigma);
   auto views = rays_of(3, draw);
   views.push_back(draw({1, 1, 0.2}, {2, 1, 1}));
-  const auto found = least_squares(views, kHuber);
+  const auto found = least_squares(views, kSquaresHuber);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->trust[3], 0.0);
   EXPECT_LT((found->position - kPoint).norm(), 0.05);
@@ -141,7 +141,7 @@ TEST(LeastSquares, ARayMendsTheDepthOfAPoint) {
   RayDraw exact(1, 0.0);
   JointView ray = exact({-3, 1, 0}, {0, 1, 0});
   ray.covariance = kSigma * kSigma * Eigen::Matrix3d::Identity();
-  const auto found = least_squares(std::vector{point, ray}, kHuber);
+  const auto found = least_squares(std::vector{point, ray}, kSquaresHuber);
   ASSERT_TRUE(found);
   EXPECT_LT(found->position.z(), 0.01);
   EXPECT_LT(found->covariance(2, 2), 5e-4);
@@ -151,8 +151,8 @@ TEST(LeastSquares, OfPointsAloneIsInverseVariance) {
   const std::vector views{point_view({0, 1, 0}, {1e-4, 1e-4, 9e-4}),
                           point_view({0.02, 1.01, 0}, {9e-4, 1e-4, 1e-4}),
                           point_view({0, 1, 0.03}, {4e-4, 4e-4, 4e-4})};
-  const auto found = least_squares(views, kHuber);
-  EXPECT_LT((found->position - inverse_variance(views, kHuber).joint.position).norm(), 1e-5);
+  const auto found = least_squares(views, kSquaresHuber);
+  EXPECT_LT((found->position - inverse_variance(views, kSquaresHuber).joint.position).norm(), 1e-5);
 }
 
 }  // namespace

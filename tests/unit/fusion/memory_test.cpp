@@ -14,8 +14,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-const std::vector<SensorId> kSensors{sensor(1), sensor(2)};
-constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
+const std::vector<SensorId> kMemorySensors{sensor(1), sensor(2)};
+constexpr Timestamp kMemoryStart = from_unix_ns(1'795'246'200'000'000'000);
 
 /// A person that is fused instant by instant.
 class Seen {
@@ -23,7 +23,8 @@ class Seen {
   explicit Seen(Method method) { config_.method = method; }
 
   FusedBody at(Duration after, std::vector<SensorView> views) {
-    return memory_.fuse({{PersonId{1}, std::move(views)}}, {kStart + after, kSensors}, config_)[0];
+    return memory_.fuse({{PersonId{1}, std::move(views)}}, {kMemoryStart + after, kMemorySensors},
+                        config_)[0];
   }
   double neck_x(Duration after, std::vector<SensorView> views) {
     return at(after, std::move(views)).skeleton[JointId::Neck].position.x();
@@ -113,12 +114,12 @@ TEST(FusionMemory, PeopleWhoLeftAndAnotherConfigurationBeginAnew) {
 TEST(FusionMemory, ABodyIsAsSureOfItsSidesAsThePerson) {
   Memory memory;
   Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5)}};
-  EXPECT_FALSE(memory.fuse({person}, {kStart, kSensors}, {})[0].sides_confidence);
+  EXPECT_FALSE(memory.fuse({person}, {kMemoryStart, kMemorySensors}, {})[0].sides_confidence);
   person.sides_confidence = 0.75;
-  EXPECT_EQ(memory.fuse({person}, {kStart, kSensors}, {})[0].sides_confidence, 0.75);
+  EXPECT_EQ(memory.fuse({person}, {kMemoryStart, kMemorySensors}, {})[0].sides_confidence, 0.75);
 }
 
-/// Somebody whom nobody sees, expected at x.
+/// Somebody whom no sensor sees, expected at x.
 Person expected_at(double x) {
   Person person{PersonId{1}, {}};
   person.carried = Eigen::Vector3d(x, 1, 0);
@@ -130,7 +131,8 @@ TEST(FusionMemory, CarriesSomebodyWhomNobodySees) {
   const FusedBody last = seen.at(milliseconds(0), {neck_view(1, {0, 1, 0}, 0.5)});
   EXPECT_FALSE(last.carried_for);
   const auto after = [&](Duration time) {
-    return seen.memory_.fuse({expected_at(0.3)}, {kStart + time, kSensors}, seen.config_)[0];
+    return seen.memory_.fuse({expected_at(0.3)}, {kMemoryStart + time, kMemorySensors},
+                             seen.config_)[0];
   };
   const FusedBody body = after(milliseconds(300));
   EXPECT_NEAR(body.carried_for.value(), 0.3, 1e-9);
@@ -148,8 +150,8 @@ TEST(FusionMemory, ABodyWithoutJointsIsNotWhatIsCarried) {
   SensorView nothing = neck_view(1, {0, 1, 0}, 0.5);
   for (Joint& joint : nothing.skeleton.joints) joint = {};
   (void)seen.at(milliseconds(200), {nothing});
-  const FusedBody body = seen.memory_.fuse({expected_at(0.3)},
-                                           {kStart + milliseconds(300), kSensors}, seen.config_)[0];
+  const FusedBody body = seen.memory_.fuse(
+      {expected_at(0.3)}, {kMemoryStart + milliseconds(300), kMemorySensors}, seen.config_)[0];
   EXPECT_TRUE(body.skeleton[JointId::Neck].seen());
   EXPECT_NEAR(body.carried_for.value(), 0.3, 1e-9) << "since there was a place";
 }
@@ -158,8 +160,8 @@ TEST(FusionMemory, LeavesItToAMethodThatPredicts) {
   Seen seen(Method::OttoKalman);
   for (int i = 0; i < 30; ++i)
     (void)seen.at(milliseconds(33 * i), {neck_view(1, {0.033 * i, 1, 0}, 0.5)});
-  const auto bodies = seen.memory_.fuse({expected_at(5.0)},
-                                        {kStart + milliseconds(33 * 32), kSensors}, seen.config_);
+  const auto bodies = seen.memory_.fuse(
+      {expected_at(5.0)}, {kMemoryStart + milliseconds(33 * 32), kMemorySensors}, seen.config_);
   EXPECT_TRUE(bodies[0].carried_for);
   EXPECT_NEAR(bodies[0].skeleton[JointId::Neck].position.x(), 1.05, 0.05);
 }

@@ -1,4 +1,4 @@
-// How large misfits are, from those that were found.
+// The size of misfits, estimated from those found so far.
 #include "fusion-server/fusion/misfit_size.h"
 
 #include <gtest/gtest.h>

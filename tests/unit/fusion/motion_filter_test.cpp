@@ -11,20 +11,21 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr Timestamp kMotionStart = from_unix_ns(1'790'000'000'000'000'000);
 constexpr MotionFilter::Densities kDensities{0.001, 10.0};
-constexpr double kSigma = 0.01;     // [m]
-constexpr double kStep = 1.0 / 30;  // [s]
+constexpr double kMotionSigma = 0.01;     // [m]
+constexpr double kMotionStep = 1.0 / 30;  // [s]
 
-Timestamp at_step(int i) { return kStart + from_seconds(kStep * i); }
+Timestamp at_motion_step(int i) { return kMotionStart + from_seconds(kMotionStep * i); }
 
 /// At rest for a second; then away at a constant speed [m/s].
-double place(int i, double speed) { return i < 30 ? 0.0 : speed * kStep * (i - 30); }
+double place(int i, double speed) { return i < 30 ? 0.0 : speed * kMotionStep * (i - 30); }
 
-/// Over many draws, at each of 60 steps.
+/// Errors at each of 60 steps, over many draws.
 struct Errors {
-  std::vector<double> squared = std::vector<double>(60, 0.0);   ///< Mean, per axis [m^2].
-  std::vector<double> variance = std::vector<double>(60, 0.0);  ///< Mean stated one.
+  /// Mean squared error per axis [m^2].
+  std::vector<double> squared = std::vector<double>(60, 0.0);
+  std::vector<double> variance = std::vector<double>(60, 0.0);  ///< Mean stated variance [m^2].
 };
 
 template <class Filter, class Variance>
@@ -32,15 +33,15 @@ Errors errors_of(const Filter& fresh, double speed, const Variance& variance) {
   constexpr int kDraws = 400;
   Errors errors;
   std::mt19937 random(11);
-  std::normal_distribution<double> noise(0.0, kSigma);
+  std::normal_distribution<double> noise(0.0, kMotionSigma);
   for (int draw = 0; draw < kDraws; ++draw) {
     Filter filter = fresh;
     for (int i = 0; i < 60; ++i) {
       const Eigen::Vector3d truth(place(i, speed), 0, 0);
       const Eigen::Vector3d seen =
           truth + Eigen::Vector3d(noise(random), noise(random), noise(random));
-      filter.update(at_step(i), seen, kSigma * kSigma);
-      const auto [position, stated] = variance(filter, at_step(i));
+      filter.update(at_motion_step(i), seen, kMotionSigma * kMotionSigma);
+      const auto [position, stated] = variance(filter, at_motion_step(i));
       errors.squared[i] += (position - truth).squaredNorm() / 3 / kDraws;
       errors.variance[i] += stated / kDraws;
     }
@@ -111,11 +112,11 @@ TEST(MotionFilter, IsTheSingleFilterWhereBothDensitiesAreEqual) {
 
 TEST(MotionFilter, AnUnseenPointSlowsDownAndIsLessAndLessSure) {
   MotionFilter filter(kDensities);
-  EXPECT_FALSE(filter.at(kStart));
-  for (int i = 0; i < 60; ++i) filter.update(at_step(i), {0.05 * i, 0, 0}, 1e-6);  // 1.5 m/s
-  const auto seen = filter.at(at_step(59)).value();
-  const auto soon = filter.at(at_step(62)).value();
-  const auto late = filter.at(at_step(59 + 90)).value();
+  EXPECT_FALSE(filter.at(kMotionStart));
+  for (int i = 0; i < 60; ++i) filter.update(at_motion_step(i), {0.05 * i, 0, 0}, 1e-6);  // 1.5 m/s
+  const auto seen = filter.at(at_motion_step(59)).value();
+  const auto soon = filter.at(at_motion_step(62)).value();
+  const auto late = filter.at(at_motion_step(59 + 90)).value();
   EXPECT_NEAR(seen.velocity.x(), 1.5, 0.05);
   EXPECT_NEAR(soon.position.x(), 0.05 * 62, 0.03);
   EXPECT_NEAR(late.position.x() - seen.position.x(), 1.5 * 0.4, 0.05);  // the time constant

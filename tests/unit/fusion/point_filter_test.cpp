@@ -8,12 +8,12 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
-constexpr double kDensity = 4.0;    // [m^2 / s^3]
-constexpr double kSigma = 0.02;     // [m]
-constexpr double kStep = 1.0 / 30;  // [s]
+constexpr Timestamp kPointStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr double kDensity = 4.0;      // [m^2 / s^3]
+constexpr double kPointSigma = 0.02;  // [m]
+constexpr double kStep = 1.0 / 30;    // [s]
 
-Timestamp at_step(int i) { return kStart + from_seconds(kStep * i); }
+Timestamp at_step(int i) { return kPointStart + from_seconds(kStep * i); }
 
 /// A point driven by white acceleration, as the filter assumes.
 struct Wanderer {
@@ -46,7 +46,8 @@ TEST(PointFilter, StatesTheVarianceThatItsErrorsHave) {
     const double variance = filter.variance_at(at_step(i));
     const auto predicted = filter.at(at_step(i));
     if (predicted && i > 30) ahead += (*predicted - point.position).squaredNorm() / variance;
-    filter.update(at_step(i), point.position + kSigma * point.normal(), kSigma * kSigma);
+    filter.update(at_step(i), point.position + kPointSigma * point.normal(),
+                  kPointSigma * kPointSigma);
     if (i > 30)
       now += (*filter.at(at_step(i)) - point.position).squaredNorm() / filter.position_variance();
     point.go();
@@ -67,8 +68,8 @@ TEST(PointFilter, GoesOnWithTheSpeedThatItSaw) {
 
 TEST(PointFilter, StartsAnewAfterALongAbsence) {
   PointFilter filter(kDensity);
-  EXPECT_FALSE(filter.at(kStart));
-  EXPECT_EQ(filter.variance_at(kStart), 0.0);
+  EXPECT_FALSE(filter.at(kPointStart));
+  EXPECT_EQ(filter.variance_at(kPointStart), 0.0);
   for (int i = 0; i < 30; ++i) filter.update(at_step(i), {0.1 * i, 0, 0}, 1e-4);
   const Timestamp later = at_step(29) + PointFilter::kForgotten + std::chrono::milliseconds(1);
   filter.update(later, {0, 2, 0}, 1e-4);

@@ -1,4 +1,4 @@
-// The method that takes points and rays, with its memory.
+// Method::PointsAndRays, including what it remembers between instants.
 #include "fusion-server/fusion/points_and_rays.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3)};
-constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
+const std::vector<SensorId> kRaySensors{sensor(1), sensor(2), sensor(3)};
+constexpr Timestamp kRayStart = from_unix_ns(1'795'246'200'000'000'000);
 constexpr std::size_t kNeck = index_of(JointId::Neck);
 
 SensorView ray_view(int number, const Eigen::Vector3d& neck) {
@@ -28,7 +28,8 @@ struct Cell {
   Cell() { config.method = Method::PointsAndRays; }
 
   FusedBody at(Duration after, std::vector<SensorView> views) {
-    return memory.fuse({{PersonId{1}, std::move(views)}}, {kStart + after, kSensors}, config)[0];
+    return memory.fuse({{PersonId{1}, std::move(views)}}, {kRayStart + after, kRaySensors},
+                       config)[0];
   }
 
   FusionConfig config;

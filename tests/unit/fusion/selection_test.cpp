@@ -1,4 +1,4 @@
-// The methods that trust one view at a time.
+// The methods that use one view at a time.
 #include "fusion-server/fusion/selection.h"
 
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 
 using enum JointId;
 
-const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3)};
+const std::vector<SensorId> kSelectionSensors{sensor(1), sensor(2), sensor(3)};
 
 /// A view that tracks the first `count` joints, all of them at x, of a body turned by `facing`.
 SensorView view_of(int number, std::size_t count, double facing, double x = 0.0) {
@@ -30,7 +30,7 @@ SensorView view_of(int number, std::size_t count, double facing, double x = 0.0)
 FusedBody fused(Method method, std::vector<SensorView> views) {
   FusionConfig config;
   config.method = method;
-  return fuse({PersonId{1}, std::move(views)}, kSensors, config);
+  return fuse({PersonId{1}, std::move(views)}, kSelectionSensors, config);
 }
 
 double x_of(const FusedBody& body, JointId joint) { return body.skeleton[joint].position.x(); }
@@ -45,7 +45,7 @@ TEST(ViewScore, IsTheTrackedSharePlusHowSquarelyTheBodyFacesTheSensor) {
 TEST(JointCounting, TakesTheMostTrackedJointsWhateverTheFacing) {
   const auto body = fused(Method::JointCounting, {view_of(1, 20, 0, 1), view_of(2, 21, deg(180), 2),
                                                   view_of(3, 21, 0, 3)});
-  EXPECT_EQ(x_of(body, Neck), 2);  // of two equals, the one with the lower id
+  EXPECT_EQ(x_of(body, Neck), 2);  // of two equal ones, the one with the lower id
   EXPECT_EQ(body.contributors[index_of(Neck)], 2u);
   EXPECT_FALSE(fused(Method::JointCounting, {}).skeleton[Neck].seen());
 }

@@ -16,7 +16,7 @@ using testing::IsometryNear;
 
 using Points = std::vector<Eigen::Vector3d>;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFitNaN = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::Isometry3d random_pose(std::mt19937& random) {
   std::normal_distribution<double> normal;
@@ -139,9 +139,9 @@ TEST(RigidFit, RefusesWhatDeterminesNothing) {
   EXPECT_THAT(fit_rigid(line, line), refused);
   const Points one(5, Eigen::Vector3d(1, 2, 3));
   EXPECT_THAT(fit_rigid(one, one), refused);
-  EXPECT_THAT(fit_rigid(Points{{0, 0, 0}, {1, kNaN, 0}, {0, 1, 0}}, triangle), refused);
+  EXPECT_THAT(fit_rigid(Points{{0, 0, 0}, {1, kFitNaN, 0}, {0, 1, 0}}, triangle), refused);
   EXPECT_THAT(fit_rigid(triangle, triangle, std::vector<double>{0, 0, 0}), refused);
-  EXPECT_THAT(fit_rigid(triangle, triangle, std::vector<double>{1, kNaN, 1}), refused);
+  EXPECT_THAT(fit_rigid(triangle, triangle, std::vector<double>{1, kFitNaN, 1}), refused);
   EXPECT_THAT(fit_rigid(triangle, triangle, std::vector<double>{1, 1}), refused);
 }
 

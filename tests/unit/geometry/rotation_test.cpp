@@ -1,4 +1,4 @@
-// The laws of the rotation group; and no input breaks a function, as the header promises.
+// The laws of the rotation group, and the header's promise that every input is accepted.
 #include "common/geometry/rotation.h"
 
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 using testing::RotationNear;
 using testing::VectorNear;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kRotationNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kDraws = 300;
 constexpr double kExact = 1e-7;  // formulas without acos: close to double precision
@@ -31,9 +31,10 @@ Eigen::Quaterniond negated(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond(-q.w(), -q.x(), -q.y(), -q.z());
 }
 
-const std::array kNoRotations{Eigen::Quaterniond(0, 0, 0, 0), Eigen::Quaterniond(kNaN, 0, 0, 0),
-                              Eigen::Quaterniond(0, kInfinity, 0, 0),
-                              Eigen::Quaterniond(kNaN, kNaN, kNaN, kNaN)};
+const std::array kNoRotations{
+    Eigen::Quaterniond(0, 0, 0, 0), Eigen::Quaterniond(kRotationNaN, 0, 0, 0),
+    Eigen::Quaterniond(0, kInfinity, 0, 0),
+    Eigen::Quaterniond(kRotationNaN, kRotationNaN, kRotationNaN, kRotationNaN)};
 
 TEST(LogAndExp, AreInverse) {
   std::mt19937 random(1);
@@ -52,7 +53,7 @@ TEST(LogAndExp, HoldForTheTiniestAndTheLargestAngle) {
     EXPECT_GE(exp_map(omega).w(), 0.0);
   }
   EXPECT_NEAR(log_map(exp_map({0, std::numbers::pi, 0})).norm(), std::numbers::pi, kExact);
-  EXPECT_THAT(exp_map({kNaN, 0, 0}), RotationNear(Eigen::Quaterniond::Identity(), kExact));
+  EXPECT_THAT(exp_map({kRotationNaN, 0, 0}), RotationNear(Eigen::Quaterniond::Identity(), kExact));
   EXPECT_THAT(exp_map({kInfinity, 0, 0}), RotationNear(Eigen::Quaterniond::Identity(), kExact));
 }
 
@@ -113,7 +114,7 @@ TEST(WeightedLerp, OfTwoIsLerp) {
 TEST(WeightedLerp, SkipsWhatIsNoRotationOrHasNoWeight) {
   const auto good = about_y(1.0);
   const std::array turns{kNoRotations[0], good, kNoRotations[1], about_y(2.0), about_y(3.0)};
-  EXPECT_THAT(weighted_lerp(turns, std::array{9.0, 1.0, 9.0, 0.0, kNaN}),
+  EXPECT_THAT(weighted_lerp(turns, std::array{9.0, 1.0, 9.0, 0.0, kRotationNaN}),
               RotationNear(good, kExact));
   EXPECT_THAT(weighted_lerp(turns, std::array{1.0, -1.0, 1.0, 0.0, kInfinity}),
               RotationNear(Eigen::Quaterniond::Identity(), kExact));

@@ -5,8 +5,6 @@
 namespace chorus::http {
 namespace {
 
-using std::chrono::seconds;
-
 TEST(NoneMatch, ListsWeakTagsAndTheStar) {
   for (const auto list :
        {"\"a\"", "W/\"a\"", "\"b\", \"a\"", "\"x,y\",\"a\"", " * ", "*", "\"b\" , W/\"a\"  "})
@@ -16,10 +14,10 @@ TEST(NoneMatch, ListsWeakTagsAndTheStar) {
 }
 
 TEST(WaitPreference, FindsTheNumber) {
-  EXPECT_EQ(wait_preference("wait=10"), seconds(10));
-  EXPECT_EQ(wait_preference("respond-async, Wait = 5 ; foo=bar"), seconds(5));
-  EXPECT_EQ(wait_preference("wait=0"), seconds(0));
-  EXPECT_EQ(wait_preference("wait=99999999999"), seconds(86400));
+  EXPECT_EQ(wait_preference("wait=10"), std::chrono::seconds(10));
+  EXPECT_EQ(wait_preference("respond-async, Wait = 5 ; foo=bar"), std::chrono::seconds(5));
+  EXPECT_EQ(wait_preference("wait=0"), std::chrono::seconds(0));
+  EXPECT_EQ(wait_preference("wait=99999999999"), std::chrono::seconds(86400));
 }
 
 TEST(WaitPreference, AbsentOrNoNumber) {

@@ -9,10 +9,10 @@
 namespace chorus::http {
 namespace {
 
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 using namespace std::chrono_literals;
 
 constexpr std::string_view kGet = "GET /frame HTTP/1.1\r\nHost: localhost\r\n\r\n";
@@ -25,7 +25,7 @@ constexpr std::string_view kPost =
 
 /// Plays the shell: immediately carries out what the conversation orders, as far as the test
 /// permits.
-class ConversationTest : public testing::Test {
+class ConversationTest : public ::testing::Test {
  protected:
   ConversationTest() {
     config_.clock = std::make_shared<FakeClock>(from_unix_ns(1'700'000'000'000'000'000));

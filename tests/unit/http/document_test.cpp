@@ -10,8 +10,8 @@
 namespace chorus::http {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 Document frame(std::atomic<int>* renders = nullptr) {
   const auto written = [renders](std::string text) {

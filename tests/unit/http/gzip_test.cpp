@@ -6,7 +6,7 @@
 namespace chorus::http {
 namespace {
 
-/// What a gzip reader decodes from the bytes so far.
+/// What a gzip reader decodes from these bytes.
 std::string unpacked(const std::string& bytes) {
   z_stream stream{};
   EXPECT_EQ(inflateInit2(&stream, 16 + MAX_WBITS), Z_OK);
@@ -22,27 +22,27 @@ std::string unpacked(const std::string& bytes) {
   return out.substr(0, stream.total_out);
 }
 
-std::string frame() {
+std::string frame_text() {
   std::string text;
   for (int i = 0; i < 200; ++i) text += "\"Head\": {\"x\": " + std::to_string(i * 37 % 101) + "}, ";
   return text;
 }
 
 TEST(Gzip, IsReadBackAndSmaller) {
-  for (const std::string& text : {frame(), std::string(), std::string("x")}) {
+  for (const std::string& text : {frame_text(), std::string(), std::string("x")}) {
     EXPECT_EQ(unpacked(gzipped(text)), text);
     EXPECT_EQ(unpacked(gzipped(text)), text) << "the state is used again";
   }
-  EXPECT_LT(gzipped(frame()).size() * 4, frame().size());
+  EXPECT_LT(gzipped(frame_text()).size() * 4, frame().size());
 }
 
 TEST(Gzip, PiecesFollowEachOtherInAnyOrder) {
-  const std::string a = gzip_piece(frame());
+  const std::string a = gzip_piece(frame_text());
   const std::string b = gzip_piece("b\n");
   const std::string begin(gzip_begin());
-  EXPECT_EQ(unpacked(begin + a + b + a), frame() + "b\n" + frame());
+  EXPECT_EQ(unpacked(begin + a + b + a), frame_text() + "b\n" + frame());
   EXPECT_EQ(unpacked(begin + b + b), "b\nb\n");
-  EXPECT_EQ(unpacked(begin + a), frame()) << "whole as soon as it has come";
+  EXPECT_EQ(unpacked(begin + a), frame_text()) << "whole as soon as it has come";
 }
 
 TEST(CodingFor, TakesGzipWhereItIsAccepted) {

@@ -34,7 +34,7 @@ TEST(Problem, HeadKeepsTheLengthOfTheBody) {
   EXPECT_EQ(head.own, get.own);
   EXPECT_EQ(head.body, "");
   EXPECT_THAT(std::string(get.own),
-              testing::HasSubstr("Content-Length: " + std::to_string(get.body.size())));
+              ::testing::HasSubstr("Content-Length: " + std::to_string(get.body.size())));
 }
 
 TEST(Problem, UnavailableSaysWhenToAskAgain) {

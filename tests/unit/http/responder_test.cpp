@@ -1,5 +1,5 @@
-// Requests and reactions without a socket; the HTTP checklist is tested in
-// tests/integration/http/server_test.
+// Requests and reactions without a socket; tests/integration/http/server_test checks the same over
+// a socket.
 #include "common/http/responder.h"
 
 #include <gmock/gmock.h>
@@ -8,9 +8,9 @@
 namespace chorus::http {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-class ResponderTest : public testing::Test {
+class ResponderTest : public ::testing::Test {
  protected:
   ResponderTest() {
     auto router = std::make_shared<Router>();

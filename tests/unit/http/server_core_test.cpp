@@ -16,7 +16,7 @@ class Sleeper final : public Connection {
   int woken = 0;
 };
 
-class Waking : public testing::Test {
+class Waking : public ::testing::Test {
  protected:
   Waking() {
     auto router = std::make_shared<Router>();

@@ -5,10 +5,9 @@
 namespace chorus::http {
 namespace {
 
-using std::chrono::seconds;
 constexpr TokenTries::Time kStart{std::chrono::hours(1)};
 
-/// How many of `asked` wrong tries, evenly spread over `time`, were let through to a check.
+/// How many of `asked` wrong tokens, evenly spread over `time`, were checked.
 int looked_at(TokenTries& tries, int asked, std::chrono::milliseconds time) {
   int looked = 0;
   for (int i = 0; i < asked; ++i) {
@@ -24,12 +23,12 @@ TEST(TokenTries, TenAtOnceThenOneASecond) {
   TokenTries tries;
   EXPECT_EQ(looked_at(tries, 5000, std::chrono::milliseconds(1)), 10);
   TokenTries patient;
-  EXPECT_EQ(looked_at(patient, 60'000, seconds(60)), 10 + 59);
+  EXPECT_EQ(looked_at(patient, 60'000, std::chrono::seconds(60)), 10 + 59);
 }
 
 TEST(TokenTries, AMistakeNowAndThenIsNeverHeldUp) {
   TokenTries tries;
-  EXPECT_EQ(looked_at(tries, 100, seconds(100)), 100);
+  EXPECT_EQ(looked_at(tries, 100, std::chrono::seconds(100)), 100);
 }
 
 TEST(TokenTries, OneAddressDoesNotHoldUpAnother) {
@@ -37,7 +36,7 @@ TEST(TokenTries, OneAddressDoesNotHoldUpAnother) {
   looked_at(tries, 20, std::chrono::milliseconds(1));
   EXPECT_FALSE(tries.may_try("192.0.2.1", kStart));
   EXPECT_TRUE(tries.may_try("192.0.2.2", kStart));
-  EXPECT_TRUE(tries.may_try("192.0.2.1", kStart + seconds(2)));
+  EXPECT_TRUE(tries.may_try("192.0.2.1", kStart + std::chrono::seconds(2)));
 }
 
 TEST(TokenTries, ManyAddressesShareOneAccountInTheEnd) {

@@ -9,7 +9,6 @@ namespace {
 using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;

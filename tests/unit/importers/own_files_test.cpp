@@ -1,4 +1,5 @@
-// Plain files: what is documented comes in, what we write comes back, what is wrong is named.
+// Plain files: documented files are read, files that we write are read back, and mistakes are
+// named.
 #include "common/importers/own_files.h"
 
 #include <gmock/gmock.h>
@@ -49,7 +50,7 @@ TEST(JointCsv, PeopleOfOneInstantShareItsFrame) {
   ASSERT_THAT(read->frames, SizeIs(2));
   ASSERT_THAT(read->frames[0].bodies, SizeIs(2));
   EXPECT_EQ(read->frames[0].bodies[1].id, BodyId{9});
-  EXPECT_THAT(read->frames[1].bodies, SizeIs(0));  // joints without a place make no body
+  EXPECT_THAT(read->frames[1].bodies, SizeIs(0));  // joints without a position do not yield a body
 }
 
 TEST(JointCsv, NamesTheRowTheColumnAndWhatIsWrong) {

@@ -14,10 +14,10 @@ namespace {
 
 using enum JointId;
 
-constexpr Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
+constexpr Timestamp kColdBegin = from_unix_ns(1'795'000'000'000'000'000);
 
 Skeleton<WorldSpace> body_at(const synthetic::Person& person, double time) {
-  return person((kBegin + from_seconds(time)).time_since_epoch());
+  return person((kColdBegin + from_seconds(time)).time_since_epoch());
 }
 
 Eigen::Vector2d place_of(const Skeleton<WorldSpace>& body) {
@@ -34,7 +34,7 @@ synthetic::Person person_of(ColdStart start, std::uint64_t seed) {
   ColdScript script;
   script.start = start;
   script.seed = seed;
-  script.begin = kBegin;
+  script.begin = kColdBegin;
   return cold_starter(script);
 }
 

@@ -14,7 +14,7 @@ Eigen::Vector2d neck_at(const synthetic::Person& person, double time) {
   return {neck.x(), neck.z()};
 }
 
-/// Least distance between any two people during two minutes.
+/// Smallest distance between any two people during two minutes.
 double least_distance(const std::vector<synthetic::Person>& people) {
   double least = std::numeric_limits<double>::infinity();
   for (double time = 0; time < 120; time += 0.1) {

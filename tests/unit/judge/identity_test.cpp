@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Two people a metre apart for `count` instants, answered with ids 1 and 2.
+/// Two people a metre apart for `count` instants; the method reports them with ids 1 and 2.
 std::vector<Roll> two_people(int count) {
   std::vector<Roll> rolls;
   for (int i = 0; i < count; ++i) {

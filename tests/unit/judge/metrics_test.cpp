@@ -120,12 +120,12 @@ TEST(LabelErrors, AreInstantsThatFitBetterWithLeftAndRightExchanged) {
       std::swap(answers[i].body[left], answers[i].body[right]);
     }
   }
-  // Exchanges only one pair of joints.
+  // Swaps only one pair of joints.
   std::swap(answers[20].body[WristLeft], answers[20].body[WristRight]);
   EXPECT_NEAR(label_error_share(answers), 0.25, 1e-12);
 }
 
-/// A person who sways; each answer is the truth of `lag` seconds before.
+/// A person who sways; the method reports the truth of `lag` seconds before.
 Answers swaying(double lag) {
   Answers answers;
   for (int i = 0; i < 250; ++i) {

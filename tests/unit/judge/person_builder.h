@@ -1,4 +1,4 @@
-// Small hand-made people and answers for the tests of baselines and metrics.
+// Small hand-made people and reported bodies for the tests of baselines and metrics.
 #pragma once
 
 #include <chrono>
@@ -54,7 +54,7 @@ inline Skeleton<WorldSpace> standing(const Eigen::Vector3d& place) {
   return body;
 }
 
-/// `count` instants of a person who walks along +x at `speed` [m/s]; the answer is exact.
+/// `count` instants of a person who walks along +x at `speed` [m/s] and is reported exactly.
 inline Answers exact_walk(int count, double speed) {
   Answers answers;
   for (int i = 0; i < count; ++i) {

@@ -11,7 +11,7 @@
 namespace chorus::motion {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr std::string_view kTwoBones = R"(:version 1.10
 :units

@@ -12,7 +12,7 @@
 namespace chorus::motion {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr std::string_view kArm = R"(HIERARCHY
 ROOT Hips
@@ -35,7 +35,7 @@ Frame Time: 0.05
 50 100 0 90 90 0 0 0 0
 )";
 
-std::string replaced(std::string text, std::string_view from, std::string_view to) {
+std::string with_replaced(std::string text, std::string_view from, std::string_view to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -75,7 +75,7 @@ TEST(Bvh, RefusesBrokenFilesAndSaysWhere) {
       {"JOINT Arm", "LIMB Arm", "b:6", "unknown keyword"},
   };
   for (const auto& [from, to, line, why] : cases) {
-    const auto parsed = parse_bvh(replaced(std::string(kArm), from, to), "b");
+    const auto parsed = parse_bvh(with_replaced(std::string(kArm), from, to), "b");
     ASSERT_FALSE(parsed) << why;
     EXPECT_EQ(parsed.error().context, line) << parsed.error().message;
     EXPECT_THAT(parsed.error().message, HasSubstr(std::string(why)));
@@ -113,7 +113,7 @@ struct Dialect {
   double metres_per_unit;
 };
 
-class RealBvh : public testing::TestWithParam<Dialect> {};
+class RealBvh : public ::testing::TestWithParam<Dialect> {};
 
 TEST_P(RealBvh, LooksLikeAPerson) {
   const auto path = std::filesystem::path("../shared/data") / GetParam().path;
@@ -146,11 +146,11 @@ TEST_P(RealBvh, LooksLikeAPerson) {
 
 INSTANTIATE_TEST_SUITE_P(
     Dialects, RealBvh,
-    testing::Values(Dialect{"bvh_misc/tests/test_freebvh.bvh", 0.01},
-                    Dialect{"bvh_misc/tests/test_mocapbank.bvh", 0.01},
-                    Dialect{"bvh_misc/demos/data/AV_8Walk_Meredith_HVHA_Rep1.bvh", 0.0254},
-                    Dialect{"bandai_bvh/dataset-1_walk_normal_001.bvh", 0.01},
-                    Dialect{"xsens_mvnx_bvh/test_mocap.bvh", 0.01}));
+    ::testing::Values(Dialect{"bvh_misc/tests/test_freebvh.bvh", 0.01},
+                      Dialect{"bvh_misc/tests/test_mocapbank.bvh", 0.01},
+                      Dialect{"bvh_misc/demos/data/AV_8Walk_Meredith_HVHA_Rep1.bvh", 0.0254},
+                      Dialect{"bandai_bvh/dataset-1_walk_normal_001.bvh", 0.01},
+                      Dialect{"xsens_mvnx_bvh/test_mocap.bvh", 0.01}));
 
 }  // namespace
 }  // namespace chorus::motion

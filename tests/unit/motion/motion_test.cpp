@@ -16,7 +16,7 @@ Motion take(std::size_t index) {
   return motion_from_amc(cmu_walk().skeleton, cmu_walk().takes.at(index)).value();
 }
 
-class Walk : public testing::TestWithParam<std::size_t> {};
+class Walk : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Walk, BonesKeepTheirLength) {
   const Motion motion = take(GetParam());
@@ -73,7 +73,7 @@ TEST_P(Walk, NothingJumps) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Takes, Walk, testing::Values(0, 1));
+INSTANTIATE_TEST_SUITE_P(Takes, Walk, ::testing::Values(0, 1));
 
 TEST(Orientation, YPointsAlongTheBoneAndLeavesHaveNone) {
   const auto body = take(0).frames[50];

@@ -47,7 +47,7 @@ constexpr std::string_view kSuit = R"(<?xml version="1.0"?>
  </subject>
 </mvnx>)";
 
-std::string replaced(std::string_view from, std::string_view to) {
+std::string mvnx_with(std::string_view from, std::string_view to) {
   std::string text(kSuit);
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -94,22 +94,22 @@ TEST(Mvnx, SegmentsTurnJointsSoThatYLiesAlongTheBone) {
 
 TEST(MvnxHostile, LiesAreErrorsWithALine) {
   const auto wrong = [](const std::string& text) { return parse_mvnx(text, "suit.mvnx"); };
-  EXPECT_THAT(wrong(replaced("frameRate=\"60\"", "frameRate=\"0\"")),
+  EXPECT_THAT(wrong(mvnx_with("frameRate=\"60\"", "frameRate=\"0\"")),
               FailsWith(ErrorCode::Malformed));
-  EXPECT_THAT(wrong(replaced("0.1 0.2 0.9 ", "0.1 0.2 ")), FailsWith(ErrorCode::Malformed));
-  EXPECT_THAT(wrong(replaced("0.1 0.2 0.9 ", "0.1 nan 0.9 ")), FailsWith(ErrorCode::Malformed));
-  EXPECT_THAT(wrong(replaced("0.1 0.2 0.9 ", "0.1 1e9 0.9 ")), FailsWith(ErrorCode::Malformed));
-  EXPECT_THAT(wrong(replaced("<orientation>1 0 0 0 0.7", "<orientation>3 0 0 0 0.7")),
+  EXPECT_THAT(wrong(mvnx_with("0.1 0.2 0.9 ", "0.1 0.2 ")), FailsWith(ErrorCode::Malformed));
+  EXPECT_THAT(wrong(mvnx_with("0.1 0.2 0.9 ", "0.1 nan 0.9 ")), FailsWith(ErrorCode::Malformed));
+  EXPECT_THAT(wrong(mvnx_with("0.1 0.2 0.9 ", "0.1 1e9 0.9 ")), FailsWith(ErrorCode::Malformed));
+  EXPECT_THAT(wrong(mvnx_with("<orientation>1 0 0 0 0.7", "<orientation>3 0 0 0 0.7")),
               FailsWith(ErrorCode::Malformed));
-  EXPECT_THAT(wrong(replaced("<segment label=\"LeftForeArm\" id=\"3\"><points/></segment>", "")),
+  EXPECT_THAT(wrong(mvnx_with("<segment label=\"LeftForeArm\" id=\"3\"><points/></segment>", "")),
               FailsWith(ErrorCode::Malformed));
-  EXPECT_THAT(wrong(replaced("<sensors>", "<subject frameRate=\"1\"/><sensors>")),
+  EXPECT_THAT(wrong(mvnx_with("<sensors>", "<subject frameRate=\"1\"/><sensors>")),
               FailsWith(ErrorCode::Unsupported));
-  EXPECT_THAT(wrong(replaced("</mvnx>", "")), FailsWith(ErrorCode::Malformed));
+  EXPECT_THAT(wrong(mvnx_with("</mvnx>", "")), FailsWith(ErrorCode::Malformed));
   EXPECT_THAT(wrong("<mvnx/>"), FailsWith(ErrorCode::Malformed));
   EXPECT_THAT(wrong(""), FailsWith(ErrorCode::Malformed));
-  EXPECT_THAT(to_string(wrong(replaced("0.1 0.2 0.9 ", "x ")).error()), HasSubstr("suit.mvnx:15"));
-  EXPECT_THAT(motion_from_mvnx(parse_mvnx(replaced("\"Pelvis\" id", "\"Pelvi\" id"), "x").value()),
+  EXPECT_THAT(to_string(wrong(mvnx_with("0.1 0.2 0.9 ", "x ")).error()), HasSubstr("suit.mvnx:15"));
+  EXPECT_THAT(motion_from_mvnx(parse_mvnx(mvnx_with("\"Pelvis\" id", "\"Pelvi\" id"), "x").value()),
               FailsWith(ErrorCode::Unsupported));
 }
 

@@ -33,7 +33,7 @@ std::string captured(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The message number of a reply, its first 16 bits; -1: there is no answer.
+/// The message number of a reply, which is its first 16 bits; -1 if there is none.
 int message_in(const Reply& reply) {
   return reply.bytes.empty() ? -1 : NatNetReader(reply.bytes).one<std::uint16_t>();
 }

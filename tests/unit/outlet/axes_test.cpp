@@ -14,13 +14,13 @@ using testing::VectorNear;
 
 const Eigen::Vector3d kPlace(1.0, 2.0, 3.0);
 
-Eigen::Quaterniond turn(double degrees, const Eigen::Vector3d& axis) {
+Eigen::Quaterniond turned_by(double degrees, const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(deg(degrees), axis));
 }
 
 Eigen::Quaterniond asymmetric() {
-  return turn(20, Eigen::Vector3d::UnitX()) * turn(40, Eigen::Vector3d::UnitY()) *
-         turn(-70, Eigen::Vector3d::UnitZ());
+  return turned_by(20, Eigen::Vector3d::UnitX()) * turned_by(40, Eigen::Vector3d::UnitY()) *
+         turned_by(-70, Eigen::Vector3d::UnitZ());
 }
 
 TEST(Axes, PositionsGoWhereTheFormatsSay) {
@@ -52,14 +52,16 @@ TEST(Axes, XsensPermutesTheVectorPart) {
 }
 
 TEST(Axes, AYawTurnsAboutTheUpAxisOfEveryTarget) {
-  const Eigen::Quaterniond yaw = turn(30, Eigen::Vector3d::UnitY());
-  EXPECT_LT(angular_distance(dtrack_axes().quaternion(yaw), turn(30, Eigen::Vector3d::UnitZ())),
-            1e-9);
-  EXPECT_LT(angular_distance(xsens_axes().quaternion(yaw), turn(30, Eigen::Vector3d::UnitZ())),
+  const Eigen::Quaterniond yaw = turned_by(30, Eigen::Vector3d::UnitY());
+  EXPECT_LT(
+      angular_distance(dtrack_axes().quaternion(yaw), turned_by(30, Eigen::Vector3d::UnitZ())),
+      1e-9);
+  EXPECT_LT(angular_distance(xsens_axes().quaternion(yaw), turned_by(30, Eigen::Vector3d::UnitZ())),
             1e-9);
   // Left-handed: the same rotation has the opposite sign.
-  EXPECT_LT(angular_distance(unity_axes().quaternion(yaw), turn(-30, Eigen::Vector3d::UnitY())),
-            1e-9);
+  EXPECT_LT(
+      angular_distance(unity_axes().quaternion(yaw), turned_by(-30, Eigen::Vector3d::UnitY())),
+      1e-9);
 }
 
 TEST(Axes, APointOfTheJointLandsWhereItsPoseSays) {
@@ -74,7 +76,7 @@ TEST(Axes, APointOfTheJointLandsWhereItsPoseSays) {
 }
 
 TEST(Axes, QuaternionsHaveNonNegativeW) {
-  const Eigen::Quaterniond q = turn(300, Eigen::Vector3d(1, 2, 3).normalized());
+  const Eigen::Quaterniond q = turned_by(300, Eigen::Vector3d(1, 2, 3).normalized());
   EXPECT_GE(unity_axes().quaternion(q).w(), 0.0);
   EXPECT_GE(vrpn_axes().quaternion(Eigen::Quaterniond(-q.w(), -q.x(), -q.y(), -q.z())).w(), 0.0);
 }
@@ -100,13 +102,21 @@ const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
 INSTANTIATE_TEST_SUITE_P(
     Protocols, EulerAngles,
     ::testing::Values(
-        Angles{"dtrack", dtrack_angles, {20, 40, -70}, turn(20, kX) * turn(40, kY) * turn(-70, kZ)},
-        Angles{"dtrack_gimbal", dtrack_angles, {20, 90, 0}, turn(20, kX) * turn(90, kY)},
+        Angles{"dtrack",
+               dtrack_angles,
+               {20, 40, -70},
+               turned_by(20, kX) * turned_by(40, kY) * turned_by(-70, kZ)},
+        Angles{"dtrack_gimbal", dtrack_angles, {20, 90, 0}, turned_by(20, kX) * turned_by(90, kY)},
+        Angles{"trackd",
+               trackd_angles,
+               {150, 40, -70},
+               turned_by(150, kY) * turned_by(40, kX) * turned_by(-70, kZ)},
         Angles{
-            "trackd", trackd_angles, {150, 40, -70}, turn(150, kY) * turn(40, kX) * turn(-70, kZ)},
-        Angles{"trackd_gimbal", trackd_angles, {35, -90, 0}, turn(35, kY) * turn(-90, kX)},
-        Angles{
-            "unity", unity_angles, {40, 150, -70}, turn(150, kY) * turn(40, kX) * turn(-70, kZ)}),
+            "trackd_gimbal", trackd_angles, {35, -90, 0}, turned_by(35, kY) * turned_by(-90, kX)},
+        Angles{"unity",
+               unity_angles,
+               {40, 150, -70},
+               turned_by(150, kY) * turned_by(40, kX) * turned_by(-70, kZ)}),
     [](const auto& each) { return each.param.name; });
 
 }  // namespace

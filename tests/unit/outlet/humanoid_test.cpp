@@ -1,4 +1,5 @@
-// Bone rotations from joint positions: the T-pose gives identities, known turns known rotations.
+// Bone rotations from joint positions: the T-pose yields identities, and known turns yield known
+// rotations.
 #include "fusion-server/outlet/humanoid.h"
 
 #include <gtest/gtest.h>

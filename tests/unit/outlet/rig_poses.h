@@ -89,7 +89,7 @@ inline void move(outlet::TrackerBody& body, const Eigen::Vector3d& by, double ya
 }
 
 /// Left arm down with the forearm raised forwards, right arm forwards, left leg forwards, the upper
-/// body bent and twisted, all of it elsewhere: no two axes look alike.
+/// body bent and twisted, the whole body moved: no two axes look alike.
 inline outlet::TrackerBody asymmetric_pose() {
   using enum JointId;
   outlet::TrackerBody body = t_pose();

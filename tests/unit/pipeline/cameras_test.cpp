@@ -1,4 +1,4 @@
-// Cameras without depth in the whole pipeline: two to eight of them, known places, rays only.
+// Cameras without depth in the whole pipeline: two to eight of them, at known positions, rays only.
 #include <algorithm>
 #include <random>
 
@@ -15,7 +15,7 @@ using testing::kFrameInterval;
 using testing::kStart;
 
 /// Two people who walk on one circle, opposite each other.
-Skeleton<WorldSpace> walker(int person, double t) {
+Skeleton<WorldSpace> seen_walker(int person, double t) {
   const double angle = 0.8 * t + std::numbers::pi * person;
   return testing::standing_person({0.9 * std::sin(angle), 0, 0.9 * std::cos(angle)},
                                   angle + deg(90));
@@ -68,7 +68,7 @@ class Pipeline {
       std::vector<BodyFrame> bodies;
       for (int k = 0; k < (i < seeing ? cell_.people : 0); ++k) {
         BodyFrame body =
-            testing::body_seen_from(place_of(cell_, i), walker(k, seconds(instant - kStart)),
+            testing::body_seen_from(place_of(cell_, i), seen_walker(k, seconds(instant - kStart)),
                                     instant, static_cast<std::uint64_t>((k + i) % 2 + 1));
         make_rays(body.skeleton, cell_.noise, random_);
         bodies.push_back(std::move(body));
@@ -98,7 +98,7 @@ class Pipeline {
 double error_of(const FusedBody& body, const Snapshot& snapshot, int people) {
   double least = 1e9;
   for (int k = 0; k < people; ++k) {
-    const auto truth = walker(k, seconds(snapshot.instant - kStart));
+    const auto truth = seen_walker(k, seconds(snapshot.instant - kStart));
     double sum = 0.0;
     for (std::size_t j = 0; j < kJointCount; ++j)
       sum += (body.skeleton.joints[j].position - truth.joints[j].position).norm();

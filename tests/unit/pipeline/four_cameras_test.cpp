@@ -64,7 +64,7 @@ RegistrationConfig camera_registration() {
   config.min_spread = 0.0;
   config.max_edge_rms = 0.5;  // depth differs by decimetres
   config.max_speed = 10.0;    // depth jitters at 60 Hz
-  config.max_position = 1.5;  // as far as such cameras can tell
+  config.max_position = 1.5;  // as accurate as such cameras are
   return config;
 }
 
@@ -114,7 +114,7 @@ TEST(FourRealCameras, WithPublishedExtrinsicsFusionBeatsTheMeanAndEverySingleCam
   }
 }
 
-/// Directions only: no depth from perspective-n-point.
+/// Directions only, without depth from perspective-n-point.
 TEST(FourRealCameras, AsRaysFusionFindsTheTriangulationAndTwoCamerasAreEnough) {
   Recording recording = load(true);
   ASSERT_EQ(recording.tracks.size(), 4u);
@@ -140,7 +140,7 @@ TEST(FourRealCameras, RegisterFromThePersonAlone) {
   Registration found =
       registration::solve(recording.tracks, importers::kDefaultStart, camera_registration());
   EXPECT_EQ(found.verdict, Verdict::Provisional);
-  ASSERT_EQ(found.sensors.size(), 4u) << testing::PrintToString(found.reasons);
+  ASSERT_EQ(found.sensors.size(), 4u) << ::testing::PrintToString(found.reasons);
   const auto& published = recording.published.sensors;
   const Eigen::Isometry3d published_from_found =
       published.at(found.master).world_from_sensor *

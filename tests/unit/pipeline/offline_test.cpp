@@ -16,7 +16,7 @@ using registration::sensor;
 using registration::WalkSpec;
 using registration::WalkTrack;
 using registration::watch;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr int kSensors = 4;
 
@@ -113,7 +113,7 @@ TEST(FuseOffline, SameInputsSameBytes) {
   }
 }
 
-/// Recordings made by hosts without a common clock are brought in step by the walk, and fused so.
+/// Recordings from hosts without a common clock are synchronised by the walk and then fused.
 TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
   const auto in_step = walk({.noise = 0.005});
   auto tracks = in_step;
@@ -134,6 +134,21 @@ TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
   };
   EXPECT_EQ(fused->registration.clocks.size(), 4u);
   EXPECT_LT(error(*fused), error(*right) + mm(10));
+}
+
+/// Frames without bodies need memory, too: a recording that never gets on is given up.
+TEST(FuseOffline, ARecordingOfEmptyFramesThatStandsStillIsRefused) {
+  OfflineInput input;
+  SensorFrame empty;
+  empty.sensor = sensor(0);
+  empty.captured = from_unix_ns(1'790'000'000'000'000'000);
+  input.lanes.push_back(
+      {"still", [empty]() -> Result<std::optional<SensorFrame>> { return std::optional(empty); }});
+  input.sensors = {empty.sensor};
+  const auto done = fuse_recordings(std::move(input), published(), {},
+                                    [](const Snapshot&) -> Result<void> { return {}; });
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::TooLarge);
 }
 
 TEST(FuseOffline, AGapOfAYearIsSkippedNotCounted) {
@@ -162,7 +177,7 @@ TEST(FuseOffline, RefusesWhatCannotWork) {
   EXPECT_FALSE(fuse_offline({}, published(), {}));
   EXPECT_FALSE(fuse_offline({{sensor(1), {}}}, published(), {}));
   EXPECT_FALSE(fuse_offline({tracks[0], tracks[0]}, published(), {}));
-  for (const double rate : {0.0, -30.0, std::nan(""), 1e9}) {
+  for (const double rate : {0.0, -30.0, std::nan(""), 1e9, 1e-4, 1e-300}) {
     OfflineConfig config;
     config.rate_hz = rate;
     EXPECT_FALSE(fuse_offline(tracks, published(), config)) << rate;

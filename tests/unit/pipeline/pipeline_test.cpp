@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The people of ring.h are no bodies whose bones a filter could hold.
+/// The people of ring.h have no bones whose lengths a filter could use.
 PipelineConfig without_memory() {
   PipelineConfig config;
   config.fusion.method = fusion::Method::InverseVariance;

@@ -8,7 +8,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr Timestamp kSeatingStart = from_unix_ns(1'790'000'000'000'000'000);
 constexpr Duration kKeep = std::chrono::seconds(1);
 
 using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
@@ -18,7 +18,7 @@ struct Room {
   Slots at(Duration after, const std::vector<std::uint64_t>& persons) {
     std::vector<FusedBody> bodies(persons.size());
     for (std::size_t i = 0; i < persons.size(); ++i) bodies[i].id = {persons[i]};
-    seating.seat(bodies, kStart + after, keep, {front});
+    seating.seat(bodies, kSeatingStart + after, keep, {front});
     Slots slots;
     for (const FusedBody& body : bodies) slots.emplace_back(body.slot.value_or(99), body.id.value);
     std::sort(slots.begin(), slots.end());
@@ -75,7 +75,7 @@ TEST(Seating, IsKeptAsLongAsAskedToTheInstant) {
   room.at(milliseconds(0), {1});
   EXPECT_EQ(room.at(milliseconds(200), {2}), (Slots{{1, 2}}));
   EXPECT_EQ(room.at(milliseconds(201), {2}), (Slots{{0, 2}}));
-  // A clock that is set back by more than `keep` starts anew, as in association.
+  // If the clock is set back by more than `keep`, everything starts over, as in association.
   EXPECT_EQ(room.at(milliseconds(-100), {3}), (Slots{{0, 3}}));
 }
 

@@ -12,7 +12,7 @@ namespace {
 using testing::kStart;
 using testing::sensor_id;
 
-resource::FrameResource frame(const std::string& source) {
+resource::FrameResource answered_frame(const std::string& source) {
   const auto pose = testing::ring_sensor(0, 6);
   return resource::to_resource(testing::sensor_frame(
       source, kStart, {testing::body_seen_from(pose, testing::standing_person(), kStart)}));
@@ -38,12 +38,31 @@ std::string why(const FrameAnswer& read) {
   return unreadable == nullptr ? "" : to_string(unreadable->error);
 }
 
+TEST(ClockAnswer, SaysWhatTheHostSaysOfItsClock) {
+  const auto host = read_clock_answer(
+      answer(200, "application/json",
+             R"({"@type": "Clock", "nowNanoseconds": "1795246200250000000", "synchronised": true,
+                 "offsetNanoseconds": -1500, "maxErrorNanoseconds": 2000000,
+                 "estimatedErrorNanoseconds": "3000", "frequencyPpm": -12.5})"));
+  ASSERT_TRUE(host);
+  EXPECT_TRUE(host->synchronised);
+  EXPECT_EQ(host->offset, Duration(-1500));
+  EXPECT_EQ(host->max_error, std::chrono::milliseconds(2));
+  EXPECT_EQ(host->est_error, std::chrono::microseconds(3));
+}
+
+TEST(ClockAnswer, IsNothingWhenItIsNone) {
+  for (const char* text : {"", "[]", "{}", R"({"synchronised": "yes"})", "@prefix ch: <x> ."})
+    EXPECT_FALSE(read_clock_answer(answer(200, "application/json", text))) << text;
+  EXPECT_FALSE(read_clock_answer(answer(404, "application/json", R"({"synchronised": true})")));
+}
+
 TEST(FrameAnswer, IsAFrameInEveryFormatASensorWrites) {
   for (const auto format :
        {resource::Format::Turtle, resource::Format::Json, resource::Format::JsonLd}) {
     const auto type = std::string(media_type(format)) + "; charset=utf-8";
     const auto read =
-        read_frame_answer(answer(200, type, write(frame("s1"), format)), sensor_id("s1"));
+        read_frame_answer(answer(200, type, write(answered_frame("s1"), format)), sensor_id("s1"));
     ASSERT_NE(read.frame, nullptr) << type << why(read);
     const auto& event = std::get<FrameAnswered>(read.event);
     EXPECT_EQ(event.etag, "\"42-ttl\"");
@@ -68,7 +87,7 @@ TEST(FrameAnswer, RefusesWebPagesNonsenseAndStrangers) {
       why(read_frame_answer(answer(200, "text/turtle", std::string(20000, '[')), sensor_id("s1"))),
       "");
   EXPECT_EQ(
-      why(read_frame_answer(turtle(frame("s2")), sensor_id("s1"))),
+      why(read_frame_answer(turtle(answered_frame("s2")), sensor_id("s1"))),
       "frame: the service calls itself \"s2\", the config calls it \"s1\"; make both the same");
 }
 
@@ -81,10 +100,10 @@ TEST(FrameAnswer, ADocumentOfThousandsOfStrangersIsRefusedEarly) {
 
 TEST(FrameEvent, IsJsonOrTurtle) {
   for (const auto format : {resource::Format::Turtle, resource::Format::Json}) {
-    const auto read = read_frame_event(write(frame("s1"), format), sensor_id("s1"));
+    const auto read = read_frame_event(write(answered_frame("s1"), format), sensor_id("s1"));
     ASSERT_TRUE(read) << media_type(format);
     EXPECT_EQ((*read)->bodies.size(), 1u);
-    EXPECT_FALSE(read_frame_event(write(frame("s1"), format), sensor_id("s2")));
+    EXPECT_FALSE(read_frame_event(write(answered_frame("s1"), format), sensor_id("s2")));
   }
   EXPECT_FALSE(read_frame_event("", sensor_id("s1")));
 }
@@ -107,7 +126,7 @@ TEST(FrameAnswer, ARefusedContentTypeIsQuotedOnlyInPart) {
 }
 
 TEST(FrameAnswer, AFusionServerIsASensorWhateverItIsCalled) {
-  auto fused = frame("fusion");
+  auto fused = answered_frame("fusion");
   fused.space = resource::SpaceKind::World;
   fused.sensors = {"s1", "s2"};
   const auto read = read_frame_answer(turtle(fused), sensor_id("cell1"));
@@ -123,7 +142,7 @@ TEST(PlaceInTime, ShiftsCaptureTimesOfFrameAndBodiesAndAddsTheFloor) {
   const FloorPlane floor{Eigen::Vector3d::UnitY(), 1.2};
   const auto shift = std::chrono::milliseconds(-250);
   const ClockEstimate clock{shift, std::chrono::milliseconds(1)};
-  const auto placed = place_in_time(frame("s1"), sensor_id("s1"), kStart, clock, floor);
+  const auto placed = place_in_time(answered_frame("s1"), sensor_id("s1"), kStart, clock, floor);
   EXPECT_EQ(placed.captured, kStart + shift);
   ASSERT_EQ(placed.bodies.size(), 1u);
   EXPECT_EQ(placed.bodies[0].captured, kStart + shift);

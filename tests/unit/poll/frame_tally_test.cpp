@@ -11,10 +11,9 @@ namespace {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 
-SensorFrame frame(std::uint64_t sequence, Duration received) {
+SensorFrame tallied_frame(std::uint64_t sequence, Duration received) {
   SensorFrame f = testing::sensor_frame("s1", kStart + received - milliseconds(5), {});
   f.sequence = sequence;
   f.received = kStart + received;
@@ -23,10 +22,10 @@ SensorFrame frame(std::uint64_t sequence, Duration received) {
 
 TEST(FrameTally, CountsGapsAndWhatFillsThem) {
   FrameTally tally;
-  tally.note(frame(7, milliseconds(0)));
-  tally.note(frame(10, milliseconds(100)));
+  tally.note(tallied_frame(7, milliseconds(0)));
+  tally.note(tallied_frame(10, milliseconds(100)));
   EXPECT_EQ(tally.missed(), 2u);
-  tally.note_late(frame(8, milliseconds(150)));
+  tally.note_late(tallied_frame(8, milliseconds(150)));
   EXPECT_EQ(tally.missed(), 1u);
   EXPECT_EQ(tally.frames(), 3u);
   EXPECT_EQ(tally.newest(), kStart + milliseconds(95));
@@ -34,27 +33,28 @@ TEST(FrameTally, CountsGapsAndWhatFillsThem) {
 
 TEST(FrameTally, ARestartAndAnAbsurdSequenceAreNoGap) {
   FrameTally tally;
-  tally.note(frame(1'795'000'000'000, milliseconds(0)));
-  tally.note(frame(3, milliseconds(33)));
-  tally.note(frame(~std::uint64_t{0}, milliseconds(66)));
-  tally.note(frame(0, milliseconds(99)));
+  tally.note(tallied_frame(1'795'000'000'000, milliseconds(0)));
+  tally.note(tallied_frame(3, milliseconds(33)));
+  tally.note(tallied_frame(~std::uint64_t{0}, milliseconds(66)));
+  tally.note(tallied_frame(0, milliseconds(99)));
   EXPECT_EQ(tally.missed(), 0u);
 }
 
 TEST(FrameTally, TheRateIsOfArrivalsWhateverTheStampsSay) {
   FrameTally tally;
   for (int i = 0; i < 90; ++i) {
-    SensorFrame f = frame(static_cast<std::uint64_t>(i), milliseconds(i * 33));
+    SensorFrame f = tallied_frame(static_cast<std::uint64_t>(i), milliseconds(i * 33));
     f.captured = kStart + microseconds(i);  // a thousand per millisecond
     tally.note(f);
   }
   EXPECT_NEAR(tally.rate_hz(kStart + milliseconds(89 * 33)), 30.3, 1.0);
-  EXPECT_EQ(tally.rate_hz(kStart + seconds(5)), 0.0);
+  EXPECT_EQ(tally.rate_hz(kStart + std::chrono::seconds(5)), 0.0);
 }
 
 TEST(FrameTally, AFewAtOnceAreNoThousandASecond) {
   FrameTally tally;
-  for (int i = 0; i < 4; ++i) tally.note(frame(static_cast<std::uint64_t>(i), milliseconds(i)));
+  for (int i = 0; i < 4; ++i)
+    tally.note(tallied_frame(static_cast<std::uint64_t>(i), milliseconds(i)));
   EXPECT_LE(tally.rate_hz(kStart + milliseconds(4)), 8.0);
 }
 

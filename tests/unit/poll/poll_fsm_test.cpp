@@ -11,7 +11,6 @@ namespace chorus::poll {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 constexpr double kHalf = 0.0;
 
@@ -116,7 +115,7 @@ TEST(PollFsm, AFailureNeverFollowsWithoutAPauseHoweverManyThereAre) {
   for (int i = 0; i < 1000; ++i) {
     const Step step = fsm.resume(reset(), milliseconds(i), kHalf);
     EXPECT_GE(sleep_of(step), milliseconds(50));
-    EXPECT_LE(sleep_of(step), seconds(1));
+    EXPECT_LE(sleep_of(step), std::chrono::seconds(1));
   }
 }
 
@@ -129,7 +128,7 @@ TEST(PollFsm, AnUnreachableSensorIsConnectingAndALiveOneIsLost) {
   EXPECT_EQ(first.notice->reason, "127.0.0.1:8081: connection reset");
 
   PollFsm once = live(milliseconds(0));
-  const Step lost = once.resume(reset(), seconds(2), kFull);
+  const Step lost = once.resume(reset(), std::chrono::seconds(2), kFull);
   EXPECT_EQ(once.state(), SensorState::Lost);
   ASSERT_TRUE(lost.notice);
   EXPECT_EQ(lost.notice->event, "sensor lost");
@@ -169,24 +168,24 @@ TEST(PollFsm, AnUnreadableBodyIsRefusedAndItsTagForgotten) {
   PollFsm fsm = live(milliseconds(0));
   const Step step =
       fsm.resume(Unreadable{Error{ErrorCode::Malformed, "skeletons/7#Head", "x is not a number"}},
-                 seconds(1), kFull);
+                 std::chrono::seconds(1), kFull);
   EXPECT_FALSE(step.deliver);
   EXPECT_EQ(fsm.state(), SensorState::Refused);
   EXPECT_EQ(fsm.last_error(), "skeletons/7#Head: x is not a number");
-  EXPECT_EQ(send_of(fsm.resume(Woke{}, seconds(2), kFull)).etag, "");
-  const Step good = fsm.resume(frame(5, "\"5\""), seconds(3), kFull);
+  EXPECT_EQ(send_of(fsm.resume(Woke{}, std::chrono::seconds(2), kFull)).etag, "");
+  const Step good = fsm.resume(frame(5, "\"5\""), std::chrono::seconds(3), kFull);
   EXPECT_TRUE(good.deliver);
   EXPECT_EQ(fsm.state(), SensorState::Live);
 }
 
 TEST(PollFsm, TheFloorIsAskedForAgainLaterBetweenFrames) {
   PollFsm fsm = live(milliseconds(100));
-  const Step before = fsm.resume(frame(1, "\"2\""), seconds(9), kFull);
+  const Step before = fsm.resume(frame(1, "\"2\""), std::chrono::seconds(9), kFull);
   EXPECT_EQ(send_of(before).resource, Resource::Frame);
-  const Step due = fsm.resume(frame(2, "\"3\""), seconds(11), kFull);
+  const Step due = fsm.resume(frame(2, "\"3\""), std::chrono::seconds(11), kFull);
   EXPECT_TRUE(due.deliver);
   EXPECT_EQ(send_of(due).resource, Resource::FloorPlane);
-  const Step after = fsm.resume(FloorAnswered{}, seconds(11), kFull);
+  const Step after = fsm.resume(FloorAnswered{}, std::chrono::seconds(11), kFull);
   EXPECT_EQ(send_of(after).resource, Resource::Frame);
   EXPECT_EQ(send_of(after).etag, "\"3\"");
 }
@@ -194,8 +193,8 @@ TEST(PollFsm, TheFloorIsAskedForAgainLaterBetweenFrames) {
 TEST(PollFsm, AFloorThatNeverAnswersDoesNotKeepTheFramesAway) {
   PollFsm fsm;
   (void)fsm.resume(Started{}, milliseconds(0), kFull);
-  (void)fsm.resume(reset(), seconds(1), kFull);
-  EXPECT_EQ(send_of(fsm.resume(Woke{}, seconds(2), kFull)).resource, Resource::Frame);
+  (void)fsm.resume(reset(), std::chrono::seconds(1), kFull);
+  EXPECT_EQ(send_of(fsm.resume(Woke{}, std::chrono::seconds(2), kFull)).resource, Resource::Frame);
 }
 
 TEST(PollFsm, NoticesComeOnceAndAtMostOnceASecond) {
@@ -205,9 +204,10 @@ TEST(PollFsm, NoticesComeOnceAndAtMostOnceASecond) {
   const Step later = fsm.resume(reset(), milliseconds(1200), kFull);
   ASSERT_TRUE(later.notice);
   EXPECT_EQ(later.notice->event, "sensor lost");
-  EXPECT_FALSE(fsm.resume(reset(), seconds(10), kFull).notice);  // for the same reason as before
+  EXPECT_FALSE(fsm.resume(reset(), std::chrono::seconds(10), kFull)
+                   .notice);  // for the same reason as before
   const Error other{ErrorCode::Timeout, "127.0.0.1:8081", "no answer"};
-  const Step changed = fsm.resume(Failed{other}, seconds(20), kFull);
+  const Step changed = fsm.resume(Failed{other}, std::chrono::seconds(20), kFull);
   ASSERT_TRUE(changed.notice);
   EXPECT_EQ(changed.notice->reason, "127.0.0.1:8081: no answer");
 }
@@ -232,8 +232,8 @@ TEST(PollFsm, TheFloorIsAskedForOnBecomingLiveWhenItWasAskedInVain) {
 TEST(PollFsm, AFloorThatIsNotKnownYetIsAskedForAgainSoon) {
   PollFsm fsm = at_first_frame(milliseconds(0));
   (void)fsm.resume(frame(0, "\"1\""), milliseconds(20), kFull);
-  (void)fsm.resume(frame(33, "\"2\""), seconds(11), kFull);  // the floor plane is due
-  (void)fsm.resume(FloorAnswered{false}, seconds(11), kFull);
+  (void)fsm.resume(frame(33, "\"2\""), std::chrono::seconds(11), kFull);  // the floor plane is due
+  (void)fsm.resume(FloorAnswered{false}, std::chrono::seconds(11), kFull);
   EXPECT_EQ(send_of(fsm.resume(frame(66, "\"3\""), milliseconds(12100), kFull)).resource,
             Resource::FloorPlane);
 }
@@ -255,8 +255,8 @@ TEST(PollFsm, WhoCostsMuchReadingRests) {
   EXPECT_TRUE(step.deliver);
   EXPECT_EQ(sleep_of(step), milliseconds(300));
   (void)fsm.resume(Woke{}, milliseconds(333), kFull);
-  Unreadable junk{Error{ErrorCode::Malformed, "", "junk"}, seconds(3)};
-  EXPECT_EQ(sleep_of(fsm.resume(junk, milliseconds(340), kFull)), seconds(3));
+  Unreadable junk{Error{ErrorCode::Malformed, "", "junk"}, std::chrono::seconds(3)};
+  EXPECT_EQ(sleep_of(fsm.resume(junk, milliseconds(340), kFull)), std::chrono::seconds(3));
 }
 
 }  // namespace

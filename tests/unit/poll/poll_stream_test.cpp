@@ -9,7 +9,6 @@ namespace chorus::poll {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 StreamFrame streamed(std::uint64_t sequence, int ms, bool odd = false) {
   return {sequence, at_ms(ms), odd};
@@ -108,7 +107,7 @@ TEST(PollFsmStream, OneThatFallsSilentIsClosedForThePolling) {
   PollFsm fsm = streaming(milliseconds(0));
   Duration now = milliseconds(1);
   Step step{Sleep{milliseconds(99)}};
-  while (step.stream == StreamOrder::None && now < seconds(10)) {
+  while (step.stream == StreamOrder::None && now < std::chrono::seconds(10)) {
     if (std::holds_alternative<Sleep>(*step.action)) {
       now += sleep_of(step);
       step = fsm.resume(Woke{}, now, kFull);
@@ -164,7 +163,7 @@ TEST(PollFsmStream, ASensorThatTellsNoTimeIsHardlyAskedForIt) {
   (void)fsm.resume(Woke{}, milliseconds(150), kFull);
   Step step = fsm.resume(ClockAnswered{}, milliseconds(151), kFull);
   int asked = 0;
-  for (Duration now = milliseconds(151); now < seconds(5); now += milliseconds(33)) {
+  for (Duration now = milliseconds(151); now < std::chrono::seconds(5); now += milliseconds(33)) {
     (void)fsm.resume(streamed(3 + static_cast<std::uint64_t>(now.count()),
                               static_cast<int>(now / milliseconds(1))),
                      now, kFull);
@@ -188,38 +187,44 @@ PollFsm late_once(Duration now) {
 }
 
 TEST(PollFsmStream, TheNewestFrameIsAskedForBesideAStreamThatIsHeldUp) {
-  PollFsm fsm = late_once(seconds(1));
+  PollFsm fsm = late_once(std::chrono::seconds(1));
   EXPECT_FALSE(fsm.asking());
-  const Step asked = fsm.resume(Woke{}, seconds(1) + milliseconds(80), kFull);
+  const Step asked = fsm.resume(Woke{}, std::chrono::seconds(1) + milliseconds(80), kFull);
   EXPECT_EQ(send_of(asked).resource, Resource::Frame);
-  const Step newest = fsm.resume(frame(396, "\"13\""), seconds(1) + milliseconds(95), kFull);
+  const Step newest =
+      fsm.resume(frame(396, "\"13\""), std::chrono::seconds(1) + milliseconds(95), kFull);
   EXPECT_TRUE(newest.deliver);
   EXPECT_FALSE(newest.late);
   EXPECT_EQ(send_of(newest).etag, "\"13\"") << "and the one after it";
 }
 
 TEST(PollFsmStream, AServerThatIgnoresPreferIsNotAskedInCirclesBesideTheStream) {
-  PollFsm fsm = late_once(seconds(1));
-  (void)fsm.resume(Woke{}, seconds(1) + milliseconds(80), kFull);
-  const Step same = fsm.resume(frame(330, "\"11\""), seconds(1) + milliseconds(81), kFull);
+  PollFsm fsm = late_once(std::chrono::seconds(1));
+  (void)fsm.resume(Woke{}, std::chrono::seconds(1) + milliseconds(80), kFull);
+  const Step same =
+      fsm.resume(frame(330, "\"11\""), std::chrono::seconds(1) + milliseconds(81), kFull);
   EXPECT_FALSE(same.deliver);
   EXPECT_EQ(sleep_of(same), milliseconds(9)) << "the idle interval, from the request on";
-  const Step dead = fsm.resume(Woke{}, seconds(4), kFull);
+  const Step dead = fsm.resume(Woke{}, std::chrono::seconds(4), kFull);
   EXPECT_EQ(dead.stream, StreamOrder::Close) << "a stream this silent is given up";
 }
 
 TEST(PollFsmStream, WhatTheStreamBringsAfterItIsLateAndNothingComesTwice) {
-  PollFsm fsm = late_once(seconds(1));
-  (void)fsm.resume(Woke{}, seconds(1) + milliseconds(80), kFull);
-  (void)fsm.resume(frame(396, "\"13\""), seconds(1) + milliseconds(95), kFull);
-  const Step before = fsm.resume(streamed(12, 363), seconds(1) + milliseconds(200), kFull);
+  PollFsm fsm = late_once(std::chrono::seconds(1));
+  (void)fsm.resume(Woke{}, std::chrono::seconds(1) + milliseconds(80), kFull);
+  (void)fsm.resume(frame(396, "\"13\""), std::chrono::seconds(1) + milliseconds(95), kFull);
+  const Step before =
+      fsm.resume(streamed(12, 363), std::chrono::seconds(1) + milliseconds(200), kFull);
   EXPECT_TRUE(before.deliver);
   EXPECT_TRUE(before.late);
-  EXPECT_FALSE(fsm.resume(streamed(13, 396), seconds(1) + milliseconds(200), kFull).deliver);
-  const Step after = fsm.resume(streamed(14, 429), seconds(1) + milliseconds(201), kFull);
+  EXPECT_FALSE(
+      fsm.resume(streamed(13, 396), std::chrono::seconds(1) + milliseconds(200), kFull).deliver);
+  const Step after =
+      fsm.resume(streamed(14, 429), std::chrono::seconds(1) + milliseconds(201), kFull);
   EXPECT_TRUE(after.deliver);
   EXPECT_FALSE(after.late);
-  EXPECT_FALSE(fsm.resume(frame(429, "\"14\""), seconds(1) + milliseconds(202), kFull).deliver);
+  EXPECT_FALSE(
+      fsm.resume(frame(429, "\"14\""), std::chrono::seconds(1) + milliseconds(202), kFull).deliver);
 }
 
 TEST(PollFsmStream, NobodyIsAskedBesideAStreamThatIsNeverHeldUp) {

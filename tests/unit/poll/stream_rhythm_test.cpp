@@ -7,7 +7,6 @@ namespace chorus::poll {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 /// Delivers frames from 0 on at equal intervals; returns the time of the last one.
 Duration run(StreamRhythm& rhythm, milliseconds apart, int frames, Duration from = {}) {
@@ -17,7 +16,7 @@ Duration run(StreamRhythm& rhythm, milliseconds apart, int frames, Duration from
 
 TEST(StreamRhythm, NobodyLooksAtAStreamThatWasNeverLate) {
   StreamRhythm rhythm;
-  EXPECT_FALSE(rhythm.overdue_from(seconds(1)));
+  EXPECT_FALSE(rhythm.overdue_from(std::chrono::seconds(1)));
   const Duration last = run(rhythm, milliseconds(33), 100);
   EXPECT_FALSE(rhythm.overdue_from(last + milliseconds(50)));
 }
@@ -30,8 +29,8 @@ TEST(StreamRhythm, AfterAGapTheNextOneIsNoticed) {
   ASSERT_TRUE(overdue);
   EXPECT_GT(*overdue - gap, milliseconds(60));
   EXPECT_LT(*overdue - gap, milliseconds(80));
-  EXPECT_TRUE(rhythm.overdue_from(gap + seconds(59)));
-  EXPECT_FALSE(rhythm.overdue_from(gap + seconds(61))) << "it has been good since";
+  EXPECT_TRUE(rhythm.overdue_from(gap + std::chrono::seconds(59)));
+  EXPECT_FALSE(rhythm.overdue_from(gap + std::chrono::seconds(61))) << "it has been good since";
 }
 
 TEST(StreamRhythm, WhatWasHeldUpTogetherDoesNotMakeItFaster) {
@@ -64,7 +63,7 @@ TEST(StreamRhythm, ANewStreamIsOfAnotherSensorPerhaps) {
   rhythm.saw(run(rhythm, milliseconds(33), 50) + milliseconds(250));
   rhythm.restart();
   EXPECT_FALSE(rhythm.overdue_from(milliseconds(2000)));
-  const Duration last = run(rhythm, milliseconds(200), 5, seconds(3));
+  const Duration last = run(rhythm, milliseconds(200), 5, std::chrono::seconds(3));
   EXPECT_EQ(*rhythm.overdue_from(last), last + milliseconds(400));
 }
 

@@ -1,4 +1,4 @@
-// Which pusher holds the sensor, and what people are told about it.
+// Which pusher holds the sensor, and how that is reported.
 #include "services/sensor/device/bridge/push_desk.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,6 @@ namespace {
 using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using ::testing::HasSubstr;
 
 class Desk : public ::testing::Test {
@@ -36,9 +35,9 @@ class Desk : public ::testing::Test {
 TEST_F(Desk, OneProgramHoldsTheSensorWhileItPushes) {
   const auto first = sit("first");
   ASSERT_THAT(first, IsOk());
-  rig.pass(seconds(1));
+  rig.pass(std::chrono::seconds(1));
   ASSERT_THAT(push(*first, milliseconds(0)), IsOk());
-  rig.pass(seconds(1));
+  rig.pass(std::chrono::seconds(1));
   const auto second = sit("second");
   ASSERT_THAT(second, FailsWith(ErrorCode::Conflict));
   EXPECT_THAT(second.error().message, HasSubstr("\"first\" (WebSocket from 10.0.0.5)"));
@@ -71,7 +70,7 @@ TEST_F(Desk, TimeAdvancesOrWasSet) {
   ASSERT_THAT(again, FailsWith(ErrorCode::Conflict));
   EXPECT_EQ(again.error().context, "captured");
   EXPECT_THAT(push(*seat, milliseconds(99)), FailsWith(ErrorCode::Conflict));
-  EXPECT_THAT(push(*seat, -seconds(5)), IsOk()) << "a clock that was set";
+  EXPECT_THAT(push(*seat, -std::chrono::seconds(5)), IsOk()) << "a clock that was set";
 }
 
 TEST_F(Desk, TimeThatWasSetBackALittleIsBelievedTheSecondTime) {
@@ -114,7 +113,7 @@ TEST_F(Desk, SaysWhyNothingComes) {
   ASSERT_THAT(push(*seat, milliseconds(0)), IsOk());
   EXPECT_EQ(rig.desk->status().state, "live");
   EXPECT_EQ(rig.desk->status().reason, "");
-  rig.pass(seconds(7));
+  rig.pass(std::chrono::seconds(7));
   EXPECT_EQ(rig.desk->status().state, "silent");
   EXPECT_THAT(rig.desk->status().reason, HasSubstr("has pushed no frame for 7 s"));
   rig.desk->note_refusal(*seat, {ErrorCode::Malformed, "captured", "is missing"});

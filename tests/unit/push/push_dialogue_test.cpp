@@ -1,4 +1,4 @@
-// What a pusher is told, message by message.
+// What is sent to a pusher, message by message.
 #include "services/sensor/device/bridge/push_dialogue.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,6 @@ namespace {
 using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
@@ -63,7 +62,7 @@ TEST_F(Talk, AsksForTheTimeEightTimesAndThenOnceASecond) {
   }
   EXPECT_EQ(questions, 8);
   EXPECT_TRUE(talk->look().messages.empty());
-  rig.pass(seconds(1));
+  rig.pass(std::chrono::seconds(1));
   EXPECT_EQ(said(talk->look())["type"], "clock");
 }
 
@@ -91,9 +90,9 @@ TEST_F(Talk, EndsAfterTooManyErrorsInARow) {
 }
 
 TEST_F(Talk, EndsWithoutAHello) {
-  rig.pass(seconds(4));
+  rig.pass(std::chrono::seconds(4));
   EXPECT_FALSE(talk->look().over);
-  rig.pass(seconds(2));
+  rig.pass(std::chrono::seconds(2));
   const auto reply = talk->look();
   EXPECT_TRUE(reply.over);
   EXPECT_THAT(said(reply)["detail"], HasSubstr("hello"));
@@ -101,13 +100,13 @@ TEST_F(Talk, EndsWithoutAHello) {
 
 TEST_F(Talk, EndsWhenNothingComesAnyMore) {
   (void)talk->hear(kHello);
-  rig.pass(seconds(31));
+  rig.pass(std::chrono::seconds(31));
   EXPECT_TRUE(talk->look().over);
 }
 
 TEST_F(Talk, EndsWhenAnotherProgramTookThePlace) {
   (void)talk->hear(kHello);
-  rig.pass(seconds(3));
+  rig.pass(std::chrono::seconds(3));
   auto other = *open_dialogue(rig.desk, "local socket", "");
   EXPECT_EQ(said(other->hear(kHello))["type"], "welcome");
   const auto reply = talk->look();

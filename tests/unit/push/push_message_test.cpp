@@ -18,7 +18,7 @@ using chorus::testing::VectorNear;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-const Json kHello{{"type", "hello"}, {"name", "cam"}, {"layout", "coco_17"}};
+const Json kHelloMessage{{"type", "hello"}, {"name", "cam"}, {"layout", "coco_17"}};
 const std::string kTime = "1795246200250000000";
 
 Json with(Json message, const char* key, Json value) {
@@ -32,7 +32,7 @@ Hello hello_of(const Json& message) {
   return read ? std::get<Hello>(*read) : Hello{};
 }
 
-/// 17 landmarks, all null except the given ones.
+/// 17 landmarks, all null except those in `given`.
 Json landmarks(const std::map<std::size_t, Json>& given) {
   Json all = Json::array();
   for (std::size_t i = 0; i < 17; ++i) all.push_back(given.contains(i) ? given.at(i) : Json());
@@ -43,7 +43,7 @@ Json frame_of(const char* key, const Json& all) {
   return {{"type", "frame"}, {"captured", kTime}, {"bodies", {{{"id", 7}, {key, all}}}}};
 }
 
-Result<PushedFrame> read_frame(const Json& frame, const Json& hello = kHello) {
+Result<PushedFrame> read_frame(const Json& frame, const Json& hello = kHelloMessage) {
   const Hello known = hello_of(hello);
   return read_push_message(frame.dump(), &known).map([](PushMessage&& message) {
     return std::get<PushedFrame>(std::move(message));
@@ -55,7 +55,7 @@ const Joint& joint_of(const Result<PushedFrame>& frame, JointId id) {
 }
 
 void expect_refused(const Json& message, const std::string& context, const std::string& says,
-                    const Json& hello = kHello) {
+                    const Json& hello = kHelloMessage) {
   const Hello known = hello_of(hello);
   const auto read = read_push_message(message.dump(), &known);
   ASSERT_FALSE(read) << message;
@@ -108,25 +108,25 @@ TEST(Hello, MistakesAreNamed) {
     EXPECT_EQ(read.error().context, context) << hello;
     EXPECT_THAT(read.error().message, HasSubstr(says)) << hello;
   };
-  refused(with(kHello, "layout", "body_27"), "layout", "azure_kinect_32");
-  refused(with(kHello, "layout", 25), "layout", "string");
-  refused(with(kHello, "name", ""), "name", "1 to 64");
-  refused(with(kHello, "name", "caf\u00e9"), "name", "1 to 64");
-  refused(with(kHello, "name", std::string(65, 'x')), "name", "1 to 64");
-  refused(with(kHello, "version", 2), "version", "version 1");
-  refused(with(kHello, "axes", "x y z"), "axes", "right down ahead");
-  refused(with(kHello, "floor", {0, -1, 0, 1.5}), "floor", "pointing up");
-  refused(with(kHello, "floor", {0, 1, 0}), "floor", "4 numbers");
-  refused(with(kHello, "trackedFrom", 60), "trackedFrom", "0 to 1");
-  refused(with(kHello, "intrinsics", 900), "intrinsics", "fx");
+  refused(with(kHelloMessage, "layout", "body_27"), "layout", "azure_kinect_32");
+  refused(with(kHelloMessage, "layout", 25), "layout", "string");
+  refused(with(kHelloMessage, "name", ""), "name", "1 to 64");
+  refused(with(kHelloMessage, "name", "caf\u00e9"), "name", "1 to 64");
+  refused(with(kHelloMessage, "name", std::string(65, 'x')), "name", "1 to 64");
+  refused(with(kHelloMessage, "version", 2), "version", "version 1");
+  refused(with(kHelloMessage, "axes", "x y z"), "axes", "right down ahead");
+  refused(with(kHelloMessage, "floor", {0, -1, 0, 1.5}), "floor", "pointing up");
+  refused(with(kHelloMessage, "floor", {0, 1, 0}), "floor", "4 numbers");
+  refused(with(kHelloMessage, "trackedFrom", 60), "trackedFrom", "0 to 1");
+  refused(with(kHelloMessage, "intrinsics", 900), "intrinsics", "fx");
   const Json half{{"width", 640}, {"height", 480}, {"fx", 500}, {"cx", 320}, {"cy", 240}};
-  refused(with(kHello, "intrinsics", half), "intrinsics.fy", "missing");
-  refused(with(kHello, "intrinsics", with(with(half, "fy", 500), "distortion", {0.1})),
+  refused(with(kHelloMessage, "intrinsics", half), "intrinsics.fy", "missing");
+  refused(with(kHelloMessage, "intrinsics", with(with(half, "fy", 500), "distortion", {0.1})),
           "intrinsics.distortion", "5 numbers");
 }
 
 TEST(PushedFrame, BringsPointsIntoSensorSpace) {
-  const Json hello = with(kHello, "axes", "right down ahead");
+  const Json hello = with(kHelloMessage, "axes", "right down ahead");
   const auto frame = read_frame(
       frame_of("points", landmarks({{5, {0.2, -0.4, 2.5, 0.9}}, {6, {-0.2, -0.4, 2.5, 0.3}}})),
       hello);
@@ -150,7 +150,7 @@ TEST(PushedFrame, TakesStatesCovariancesAndNamesOfLandmarks) {
                      {"covariance", {0.01, 0.002, 0, 0.01, 0, 0.04}}}},
                    {"right_hip", nullptr}};
   const auto frame =
-      read_frame(frame_of("points", named), with(kHello, "axes", "right down ahead"));
+      read_frame(frame_of("points", named), with(kHelloMessage, "axes", "right down ahead"));
   ASSERT_THAT(frame, IsOk());
   const Joint& hip = joint_of(frame, JointId::HipLeft);
   EXPECT_EQ(hip.state, JointState::Inferred);
@@ -162,7 +162,7 @@ TEST(PushedFrame, TakesStatesCovariancesAndNamesOfLandmarks) {
 TEST(PushedFrame, PixelsBecomeRaysAndNothingInventsDepth) {
   const Json camera{{"width", 1280}, {"height", 720}, {"fx", 900},
                     {"fy", 900},     {"cx", 640},     {"cy", 360}};
-  const Json hello = with(with(kHello, "intrinsics", camera), "pixelSigma", 3);
+  const Json hello = with(with(kHelloMessage, "intrinsics", camera), "pixelSigma", 3);
   const auto frame =
       read_frame(frame_of("pixels", landmarks({{9, {640 + 900, 360, 0.8}},
                                                {10, {{"at", {640, 360 - 900}}, {"sigma", 9}}}})),
@@ -182,7 +182,7 @@ TEST(PushedFrame, PixelsBecomeRaysAndNothingInventsDepth) {
 TEST(PushedFrame, AnUncertainFocalLengthIsInEachRayAndNotLessInTheMeanOfTwo) {
   const Json camera{{"width", 1280}, {"height", 720}, {"fx", 900},
                     {"fy", 900},     {"cx", 640},     {"cy", 360}};
-  const Json sure = with(with(kHello, "intrinsics", camera), "pixelSigma", 3);
+  const Json sure = with(with(kHelloMessage, "intrinsics", camera), "pixelSigma", 3);
   const Json aside{640 + 900, 360, 0.8};
   const Json frame = frame_of("pixels", landmarks({{9, aside}, {11, aside}, {12, aside}}));
   const auto variance = [&](const Json& hello, JointId joint) {
@@ -258,7 +258,7 @@ TEST(ClockAnswer, HasThreeStamps) {
 }
 
 TEST(PushMessage, GarbageIsRefusedWithAReason) {
-  const Hello hello = hello_of(kHello);
+  const Hello hello = hello_of(kHelloMessage);
   for (const std::string garbage :
        {"", "x", "[]", "5", "null", "{\"type\":5}", "{\"type\":\"image\"}", "{\"type\":\"frame\"",
         "\xff\xfe", "{\"type\":\"frame\",\"type\":\"frame\"}", "GET /frame HTTP/1.1"}) {

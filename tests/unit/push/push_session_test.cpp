@@ -1,6 +1,8 @@
 // One pushing program: its clock, its rate, and what it must not do.
 #include "services/sensor/device/bridge/push_session.h"
 
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,10 +15,9 @@ namespace {
 using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using ::testing::HasSubstr;
 
-const std::string kHello = R"({"type":"hello","name":"cam","layout":"coco_17"})";
+const std::string kSessionHello = R"({"type":"hello","name":"cam","layout":"coco_17"})";
 
 std::string text(Timestamp t) { return "\"" + std::to_string(to_unix_ns(t)) + "\""; }
 
@@ -47,8 +48,28 @@ class Session : public ::testing::Test {
   PushSession session{rig.desk, "WebSocket", "127.0.0.1"};
 };
 
+TEST_F(Session, AShapeBesidePixelsMakesPoints) {
+  std::ifstream lines("proto/golden/bridge/world.jsonl");
+  std::string hello;
+  std::string frame;
+  ASSERT_TRUE(std::getline(lines, hello) && std::getline(lines, frame));
+  ASSERT_THAT(hear(hello), IsOk());
+  const std::string stamp = "\"1795246200250000000\"";
+  frame.replace(frame.find(stamp), stamp.size(), text(rig.clock->now()));
+  ASSERT_THAT(hear(frame), IsOk());
+  const auto captures = rig.desk->captures(Duration{0});
+  ASSERT_EQ(captures.size(), 1u);
+  const auto& bodies = captures[0].frame.bodies;
+  ASSERT_EQ(bodies.size(), 2u);
+  const Joint& hips = bodies[0].skeleton[JointId::SpineBase];
+  EXPECT_TRUE(hips.seen() && hips.covariance.known());
+  EXPECT_LT((hips.position - Eigen::Vector3d(-0.4, -0.1, 3.2)).norm(), 0.05);
+  EXPECT_TRUE(bodies[0].skeleton[JointId::WristRight].bears()) << "the shape lacks it";
+  EXPECT_TRUE(bodies[1].skeleton[JointId::Head].bears()) << "no shape";
+}
+
 TEST_F(Session, AWrongClockIsEstimatedAndTakenOff) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   const Duration ahead = std::chrono::hours(1);
   ASSERT_THAT(answer_clock(ahead), IsOk());
   const Timestamp when = rig.clock->now() - milliseconds(40);
@@ -59,15 +80,15 @@ TEST_F(Session, AWrongClockIsEstimatedAndTakenOff) {
 }
 
 TEST_F(Session, FramesBeforeTheFirstAnswerAreLeftOutForASecond) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   session.expect_clock();
   const Duration ahead = std::chrono::hours(1);
   EXPECT_EQ(*hear(frame_at(rig.clock->now() + ahead)), Heard::LeftOut);
   ASSERT_THAT(answer_clock(ahead), IsOk());
   EXPECT_EQ(*hear(frame_at(rig.clock->now() + ahead)), Heard::Frame);
   PushSession mute(rig.desk, "WebSocket", "");
-  rig.pass(seconds(3));
-  ASSERT_THAT(mute.hear(kHello), IsOk());
+  rig.pass(std::chrono::seconds(3));
+  ASSERT_THAT(mute.hear(kSessionHello), IsOk());
   mute.expect_clock();
   EXPECT_EQ(*mute.hear(frame_at(rig.clock->now())), Heard::LeftOut);
   rig.pass(milliseconds(1001));
@@ -75,7 +96,7 @@ TEST_F(Session, FramesBeforeTheFirstAnswerAreLeftOutForASecond) {
 }
 
 TEST_F(Session, AClockThatCountsMillisecondsIsGoodEnough) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   const auto whole_ms = [](Timestamp t) {
     return from_unix_ns(to_unix_ns(t) / 1'000'000 * 1'000'000);
   };
@@ -95,7 +116,7 @@ TEST_F(Session, AClockThatCountsMillisecondsIsGoodEnough) {
 }
 
 TEST_F(Session, AnOffsetSmallerThanItsBoundIsTakenOffToo) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   ASSERT_THAT(answer_clock(std::chrono::microseconds(1500)), IsOk());
   const Timestamp when = rig.clock->now() - milliseconds(20);
   ASSERT_THAT(hear(frame_at(when + std::chrono::microseconds(1500))), IsOk());
@@ -103,10 +124,10 @@ TEST_F(Session, AnOffsetSmallerThanItsBoundIsTakenOffToo) {
 }
 
 TEST_F(Session, WithoutAnswersTheClockHasToBeRight) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   EXPECT_THAT(hear(frame_at(rig.clock->now() - milliseconds(30))), IsOk());
-  for (const Duration off :
-       {Duration(seconds(3)), Duration(-seconds(11)), Duration(std::chrono::hours(-9))}) {
+  for (const Duration off : {Duration(std::chrono::seconds(3)), Duration(-std::chrono::seconds(11)),
+                             Duration(std::chrono::hours(-9))}) {
     const auto heard = hear(frame_at(rig.clock->now() + off));
     ASSERT_THAT(heard, FailsWith(ErrorCode::InvalidArgument));
     EXPECT_EQ(heard.error().context, "captured");
@@ -116,35 +137,37 @@ TEST_F(Session, WithoutAnswersTheClockHasToBeRight) {
 }
 
 TEST_F(Session, AFrameFromTheFutureIsALie) {
-  ASSERT_THAT(hear(kHello), IsOk());
-  ASSERT_THAT(answer_clock(seconds(5)), IsOk());
-  const auto heard = hear(frame_at(rig.clock->now() + seconds(5) + milliseconds(300)));
+  ASSERT_THAT(hear(kSessionHello), IsOk());
+  ASSERT_THAT(answer_clock(std::chrono::seconds(5)), IsOk());
+  const auto heard = hear(frame_at(rig.clock->now() + std::chrono::seconds(5) + milliseconds(300)));
   ASSERT_THAT(heard, FailsWith(ErrorCode::InvalidArgument));
   EXPECT_THAT(heard.error().message, HasSubstr("0.3"));
   EXPECT_THAT(heard.error().message, HasSubstr("in the future; stamp frames by the clock"));
 }
 
 TEST_F(Session, StampsThatCannotBeTrueChangeNothing) {
-  ASSERT_THAT(hear(kHello), IsOk());
-  ASSERT_THAT(answer_clock(seconds(0)), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
+  ASSERT_THAT(answer_clock(std::chrono::seconds(0)), IsOk());
   const Timestamp now = rig.clock->now();
   // Three impossible exchanges: answered before the question; held longer than the round trip;
   // asked in the future.
-  EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now - seconds(1)) + R"(,"received":)" +
-                   text(now) + R"(,"answered":)" + text(now - seconds(1)) + "}"),
-              IsOk());
-  EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now - seconds(1)) + R"(,"received":)" +
-                   text(now) + R"(,"answered":)" + text(now + std::chrono::hours(1)) + "}"),
-              IsOk());
-  EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now + seconds(9)) + R"(,"received":)" +
-                   text(now) + R"(,"answered":)" + text(now) + "}"),
+  EXPECT_THAT(
+      hear(R"({"type":"clock","sent":)" + text(now - std::chrono::seconds(1)) + R"(,"received":)" +
+           text(now) + R"(,"answered":)" + text(now - std::chrono::seconds(1)) + "}"),
+      IsOk());
+  EXPECT_THAT(
+      hear(R"({"type":"clock","sent":)" + text(now - std::chrono::seconds(1)) + R"(,"received":)" +
+           text(now) + R"(,"answered":)" + text(now + std::chrono::hours(1)) + "}"),
+      IsOk());
+  EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now + std::chrono::seconds(9)) +
+                   R"(,"received":)" + text(now) + R"(,"answered":)" + text(now) + "}"),
               FailsWith(ErrorCode::Malformed));
   EXPECT_THAT(hear(frame_at(rig.clock->now() - milliseconds(10))), IsOk());
   EXPECT_EQ(captured(), rig.clock->now() - milliseconds(10));
 }
 
 TEST_F(Session, ClocksAtTheEndsOfTimeAreNoHarm) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   const Timestamp asked = rig.clock->now();
   rig.pass(milliseconds(2));
   for (const std::string far : {"1000000000000000000", "8000000000000000000"}) {
@@ -158,20 +181,21 @@ TEST_F(Session, ClocksAtTheEndsOfTimeAreNoHarm) {
 }
 
 TEST_F(Session, AClockThatWasSetIsLearntAnew) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   for (int i = 0; i < 10; ++i) ASSERT_THAT(answer_clock(Duration{0}), IsOk());
   EXPECT_FALSE(session.wants_clock());
-  ASSERT_THAT(answer_clock(seconds(60)), IsOk());
+  ASSERT_THAT(answer_clock(std::chrono::seconds(60)), IsOk());
   EXPECT_TRUE(session.wants_clock()) << "in doubt: ask again at once";
-  EXPECT_THAT(hear(frame_at(rig.clock->now() + seconds(60))), FailsWith(ErrorCode::Unavailable));
-  for (int i = 0; i < 3; ++i) ASSERT_THAT(answer_clock(seconds(60)), IsOk());
+  EXPECT_THAT(hear(frame_at(rig.clock->now() + std::chrono::seconds(60))),
+              FailsWith(ErrorCode::Unavailable));
+  for (int i = 0; i < 3; ++i) ASSERT_THAT(answer_clock(std::chrono::seconds(60)), IsOk());
   const Timestamp when = rig.clock->now() - milliseconds(20);
-  ASSERT_THAT(hear(frame_at(when + seconds(60))), IsOk());
+  ASSERT_THAT(hear(frame_at(when + std::chrono::seconds(60))), IsOk());
   EXPECT_LE(std::chrono::abs(captured() - when), milliseconds(2));
 }
 
 TEST_F(Session, FramesBeyondTheRateAreLeftOut) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   int taken = 0;
   int left_out = 0;
   for (int i = 0; i < 300; ++i) {
@@ -187,7 +211,7 @@ TEST_F(Session, FramesBeyondTheRateAreLeftOut) {
 }
 
 TEST_F(Session, AFloodEndsIt) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   Result<Heard> heard = Heard::Frame;
   int messages = 0;
   while (!session.lost() && messages < 10'000) {
@@ -201,7 +225,7 @@ TEST_F(Session, AFloodEndsIt) {
 }
 
 TEST_F(Session, SoDoTooManyBytes) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   const std::string large(200'000, ' ');
   int messages = 0;
   while (!session.lost() && messages < 100) {
@@ -212,7 +236,7 @@ TEST_F(Session, SoDoTooManyBytes) {
 }
 
 TEST_F(Session, AMessageThatIsTooLongIsRefusedUnread) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   const auto heard = hear(std::string(256 * 1024 + 1, ' '));
   ASSERT_THAT(heard, FailsWith(ErrorCode::TooLarge));
   EXPECT_THAT(heard.error().message, HasSubstr("max_message_kb"));
@@ -225,7 +249,7 @@ TEST_F(Session, AWrongHelloIsTheEnd) {
 }
 
 TEST_F(Session, ASecondHelloChangesTheCameraButNotTheName) {
-  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(hear(kSessionHello), IsOk());
   EXPECT_THAT(hear(R"({"type":"hello","name":"cam","layout":"body_25"})"), IsOk());
   EXPECT_EQ(session.hello()->layout->name, "body_25");
   EXPECT_THAT(hear(R"({"type":"hello","name":"other","layout":"body_25"})"),
@@ -233,10 +257,10 @@ TEST_F(Session, ASecondHelloChangesTheCameraButNotTheName) {
 }
 
 TEST_F(Session, WhoIsReplacedIsToldSo) {
-  ASSERT_THAT(hear(kHello), IsOk());
-  rig.pass(seconds(3));
+  ASSERT_THAT(hear(kSessionHello), IsOk());
+  rig.pass(std::chrono::seconds(3));
   PushSession other(rig.desk, "HTTP POST", "");
-  ASSERT_THAT(other.hear(kHello), IsOk());
+  ASSERT_THAT(other.hear(kSessionHello), IsOk());
   const auto heard = hear(frame_at(rig.clock->now()));
   ASSERT_THAT(heard, FailsWith(ErrorCode::Conflict));
   EXPECT_TRUE(session.lost());
@@ -245,11 +269,11 @@ TEST_F(Session, WhoIsReplacedIsToldSo) {
 TEST_F(Session, ItsEndFreesTheSensor) {
   {
     PushSession short_one(rig.desk, "WebSocket", "");
-    ASSERT_THAT(short_one.hear(kHello), IsOk());
-    EXPECT_THAT(hear(kHello), FailsWith(ErrorCode::Conflict));
+    ASSERT_THAT(short_one.hear(kSessionHello), IsOk());
+    EXPECT_THAT(hear(kSessionHello), FailsWith(ErrorCode::Conflict));
   }
   PushSession next(rig.desk, "WebSocket", "");
-  EXPECT_THAT(next.hear(kHello), IsOk());
+  EXPECT_THAT(next.hear(kSessionHello), IsOk());
 }
 
 }  // namespace

@@ -26,11 +26,11 @@ resource::FrameResource frame_of(const char* source, int i) {
   return frame;
 }
 
-std::shared_ptr<const resource::FrameResource> seen_by(const char* sensor, int i) {
+std::shared_ptr<const resource::FrameResource> outline_seen_by(const char* sensor, int i) {
   return std::make_shared<const resource::FrameResource>(frame_of(sensor, i));
 }
 
-FusedFrame fused(int i) {
+FusedFrame outline_fused(int i) {
   const Timestamp t = kStart + kFrameInterval * i;
   return {t, t + milliseconds(20), [i] {
             resource::FrameResource frame = frame_of("fusion", i);
@@ -39,13 +39,14 @@ FusedFrame fused(int i) {
           }};
 }
 
-void write_cell(const std::filesystem::path& path) {
-  write_cell(path, {kStart, R"({"version":1,"sensors":{}})", {}}, seen_by, fused);
+void write_outlined_cell(const std::filesystem::path& path) {
+  write_outlined_cell(path, {kStart, R"({"version":1,"sensors":{}})", {}}, outline_seen_by,
+                      outline_fused);
 }
 
 TEST(CellOutline, TellsWhoWasThereAndWhenWithoutReadingItThrough) {
   const TemporaryFolder folder;
-  write_cell(folder / "a.mcap");
+  write_outlined_cell(folder / "a.mcap");
   const auto lines = cell_lines({folder / "a.mcap"});
   ASSERT_TRUE(lines) << to_string(lines.error());
   ASSERT_THAT(*lines, SizeIs(1));
@@ -63,8 +64,8 @@ TEST(CellOutline, TellsWhoWasThereAndWhenWithoutReadingItThrough) {
 
 TEST(CellOutline, RefusesTwoRecordingsOfOneSensor) {
   const TemporaryFolder folder;
-  write_cell(folder / "a.mcap");
-  write_cell(folder / "b.mcap");
+  write_outlined_cell(folder / "a.mcap");
+  write_outlined_cell(folder / "b.mcap");
   const auto lines = cell_lines({folder / "a.mcap", folder / "b.mcap"});
   ASSERT_TRUE(lines);
   ASSERT_THAT(*lines, SizeIs(2)) << "neither says that it is a part of the other";
@@ -75,7 +76,7 @@ TEST(CellOutline, RefusesTwoRecordingsOfOneSensor) {
 
 TEST(CellStream, GivesWhatReadingItWholeGives) {
   const TemporaryFolder folder;
-  write_cell(folder / "a.mcap");
+  write_outlined_cell(folder / "a.mcap");
   const auto whole = read_cell(folder / "a.mcap", {.fused = true});
   ASSERT_TRUE(whole);
   CellStream stream({folder / "a.mcap"}, {.fused = true});

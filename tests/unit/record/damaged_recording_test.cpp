@@ -1,4 +1,4 @@
-// Files as left by a crash, a bad disk or an attacker: refused or read in part, always with a
+// Files as a crash, a bad disk or an attacker leaves them: refused or read in part, always with a
 // reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ std::string chunk_record(std::uint64_t claimed, std::uint32_t crc, std::string_v
   return mcap::record(Op::Chunk, fields.bytes());
 }
 
-std::string end_of_file() {
+std::string damaged_end() {
   std::string bytes = mcap::record(Op::DataEnd, ByteWriter().u32(0).bytes());
   bytes += mcap::record(Op::Footer, ByteWriter().u64(0).u64(0).u32(0).bytes());
   return bytes + std::string(mcap::kMagic);
@@ -94,7 +94,7 @@ TEST(DamagedRecording, AWrongChecksumIsNamed) {
   const std::string records = message_record(1);
   const auto read = read_recording_bytes(
       start_of_file() + chunk_record(records.size(), mcap::crc32(records) ^ 1u, "", records) +
-      chunk_record(records.size(), mcap::crc32(records), "", records) + end_of_file());
+      chunk_record(records.size(), mcap::crc32(records), "", records) + damaged_end());
   ASSERT_TRUE(read);
   EXPECT_EQ(read->messages.size(), 1u);
   EXPECT_THAT(read->notes, Contains(HasSubstr("chunk 1 left out: its checksum is wrong")));
@@ -118,7 +118,7 @@ TEST(DamagedRecording, ManyChunksTogetherStayBelowTheTotalLimit) {
   std::string bytes = start_of_file();
   for (int i = 0; i < 100; ++i) bytes += chunk;
   const ReadLimits limits{.max_total_bytes = 100'000};
-  const auto read = read_recording_bytes(bytes + end_of_file(), limits);
+  const auto read = read_recording_bytes(bytes + damaged_end(), limits);
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, ErrorCode::TooLarge);
 }
@@ -137,10 +137,10 @@ TEST(DamagedRecording, ChannelsAndSchemasCountTowardsTheTotalLimit) {
   std::string repeated = schema;
   for (int i = 0; i < 1000; ++i) repeated += channel(2);
   const ReadLimits limits{.max_total_bytes = 100'000};
-  const auto refused = read_recording_bytes(many + end_of_file(), limits);
+  const auto refused = read_recording_bytes(many + damaged_end(), limits);
   ASSERT_FALSE(refused) << "45 kB that would take 10 MB";
   EXPECT_EQ(refused.error().code, ErrorCode::TooLarge);
-  EXPECT_TRUE(read_recording_bytes(repeated + end_of_file(), limits)) << "as writers do";
+  EXPECT_TRUE(read_recording_bytes(repeated + damaged_end(), limits)) << "as writers do";
 }
 
 TEST(DamagedRecording, UnknownRecordsAreSkippedSilently) {
@@ -148,7 +148,7 @@ TEST(DamagedRecording, UnknownRecordsAreSkippedSilently) {
   const auto read =
       read_recording_bytes(start_of_file() + mcap::record(static_cast<Op>(0x7F), "future") +
                            mcap::record(Op::MessageIndex, "") +
-                           chunk_record(records.size(), 0, "", records) + end_of_file());
+                           chunk_record(records.size(), 0, "", records) + damaged_end());
   ASSERT_TRUE(read);
   EXPECT_EQ(read->messages.size(), 1u);
   EXPECT_THAT(read->notes, IsEmpty());
@@ -159,7 +159,7 @@ TEST(DamagedRecording, UnknownCompressionAndUnknownChannelsAreNamed) {
   const std::string records = message_record(7);
   const auto read =
       read_recording_bytes(start_of_file() + chunk_record(4, 0, "lz4", "abcd") +
-                           chunk_record(records.size(), 0, "", records) + end_of_file());
+                           chunk_record(records.size(), 0, "", records) + damaged_end());
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->messages.empty());
   EXPECT_THAT(read->notes, Contains(HasSubstr("neither zstd nor none")));
@@ -167,7 +167,7 @@ TEST(DamagedRecording, UnknownCompressionAndUnknownChannelsAreNamed) {
 }
 
 TEST(DamagedRecording, MessagesOutsideChunksAreRead) {
-  const auto read = read_recording_bytes(start_of_file() + message_record(1) + end_of_file());
+  const auto read = read_recording_bytes(start_of_file() + message_record(1) + damaged_end());
   ASSERT_TRUE(read);
   EXPECT_EQ(read->messages.size(), 1u);
 }

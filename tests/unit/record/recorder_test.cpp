@@ -73,11 +73,10 @@ namespace {
 
 using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
-using std::chrono::seconds;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr auto kPatience = seconds(20);  // never waited for unless something is broken
+constexpr auto kPatience = std::chrono::seconds(20);  // never waited for unless something is broken
 
 RawFrame raw(int i, int bodies = 0) {
   const Timestamp t = kStart + kFrameInterval * i;
@@ -165,7 +164,7 @@ TEST(Recorder, BeginsANewFileWhenTheTimeIsUpAndEachStandsAlone) {
   const auto clock = std::make_shared<FakeClock>(kStart);
   RecorderOptions options = options_in(folder);
   options.clock = clock;
-  options.limits.max_file_duration = seconds(10);
+  options.limits.max_file_duration = std::chrono::seconds(10);
   auto recorder = Recorder::start(options);
   ASSERT_TRUE(recorder);
   (*recorder)->offer(PlacesChanged{kStart, R"({"sensors":{}})", {}});
@@ -176,7 +175,7 @@ TEST(Recorder, BeginsANewFileWhenTheTimeIsUpAndEachStandsAlone) {
                                     return *raw(part).frame;
                                   }});
     written->get_future().wait();
-    clock->advance(seconds(10));
+    clock->advance(std::chrono::seconds(10));
   }
   const RecordingReport report = stopped(**recorder);
   ASSERT_THAT(report.files, SizeIs(3));
@@ -267,10 +266,10 @@ TEST(Recorder, StopsByItselfAfterItsTime) {
   const auto clock = std::make_shared<FakeClock>(kStart);
   RecorderOptions options = options_in(folder);
   options.clock = clock;
-  options.stop_after = seconds(30);
+  options.stop_after = std::chrono::seconds(30);
   auto recorder = Recorder::start(options);
   ASSERT_TRUE(recorder);
-  clock->advance(seconds(31));
+  clock->advance(std::chrono::seconds(31));
   EXPECT_TRUE((*recorder)->wait(kPatience));
   EXPECT_EQ((*recorder)->report().state, RecordingState::Finished);
 }

@@ -15,10 +15,10 @@ namespace {
 using chorus::testing::TemporaryFolder;
 using std::chrono::milliseconds;
 
-constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // [ns], an arbitrary UTC
+constexpr std::int64_t kRecordingStart = 1'700'000'000'000'000'000;  // [ns], an arbitrary UTC
 
 Message message_at(int index, std::string data) {
-  const Timestamp t = from_unix_ns(kStart) + milliseconds(33) * index;
+  const Timestamp t = from_unix_ns(kRecordingStart) + milliseconds(33) * index;
   return {"", static_cast<std::uint32_t>(index), t, t - milliseconds(2), std::move(data)};
 }
 

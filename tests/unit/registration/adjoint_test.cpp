@@ -7,16 +7,16 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kStep = 1e-6;
+constexpr double kAdjointStep = 1e-6;
 const Eigen::Isometry3d kB = tilted_motion();
 const Eigen::Isometry3d kA = some_motion(-0.7);
 
 TEST(Adjoint, EqualsTheNumericJacobianOfCarryingAMotionAcross) {
   Matrix6 numeric;
   for (int axis = 0; axis < 6; ++axis) {
-    numeric.col(axis) = (motion_of(kB * small_motion(unit6(axis, kStep)) * kB.inverse()) -
-                         motion_of(kB * small_motion(unit6(axis, -kStep)) * kB.inverse())) /
-                        (2.0 * kStep);
+    numeric.col(axis) = (motion_of(kB * small_motion(unit6(axis, kAdjointStep)) * kB.inverse()) -
+                         motion_of(kB * small_motion(unit6(axis, -kAdjointStep)) * kB.inverse())) /
+                        (2.0 * kAdjointStep);
   }
   EXPECT_LT((adjoint(kB) - numeric).norm(), 1e-8);
 }
@@ -31,9 +31,9 @@ TEST(AtPoint, EqualsTheNumericJacobianOfThePointsDisplacement) {
   const Eigen::Vector3d x(0.4, -1.3, 2.2);
   Matrix6 numeric = Matrix6::Zero();
   for (int axis = 0; axis < 6; ++axis) {
-    const Eigen::Vector3d ahead = small_motion(unit6(axis, kStep)) * x;
-    const Eigen::Vector3d back = small_motion(unit6(axis, -kStep)) * x;
-    numeric.block<3, 1>(3, axis) = (ahead - back) / (2.0 * kStep);
+    const Eigen::Vector3d ahead = small_motion(unit6(axis, kAdjointStep)) * x;
+    const Eigen::Vector3d back = small_motion(unit6(axis, -kAdjointStep)) * x;
+    numeric.block<3, 1>(3, axis) = (ahead - back) / (2.0 * kAdjointStep);
   }
   numeric.topLeftCorner<3, 3>().setIdentity();  // the rotation itself does not change
   EXPECT_LT((at_point(x) - numeric).norm(), 1e-8);

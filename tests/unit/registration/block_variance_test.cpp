@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<Eigen::Index, 1> kOnly{0};
 
 /// The mean of a coloured signal of unit variance, 30 samples a second: each sample has information
-/// 1, its score is its distance from the mean.
+/// 1, and its score is its distance from the mean.
 double factor_of(double correlation_s, double length_s, const BlockScores::Prior& prior = {}) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -74,7 +74,7 @@ TEST(BlockScores, WithoutTwoBlocksGoByTheExpectation) {
   EXPECT_EQ(blocks.factor({}, {7.0, 3.0}), 7.0);
 }
 
-/// Scores in one parameter say nothing of another.
+/// Scores in one parameter contain no information about another.
 TEST(BlockScores, OfSomeParametersLeaveTheOthersOut) {
   BlockScores blocks(10.0);
   for (int i = 0; i < 4; ++i) {

@@ -1,4 +1,4 @@
-// Compares every stated covariance with a numeric derivative of the estimated place itself.
+// Compares every stated covariance with a numeric derivative of the estimated pose itself.
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace chorus::registration {
 namespace {
 
-const Eigen::Isometry3d kTarget = ring_place(0);
+const Eigen::Isometry3d kCovarianceTarget = ring_place(0);
 const Eigen::Isometry3d kSource = ring_place(deg(180));
 
 /// A covariance that differs in every direction, so that a missing or wrong rotation shows.
@@ -76,7 +76,7 @@ TEST(ChainCovariance, OfTwoEdgesCarriesTheSecondOverTheFirst) {
 /// A registration whose only edge is the truth with this covariance.
 Registration solved_with(const Matrix6& covariance) {
   const PairEstimator estimate = [&](const Walker& target, const Walker& source) {
-    PairwiseRegistration edge = edge_between(1, 2, kTarget.inverse() * kSource, 1.0);
+    PairwiseRegistration edge = edge_between(1, 2, kCovarianceTarget.inverse() * kSource, 1.0);
     edge.target = target.trail.sensor;
     edge.source = source.trail.sensor;
     edge.covariance = covariance;
@@ -87,8 +87,8 @@ Registration solved_with(const Matrix6& covariance) {
   config.adjust_together = false;
   config.max_position = 1.0;
   const WalkSpec spec{.length = 2, .noise = 0.0};
-  return solve_with(estimate, {watch(1, kTarget, spec), watch(2, kSource, spec)}, kWalkStart,
-                    config);
+  return solve_with(estimate, {watch(1, kCovarianceTarget, spec), watch(2, kSource, spec)},
+                    kWalkStart, config);
 }
 
 TEST(ExtrinsicsCovariance, IsOfTheTurnAndTheSensorsPlaceInWorldAxes) {
@@ -96,7 +96,7 @@ TEST(ExtrinsicsCovariance, IsOfTheTurnAndTheSensorsPlaceInWorldAxes) {
   const Registration registration = solved_with(of_edge);
   const Extrinsics& client = registration.sensors.at(sensor(2));
   const Eigen::Isometry3d world_from_master = registration.sensors.at(sensor(1)).world_from_sensor;
-  const Eigen::Isometry3d master_from_client = kTarget.inverse() * kSource;
+  const Eigen::Isometry3d master_from_client = kCovarianceTarget.inverse() * kSource;
   ASSERT_LT(gap(client.world_from_sensor, world_from_master * master_from_client), 1e-9);
   const Matrix6 expected = carried(of_edge, [&](const Vector6& xi) {
     const Eigen::Isometry3d off = world_from_master * small_motion(xi) * master_from_client;
@@ -140,8 +140,8 @@ Matrix6 without_bias(Matrix6 covariance) {
 
 TEST(EdgeCovariance, IsStatedInTheTargetsOwnAxesHoweverItIsTilted) {
   const Eigen::Isometry3d turn(Eigen::AngleAxisd(deg(-15), Eigen::Vector3d::UnitX()));
-  const Matrix6 tilted = without_bias(edge_of(kTarget, kSource).covariance);
-  const Matrix6 straight = without_bias(edge_of(kTarget * turn, kSource).covariance);
+  const Matrix6 tilted = without_bias(edge_of(kCovarianceTarget, kSource).covariance);
+  const Matrix6 straight = without_bias(edge_of(kCovarianceTarget * turn, kSource).covariance);
   const Matrix6 expected = carried(tilted, [&](const Vector6& xi) {
     return motion_of(turn.inverse() * small_motion(xi) * turn);
   });
@@ -151,7 +151,7 @@ TEST(EdgeCovariance, IsStatedInTheTargetsOwnAxesHoweverItIsTilted) {
 
 TEST(EdgeCovariance, HasAFloorThatGrowsWithTheAngleBetweenTheViews) {
   const auto position_sigma = [](double angle) {
-    const Matrix6 covariance = edge_of(kTarget, ring_place(deg(angle))).covariance;
+    const Matrix6 covariance = edge_of(kCovarianceTarget, ring_place(deg(angle))).covariance;
     // At the middle of the walk, where an exact walk leaves almost no error of its own.
     const Matrix6 shift = at_point(Eigen::Vector3d(0, 0, 3.1));
     const Matrix6 there = shift * covariance * shift.transpose();

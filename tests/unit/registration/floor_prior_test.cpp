@@ -8,7 +8,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kStep = 1e-6;
+constexpr double kPriorStep = 1e-6;
 const FloorPrior kPrior{0.02, 0.03};
 const Eigen::Vector3d kCentre(0.4, 1.1, 2.6);
 
@@ -22,9 +22,9 @@ Eigen::Vector3d misfit(const Eigen::Isometry3d& target_from_source, const FloorP
 Normal numeric_normal(const Eigen::Isometry3d& at) {
   Eigen::Matrix<double, 3, 6> jacobian;
   for (int axis = 0; axis < 6; ++axis) {
-    jacobian.col(axis) = (misfit(small_motion(unit6(axis, kStep)) * at, kPrior) -
-                          misfit(small_motion(unit6(axis, -kStep)) * at, kPrior)) /
-                         (2.0 * kStep);
+    jacobian.col(axis) = (misfit(small_motion(unit6(axis, kPriorStep)) * at, kPrior) -
+                          misfit(small_motion(unit6(axis, -kPriorStep)) * at, kPrior)) /
+                         (2.0 * kPriorStep);
   }
   Normal normal;
   normal.information = jacobian.transpose() * jacobian;

@@ -87,7 +87,7 @@ inline std::vector<Pair> pairs_of(const Eigen::Isometry3d& target_from_source,
   return pairs;
 }
 
-/// The same correspondences with target and source exchanged.
+/// The same correspondences with target and source swapped.
 inline std::vector<Pair> swapped(std::vector<Pair> pairs) {
   for (Pair& pair : pairs) {
     std::swap(pair.x_in_target, pair.x_in_source);

@@ -198,7 +198,7 @@ TEST(Solve, TheOrderOfTheTracksDoesNotMatterAndASecondTrackOfASensorIsIgnored) {
   }
 }
 
-/// Single cameras, whose depth is inaccurate: all together determine what no chain of pairs does.
+/// Single cameras, whose depth is inaccurate: together they determine what no chain of pairs does.
 TEST(Solve, FromThreeSensorsOnAllAreAdjustedTogether) {
   RegistrationConfig config;
   config.along_ratio = 8.0;

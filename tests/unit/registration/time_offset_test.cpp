@@ -1,4 +1,4 @@
-// Clocks that nobody knows are told by the walk, or refused where it cannot tell them.
+// Unknown clocks are found from the walk, or refused where the walk does not determine them.
 #include "fusion-server/registration/time_offset.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ WalkTrack off_by(WalkTrack track, Duration offset, double sigma) {
   return track;
 }
 
-/// Sensors on a ring, 40 deg apart; number i is off by offsets[i].
+/// Sensors on a ring, 40 deg apart; the stamps of number i are ahead by offsets[i].
 std::vector<WalkTrack> ring(const std::vector<Duration>& offsets, const WalkSpec& spec = {},
                             double sigma = kUnknownClock) {
   std::vector<WalkTrack> walk;
@@ -77,8 +77,8 @@ TEST(WalkClocks, OfACircleAreOpen) {
             "from standing");
 }
 
-/// s1 and s2 share a circle only; s3 shares other walks with both, so their clocks are known by way
-/// of it.
+/// s1 and s2 share only a circle; s3 shares other walks with both, so their clocks are known
+/// through s3.
 TEST(WalkClocks, OfAPairAreToldByWayOfOthers) {
   WalkSpec spec;
   spec.length = 40;

@@ -1,4 +1,4 @@
-// A walk made by hand: a person whose joints are known in the world, seen by sensors whose places
+// A walk made by hand: a person whose joints are known in the world, seen by sensors whose poses
 // are known.
 #pragma once
 
@@ -74,7 +74,7 @@ struct WalkSpec {
   double noise = 0.010;  ///< White noise per axis [m].
   double range = 100.0;  ///< People farther away are not seen [m].
   std::optional<FloorPlane> floor_in_world = FloorPlane{};
-  Duration clock_offset{};  ///< Added to the capture stamps.
+  Duration clock_offset{};  ///< The host clock's error: added to the capture stamps.
   double outliers = 0.0;    ///< Fraction of frames whose body is elsewhere.
   unsigned seed = 1;
 };

@@ -1,4 +1,5 @@
-// The largest and strangest frames that can be written are read back; digits are as by printf.
+// The largest and strangest frames that can be written are read back; digits agree with those of
+// printf.
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -66,11 +67,11 @@ TEST(FrameLimits, ASourceWithAwkwardLettersIsWrittenAndCannotBreakOut) {
 }
 
 TEST(Quoted, EscapesWhatTurtleAndJsonBothNeed) {
-  EXPECT_EQ(quoted("plain"), "\"plain\"");
-  EXPECT_EQ(quoted("a\"b\\c"), "\"a\\\"b\\\\c\"");
-  EXPECT_EQ(quoted("\n\t\x1F"), "\"\\u000A\\u0009\\u001F\"");
-  EXPECT_EQ(quoted("\xC3\xA4\xFF"), "\"\xC3\xA4\xEF\xBF\xBD\"");
-  EXPECT_EQ(quoted(""), "\"\"");
+  EXPECT_EQ(in_quotes("plain"), "\"plain\"");
+  EXPECT_EQ(in_quotes("a\"b\\c"), "\"a\\\"b\\\\c\"");
+  EXPECT_EQ(in_quotes("\n\t\x1F"), "\"\\u000A\\u0009\\u001F\"");
+  EXPECT_EQ(in_quotes("\xC3\xA4\xFF"), "\"\xC3\xA4\xEF\xBF\xBD\"");
+  EXPECT_EQ(in_quotes(""), "\"\"");
 }
 
 TEST(Pen, GrowsAsItIsAskedTo) {

@@ -55,7 +55,7 @@ FrameResource json_frame(std::uint64_t seed) {
   return frame;
 }
 
-/// The template reader only answers where the parser gives the same answer.
+/// Where the template reader accepts a text, the parser reads the same frame.
 void expect_the_parser_agrees(const std::string& text) {
   const auto fast = read_json_template(text);
   if (!fast) return;

@@ -1,4 +1,4 @@
-// One frame written in many ways: what is equal in RDF is read as equal.
+// One frame written in many ways: what means the same in RDF is read as the same frame.
 #include <algorithm>
 #include <map>
 #include <random>

@@ -15,7 +15,7 @@ using rdf::Term;
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// Whether both are missing, or equal except for the last bits, which decimals do not preserve.
+/// True if both are missing, or equal except for the last bits, which decimals do not preserve.
 bool same(const std::optional<double>& a, const std::optional<double>& b) {
   return a.has_value() == b.has_value() && std::abs(a.value_or(0.0) - b.value_or(0.0)) < 1e-9;
 }

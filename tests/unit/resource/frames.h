@@ -20,7 +20,7 @@ struct FrameKind {
 /// The triples of the compact profile, written out one by one from the specification.
 [[nodiscard]] rdf::Graph expected_graph(const FrameResource& frame);
 
-/// Empty when equal, else the first difference.
+/// The first difference; empty when they are equal.
 [[nodiscard]] std::string difference(const FrameResource& a, const FrameResource& b);
 
 }  // namespace chorus::resource

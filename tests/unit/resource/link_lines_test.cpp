@@ -8,8 +8,8 @@
 namespace chorus::resource {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::vector<http::Variant> turtle_json_ld_and_json() {
   std::vector<http::Variant> variants;

@@ -98,6 +98,30 @@ TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
   EXPECT_TRUE(ask(router, "/sensors/s2/frame"));
 }
 
+TEST(SensorResources, TellsOfTheClockByWhomAndWhatBecameOfUntimelyFrames) {
+  SensorStatus s = status("s1");
+  s.walked_offset = std::chrono::milliseconds(200);
+  s.walked_sigma = std::chrono::milliseconds(4);
+  s.host = NtpStatus{};
+  s.fates = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(resource::undeclared_terms(sensor_node(s, "s1")), std::vector<std::string>{});
+  http::Router router;
+  SensorResources sensors({"run1"}, {});
+  sensors.add_routes(router);
+  sensors.publish({s});
+  const auto text = body(ask(router, "/sensors/s1"), "application/json");
+  for (const char* part :
+       {"\"clockOffsetMilliseconds\": 200.15", "\"clockFromWalkMilliseconds\": 200",
+        "\"clockUncertaintyMilliseconds\": 8", "\"hostSynchronised\": false", "\"framesLate\": 1",
+        "\"framesDoubled\": 2", "\"framesEarly\": 3", "\"framesBackwards\": 4",
+        "\"framesStale\": 5", "\"clockRestarts\": 6"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  sensors.publish({status("s1")});
+  const auto calm = body(ask(router, "/sensors/s1"), "application/json");
+  EXPECT_EQ(calm.find("framesLate"), std::string::npos);
+  EXPECT_EQ(calm.find("clockFromWalk"), std::string::npos);
+}
+
 TEST(SelfDescription, LeadsToEverythingAndUsesOnlyDeclaredTerms) {
   EXPECT_EQ(resource::undeclared_terms(service::self_node(self_of("x", true))),
             std::vector<std::string>{});

@@ -7,11 +7,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Timestamp kStart = from_unix_ns(1'795'000'000'000'000'000);
+constexpr Timestamp kHostStart = from_unix_ns(1'795'000'000'000'000'000);
 
 TEST(HostClock, IsRightUnlessToldOtherwise) {
-  const auto world = std::make_shared<FakeClock>(kStart);
-  const ErringClock clock(world, host_clock({}, kStart));
+  const auto world = std::make_shared<FakeClock>(kHostStart);
+  const ErringClock clock(world, host_clock({}, kHostStart));
   world->advance(std::chrono::hours(30));
   EXPECT_EQ(clock.now(), world->now());
 }
@@ -24,8 +24,8 @@ TEST(HostClock, IsOffDriftsAndIsSteppedOnce) {
   ClockErrors errors;
   read_clock_errors(config, errors);
   ASSERT_TRUE(config.finish());
-  const auto world = std::make_shared<FakeClock>(kStart);
-  const ErringClock clock(world, host_clock(errors, kStart));
+  const auto world = std::make_shared<FakeClock>(kHostStart);
+  const ErringClock clock(world, host_clock(errors, kHostStart));
   const auto ahead = [&] { return std::chrono::round<milliseconds>(clock.now() - world->now()); };
   EXPECT_EQ(ahead(), milliseconds(100));
   world->advance(std::chrono::seconds(20));

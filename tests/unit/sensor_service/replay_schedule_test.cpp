@@ -9,27 +9,27 @@ namespace chorus::sensor_service {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
-const Timestamp kRecorded = from_unix_ns(1'600'000'000'000'000'000);
+const Timestamp kScheduleStart = from_unix_ns(1'600'000'000'000'000'000);
 const Timestamp kEpoch = from_unix_ns(1'795'246'200'000'000'000);
 
 /// Frames 100, 133, 200 ms after the set's first capture; the set lasts one second.
 constexpr std::array kOffsets{milliseconds(100), milliseconds(133), milliseconds(200)};
 
 TapeSpan span_of(Duration first, Duration last, std::uint64_t frames) {
-  return {kRecorded + first, kRecorded + last, frames, milliseconds(33)};
+  return {kScheduleStart + first, kScheduleStart + last, frames, milliseconds(33)};
 }
 
 ReplaySchedule make(double speed = 1.0, bool loop = true) {
-  auto schedule = ReplaySchedule::make(span_of(kOffsets.front(), kOffsets.back(), kOffsets.size()),
-                                       {kEpoch, kRecorded, seconds(1), speed, loop});
+  auto schedule =
+      ReplaySchedule::make(span_of(kOffsets.front(), kOffsets.back(), kOffsets.size()),
+                           {kEpoch, kScheduleStart, std::chrono::seconds(1), speed, loop});
   EXPECT_TRUE(schedule) << to_string(schedule.error());
   return *schedule;
 }
 
 Turn turn_of(std::size_t number, std::int64_t round) {
-  return {kRecorded + kOffsets.at(number), number, round};
+  return {kScheduleStart + kOffsets.at(number), number, round};
 }
 
 Turn after(const Turn& turn) {
@@ -43,7 +43,7 @@ TEST(ReplaySchedule, KeepsTheOffsetToTheSetsOrigin) {
 }
 
 TEST(ReplaySchedule, LoopsByTheSetsPeriodNotItsOwnLength) {
-  EXPECT_EQ(make().due(turn_of(0, 3)), kEpoch + seconds(3) + milliseconds(100));
+  EXPECT_EQ(make().due(turn_of(0, 3)), kEpoch + std::chrono::seconds(3) + milliseconds(100));
 }
 
 TEST(ReplaySchedule, SpeedShortensEverything) {
@@ -81,27 +81,30 @@ TEST(ReplaySchedule, WithoutLoopItEnds) {
   const auto schedule = make(1.0, false);
   EXPECT_FALSE(schedule.over(0));
   EXPECT_TRUE(schedule.over(1));
-  EXPECT_EQ(schedule.round_before(kEpoch + seconds(100)), 0);
+  EXPECT_EQ(schedule.round_before(kEpoch + std::chrono::seconds(100)), 0);
   EXPECT_FALSE(make().over(1));
 }
 
 TEST(ReplaySchedule, RefusesWhatCannotBePlayed) {
-  const TapeSpan one = span_of(seconds(0), seconds(0), 1);
-  const TapeSpan two = span_of(seconds(0), seconds(2), 2);
-  EXPECT_FALSE(ReplaySchedule::make({}, {kEpoch, kRecorded, seconds(1)}));
-  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kRecorded + seconds(1), seconds(1)}));
-  EXPECT_FALSE(ReplaySchedule::make(two, {kEpoch, kRecorded, seconds(1)}))
+  const TapeSpan one = span_of(std::chrono::seconds(0), std::chrono::seconds(0), 1);
+  const TapeSpan two = span_of(std::chrono::seconds(0), std::chrono::seconds(2), 2);
+  EXPECT_FALSE(ReplaySchedule::make({}, {kEpoch, kScheduleStart, std::chrono::seconds(1)}));
+  EXPECT_FALSE(ReplaySchedule::make(
+      one, {kEpoch, kScheduleStart + std::chrono::seconds(1), std::chrono::seconds(1)}));
+  EXPECT_FALSE(ReplaySchedule::make(two, {kEpoch, kScheduleStart, std::chrono::seconds(1)}))
       << "the period is too short";
-  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kRecorded, Duration::max()}));
-  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, Timestamp::min(), seconds(1)}));
-  const Timestamp rounded = kRecorded + std::chrono::nanoseconds(500);
+  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kScheduleStart, Duration::max()}));
+  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, Timestamp::min(), std::chrono::seconds(1)}));
+  const Timestamp rounded = kScheduleStart + std::chrono::nanoseconds(500);
   EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, rounded, Duration::zero()}));
-  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kRecorded, seconds(1), 0.0}));
-  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kRecorded, seconds(1), std::nan("")}));
+  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kScheduleStart, std::chrono::seconds(1), 0.0}));
+  EXPECT_FALSE(
+      ReplaySchedule::make(one, {kEpoch, kScheduleStart, std::chrono::seconds(1), std::nan("")}));
 }
 
 TEST(NaturalPeriod, IsTheLengthAndOneStep) {
-  EXPECT_EQ(natural_period(span_of(seconds(1), seconds(3), 60)), milliseconds(2033));
+  EXPECT_EQ(natural_period(span_of(std::chrono::seconds(1), std::chrono::seconds(3), 60)),
+            milliseconds(2033));
 }
 
 }  // namespace

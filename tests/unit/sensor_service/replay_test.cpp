@@ -13,7 +13,6 @@ using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
 using chorus::testing::sensor_id;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 const Timestamp kRecorded = from_unix_ns(1'600'000'000'000'000'000);
 
@@ -144,14 +143,14 @@ TEST(Replay, ProcessesWithOneEpochStayInStep) {
   second.frames.erase(second.frames.begin(), second.frames.begin() + 10);
   for (auto* one : {&first, &second}) {
     one->notes["set_origin"] = to_iso8601(kRecorded);
-    one->notes["set_period_ns"] = std::to_string(seconds(2) / Duration(1));
+    one->notes["set_period_ns"] = std::to_string(std::chrono::seconds(2) / Duration(1));
   }
   Played early, late;
-  early.play(first, {.epoch_at = kStart - seconds(1)}, 100);
+  early.play(first, {.epoch_at = kStart - std::chrono::seconds(1)}, 100);
   late.clock->advance(milliseconds(1234));
-  late.play(second, {.epoch_at = kStart - seconds(1)}, 60);
+  late.play(second, {.epoch_at = kStart - std::chrono::seconds(1)}, 60);
   const auto time_of = [](const Capture& c) {
-    return (c.frame.captured - kStart + seconds(1)) % seconds(2);
+    return (c.frame.captured - kStart + std::chrono::seconds(1)) % std::chrono::seconds(2);
   };
   for (const Capture& capture : early.captures) EXPECT_LT(time_of(capture), kFrameInterval * 30);
   for (const Capture& capture : late.captures) {
@@ -176,9 +175,9 @@ TEST(Replay, AfterASleepItSkipsInsteadOfPouringOutThePast) {
   ASSERT_TRUE(device);
   std::vector<std::uint64_t> sequences;
   (void)(*device)->run(stop.get_token(), [&](const Capture& capture) {
-    EXPECT_LT(clock->now() - capture.frame.captured, seconds(1));
+    EXPECT_LT(clock->now() - capture.frame.captured, std::chrono::seconds(1));
     sequences.push_back(capture.frame.sequence);
-    if (sequences.size() == 3) clock->advance(seconds(10));
+    if (sequences.size() == 3) clock->advance(std::chrono::seconds(10));
     if (sequences.size() == 6) stop.request_stop();
   });
   EXPECT_THAT(sequences, ::testing::ElementsAre(1, 2, 3, 304, 305, 306)) << "301 frames in 10 s";
@@ -215,7 +214,7 @@ TEST(ReplayOptions, AreReadWithTheirRanges) {
   EXPECT_EQ(options.speed, 2.0);
   EXPECT_EQ(options.epoch, ReplayEpoch::AsRecorded);
   EXPECT_EQ(options.epoch_at, from_unix_ns(1'795'246'200'000'000'000));
-  EXPECT_EQ(options.period, Duration(seconds(5)));
+  EXPECT_EQ(options.period, Duration(std::chrono::seconds(5)));
   EXPECT_FALSE(options.origin);
   auto bad = ConfigReader::parse(R"({"speed": 0, "epoch": "yesterday", "lop": true})", "test");
   (void)read_replay_options(*bad);

@@ -11,10 +11,10 @@
 namespace chorus::service {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
-class EndpointTest : public testing::Test {
+class EndpointTest : public ::testing::Test {
  protected:
   void SetUp() override {
     add_routes(router_, {clock_, [this] { return health_; }, [] { return std::string("up 1\n"); }});

@@ -21,7 +21,7 @@ Timestamp instant_of(std::uint64_t sequence) {
 }
 
 /// A frame with one body, whose id is 7.
-FramePtr frame(std::uint64_t sequence) {
+FramePtr resource_frame(std::uint64_t sequence) {
   const auto pose = testing::ring_sensor(0, 6);
   const Timestamp t = instant_of(sequence);
   SensorFrame seen = testing::sensor_frame(
@@ -35,7 +35,7 @@ struct Served {
     frames.add_routes(router);
   }
   void publish(std::uint64_t from, std::uint64_t to) {
-    for (auto i = from; i <= to; ++i) frames.publish(frame(i));
+    for (auto i = from; i <= to; ++i) frames.publish(resource_frame(i));
   }
   [[nodiscard]] Answer ask(const std::string& path) const { return get(router, path); }
 

@@ -22,7 +22,7 @@ struct Settings {
   } at_start;
 };
 
-Result<Settings> read(ConfigReader root) {
+Result<Settings> read_settings(ConfigReader root) {
   Settings out;
   root.read("volume", out.live.volume, 0, 9);
   root.read("port", out.at_start.port, 0, 9);
@@ -31,7 +31,7 @@ Result<Settings> read(ConfigReader root) {
   return out;
 }
 
-/// A host that remembers what it was last configured with.
+/// A host that remembers its latest configuration.
 struct Host {
   static inline Settings made;
   static inline int volume = 0;
@@ -56,7 +56,7 @@ std::string reloaded(HostedProgram<Settings, Host>& program, const std::string& 
 }
 
 TEST(HostedProgram, TakesTheLivePartAndNamesTheOther) {
-  HostedProgram<Settings, Host> program(&read);
+  HostedProgram<Settings, Host> program(&read_settings);
   ASSERT_TRUE(program.prepare(config(R"({"port": 2})")));
   EXPECT_EQ(Host::made.at_start.port, 2);
   EXPECT_EQ(reloaded(program, R"({"port": 2, "volume": 5})"), "");
@@ -72,7 +72,7 @@ TEST(HostedProgram, TakesTheLivePartAndNamesTheOther) {
 }
 
 TEST(HostedProgram, AWrongConfigurationChangesNothing) {
-  HostedProgram<Settings, Host> program(&read);
+  HostedProgram<Settings, Host> program(&read_settings);
   ASSERT_TRUE(program.prepare(config("{}")));
   Host::volume = 1;
   EXPECT_FALSE(program.reload(config(R"({"volume": 3, "port": 99})")));
@@ -80,7 +80,7 @@ TEST(HostedProgram, AWrongConfigurationChangesNothing) {
 }
 
 TEST(HostedProgram, WhatCannotBeMadeIsRefusedBeforeTheStart) {
-  HostedProgram<Settings, Host> program(&read);
+  HostedProgram<Settings, Host> program(&read_settings);
   const auto refused = program.prepare(config(R"({"rooms": 0})"));
   ASSERT_FALSE(refused);
   EXPECT_THAT(to_string(refused.error()), HasSubstr("rooms"));

@@ -16,7 +16,6 @@ namespace {
 
 using record::RecordingState;
 using Stream = Recordings::Stream;
-using std::chrono::seconds;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -44,17 +43,17 @@ TEST(RecordingRequest, SaysWhatIsWrong) {
   ASSERT_TRUE(empty);
   EXPECT_TRUE(empty->raw && empty->fused && empty->name.empty());
   EXPECT_FALSE(parse_recording_request("", false)->fused) << "a sensor has none";
-  const auto all =
-      parse_recording_request(R"({"name":"walk-1","seconds":2.5,"raw":false,"fused":true})", true);
+  const auto all = parse_recording_request(
+      R"({"name":"walk-1","std::chrono::seconds":2.5,"raw":false,"fused":true})", true);
   ASSERT_TRUE(all) << to_string(all.error());
   EXPECT_EQ(all->name, "walk-1");
   EXPECT_EQ(all->duration, std::chrono::milliseconds(2500));
   EXPECT_FALSE(all->raw);
   for (const char* body :
-       {"[]", "{", R"({"name":"../x"})", R"({"name":5})", R"({"seconds":0})", R"({"seconds":"5"})",
-        R"({"seconds":1e9})", R"({"raw":1})", R"({"nmae":"x"})", R"({"raw":false,"fused":false})",
-        R"({"name":""})", R"({"name":"a.mcap"})", R"({"name":"a","name":"b"})",
-        R"({"name":[[[[[[[[]]]]]]]]})"}) {
+       {"[]", "{", R"({"name":"../x"})", R"({"name":5})", R"({"std::chrono::seconds":0})",
+        R"({"std::chrono::seconds":"5"})", R"({"std::chrono::seconds":1e9})", R"({"raw":1})",
+        R"({"nmae":"x"})", R"({"raw":false,"fused":false})", R"({"name":""})",
+        R"({"name":"a.mcap"})", R"({"name":"a","name":"b"})", R"({"name":[[[[[[[[]]]]]]]]})"}) {
     const auto wrong = parse_recording_request(body, true);
     ASSERT_FALSE(wrong) << body;
     EXPECT_EQ(wrong.error().code, ErrorCode::InvalidArgument) << body;
@@ -77,7 +76,7 @@ TEST(Recordings, RunsOneAtATimeAndOnlyWhatWasAskedFor) {
   for (int i = 0; i < 10; ++i) recordings.recorder(Stream::Raw)->offer(raw(i));
   const auto recorder = recordings.recorder(Stream::Any);
   ASSERT_TRUE(recordings.stop("walk"));
-  ASSERT_TRUE(recorder->wait(seconds(20)));
+  ASSERT_TRUE(recorder->wait(std::chrono::seconds(20)));
   EXPECT_TRUE(recordings.stop("walk")) << "twice is harmless";
   EXPECT_EQ(recordings.stop("never").error().code, ErrorCode::NotFound);
   EXPECT_TRUE(recordings.start({"other", Duration{0}, true, true}));
@@ -171,7 +170,7 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
   EXPECT_THAT(
       (std::pair(ended.status, nlohmann::json::parse(ended.body).at("state").get<std::string>())),
       AnyOf(Pair(202, "stopping"), Pair(200, "finished")));
-  ASSERT_TRUE(recorder->wait(seconds(20)));
+  ASSERT_TRUE(recorder->wait(std::chrono::seconds(20)));
   const auto described = nlohmann::json::parse(ask("GET", "/recordings/walk").body);
   EXPECT_EQ(described.at("state"), "finished");
   EXPECT_EQ(described.at("frames"), 30);
@@ -202,7 +201,7 @@ TEST_F(RecordingRoutes, EndingOneWaitsForNobodyAndHalfAFileIsNotHandedOut) {
   EXPECT_EQ(half.headers.at("retry-after"), "1");
   EXPECT_EQ(ask("POST", "/recordings/").status, 409);
   disk.set_value();
-  ASSERT_TRUE(recorder->wait(seconds(20)));
+  ASSERT_TRUE(recorder->wait(std::chrono::seconds(20)));
   EXPECT_EQ(ask("DELETE", "/recordings/walk").status, 200) << "it has ended";
   const auto whole =
       record::read_recording_bytes(ask("GET", "/recordings/walk.mcap", {}, "*/*").body);
@@ -244,7 +243,7 @@ TEST_F(RecordingRoutes, TheListComesInPages) {
     Recordings earlier(options_in(root.string()));
     ASSERT_TRUE(earlier.start({name, Duration{0}, true, true}));
     ASSERT_TRUE(earlier.stop(name));
-    ASSERT_TRUE(earlier.recorder(Stream::Any)->wait(seconds(10)));
+    ASSERT_TRUE(earlier.recorder(Stream::Any)->wait(std::chrono::seconds(10)));
   }
   Recordings recordings(options_in(root.string()));
   auto router = std::make_shared<http::Router>();

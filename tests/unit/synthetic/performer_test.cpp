@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr const char* kTake = "common/motion/assets/02_01.amc";  // CMU: a few steps straight ahead
-constexpr Duration kStep = std::chrono::milliseconds(1);
+constexpr Duration kPerformerStep = std::chrono::milliseconds(1);
 
 std::shared_ptr<const Performance> take() {
   return std::make_shared<const Performance>(read_performance({kTake}).value());
@@ -26,8 +26,8 @@ std::string refusal(const MotionFile& file) {
   return read ? "" : to_string(read.error());
 }
 
-/// A person a few centimetres tall who sits down by the height of the second frame: twelve joints
-/// and a head, as in a BVH file.
+/// A BVH file of a person a few centimetres tall, with twelve joints and a head, who is lower in
+/// the second frame.
 std::string small_bvh() {
   const auto limb = [](const std::string& a, const std::string& b, const std::string& c,
                        const std::string& at, const std::string& reach) {
@@ -137,11 +137,11 @@ TEST(Performance, WhatCannotBePlayedIsRefusedWithTheReason) {
 
 TEST(Performer, NeitherPlaceNorVelocityJumps) {
   const Performer performer(take(), {});
-  constexpr double kMaxSpeed = 6.0;           // of a wrist in this walk [m/s]
+  constexpr double kMaxSpeed = 6.0;           // largest speed of a wrist in this walk [m/s]
   constexpr double kMaxAcceleration = 400.0;  // heels strike; corners would have 2000 [m/s^2]
-  const double dt = seconds(kStep);
+  const double dt = seconds(kPerformerStep);
   for (const JointId joint : {JointId::SpineBase, JointId::WristRight, JointId::FootLeft}) {
-    std::vector<Eigen::Vector3d> way = way_of(performer, joint, kStep);
+    std::vector<Eigen::Vector3d> way = way_of(performer, joint, kPerformerStep);
     way.insert(way.end(), way.begin(), way.begin() + 100);  // past the end of the loop
     for (std::size_t i = 2; i < way.size(); ++i) {
       EXPECT_LT((way[i] - way[i - 1]).norm(), kMaxSpeed * dt) << i;
@@ -170,7 +170,7 @@ TEST(Performer, StandsOnTheFloorAtTheCentreInItsSize) {
   const Performer usual(take(), {});
   Eigen::Vector3d least = Eigen::Vector3d::Constant(1e9);
   Eigen::Vector3d most = -least;
-  for (const Eigen::Vector3d& x : way_of(small, JointId::SpineBase, 10 * kStep)) {
+  for (const Eigen::Vector3d& x : way_of(small, JointId::SpineBase, 10 * kPerformerStep)) {
     least = least.cwiseMin(x);
     most = most.cwiseMax(x);
   }
@@ -178,7 +178,7 @@ TEST(Performer, StandsOnTheFloorAtTheCentreInItsSize) {
   EXPECT_NEAR(0.5 * (least.z() + most.z()), centre.y(), 0.02);
   EXPECT_GT((most - least).norm(), 1.0) << "somebody walks";
   double lowest = 1e9;
-  for (const Eigen::Vector3d& x : way_of(usual, JointId::FootLeft, 10 * kStep)) {
+  for (const Eigen::Vector3d& x : way_of(usual, JointId::FootLeft, 10 * kPerformerStep)) {
     lowest = std::min(lowest, x.y());
   }
   EXPECT_NEAR(lowest, 0.03, 0.03);
@@ -229,15 +229,15 @@ TEST(Performer, PeopleOfOneFileStayAsCaptured) {
 }
 
 TEST(Performer, NobodyWithoutAPerformance) {
-  EXPECT_FALSE(Performer(nullptr, {}).at(kStep)[JointId::Neck].seen());
-  EXPECT_FALSE(Performer(take(), {.role = 7}).at(kStep)[JointId::Neck].seen());
+  EXPECT_FALSE(Performer(nullptr, {}).at(kPerformerStep)[JointId::Neck].seen());
+  EXPECT_FALSE(Performer(take(), {.role = 7}).at(kPerformerStep)[JointId::Neck].seen());
   EXPECT_TRUE(make_performers(nullptr, {}, 0).empty());
   motion::Motion still = take()->roles[0];
   still.frames.resize(1);
   const auto statue = std::make_shared<const Performance>(staged({still}).value());
   const Performer performer(statue, {});
-  EXPECT_EQ(performer.at(kStep)[JointId::Neck].position,
-            performer.at(-99 * kStep)[JointId::Neck].position);
+  EXPECT_EQ(performer.at(kPerformerStep)[JointId::Neck].position,
+            performer.at(-99 * kPerformerStep)[JointId::Neck].position);
 }
 
 }  // namespace

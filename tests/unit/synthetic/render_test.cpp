@@ -13,7 +13,7 @@ namespace {
 
 constexpr Timestamp kNow = from_unix_ns(1'795'000'000'000'000'000);
 
-Scene standing() {
+Scene standing_scene() {
   WalkerScript script;
   script.path = PathKind::Stand;
   return Scene{Timestamp{}, make_people(script, 1), ring_places(Ring{})};
@@ -34,20 +34,20 @@ TEST(Hit, BallTubeAndMiss) {
 }
 
 TEST(Depth, ShowsAThingBeforeWhoeverItHides) {
-  Scene scene = standing();
+  Scene scene = standing_scene();
   CameraModel camera;
   camera.depth_noise = 0.0;
   scene.occluders = {stand_thing(kOccluderKinds[1], {0, 0, 1.5}, 0.0)};
   const cv::Mat depth = decoded(*render_depth(scene, 0, kNow, camera));
   // The ring looks 13 degrees down from 1.6 m; the pillar's front is 1.3 m away horizontally.
   EXPECT_NEAR(depth.at<std::uint16_t>(212, 256), to_mm(1.3 / std::cos(deg(13))), 10);
-  const cv::Mat free = decoded(*render_color(standing(), 0, kNow, camera));
+  const cv::Mat free = decoded(*render_color(standing_scene(), 0, kNow, camera));
   const cv::Mat hidden = decoded(*render_color(scene, 0, kNow, camera));
   EXPECT_NE(free.at<cv::Vec3b>(212, 256), hidden.at<cv::Vec3b>(212, 256));
 }
 
 TEST(Depth, ShowsTheChestInFrontAndTheFloorBelow) {
-  const Scene scene = standing();
+  const Scene scene = standing_scene();
   const CameraModel camera;
   const auto image = render_depth(scene, 0, kNow, camera);
   ASSERT_TRUE(image) << to_string(image.error());
@@ -70,7 +70,7 @@ TEST(Depth, ShowsTheChestInFrontAndTheFloorBelow) {
 }
 
 TEST(Color, IsAJpegWithAPersonInIt) {
-  Scene scene = standing();
+  Scene scene = standing_scene();
   const auto with = render_color(scene, 0, kNow, {});
   scene.people.clear();
   const auto without = render_color(scene, 0, kNow, {});
@@ -116,7 +116,7 @@ TEST(Picture, RefusesPixelsThatDoNotFillIt) {
 }
 
 TEST(Render, RefusesImpossibleCameras) {
-  const Scene scene = standing();
+  const Scene scene = standing_scene();
   EXPECT_FALSE(render_depth(scene, 99, kNow, {}));
   CameraModel camera;
   camera.intrinsics.width = 1 << 20;

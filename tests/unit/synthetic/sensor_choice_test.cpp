@@ -7,8 +7,8 @@
 namespace chorus::synthetic {
 namespace {
 
-constexpr Timestamp kStart = from_unix_ns(1'795'000'000'000'000'000);
-constexpr Timestamp kEnd = kStart + std::chrono::seconds(10);
+constexpr Timestamp kChoiceStart = from_unix_ns(1'795'000'000'000'000'000);
+constexpr Timestamp kEnd = kChoiceStart + std::chrono::seconds(10);
 
 Scene room() {
   WalkerScript script;
@@ -38,13 +38,14 @@ std::vector<Eigen::Vector3d> necks(const std::vector<SensorFrame>& frames) {
 }
 
 std::vector<Eigen::Vector3d> recorded(const Scene& scene, const SensorChoice& chosen) {
-  return necks(record(scene, chosen, kStart, kEnd).value());
+  return necks(record(scene, chosen, kChoiceStart, kEnd).value());
 }
 
 TEST(SensorChoice, NominalAIsTheKinectSensorOfProfileA) {
   const Scene scene = room();
-  const auto direct = kinect::record(
-      scene, {*SensorId::parse("s1"), 0, kinect::nominal_profile("A"), 1, 1, true}, kStart, kEnd);
+  const auto direct =
+      kinect::record(scene, {*SensorId::parse("s1"), 0, kinect::nominal_profile("A"), 1, 1, true},
+                     kChoiceStart, kEnd);
   ASSERT_GT(direct.size(), 100u);
   EXPECT_EQ(recorded(scene, choice("A")), necks(direct));
 }
@@ -80,11 +81,11 @@ TEST(SensorChoice, GaussIsThePlainModel) {
   const Scene scene = room();
   SensorChoice chosen = choice("gauss");
   chosen.gauss.seed = 7;
-  const auto sensor = make_sensor(scene, chosen, kStart);
+  const auto sensor = make_sensor(scene, chosen, kChoiceStart);
   ASSERT_TRUE(sensor.has_value());
   const SimulatedSensor plain{chosen.id, 0, chosen.gauss};
   EXPECT_EQ(necks({*(*sensor)->next()}),
-            necks({*observe(scene, plain, first_frame_from(plain, kStart))}));
+            necks({*observe(scene, plain, first_frame_from(plain, kChoiceStart))}));
   EXPECT_EQ((*sensor)->clock().offset, 0.0);
   SensorChoice other = chosen;
   other.gauss.seed = 8;
@@ -95,21 +96,21 @@ TEST(SensorChoice, StressMultipliesItsSourceAlone) {
   const Scene scene = room();
   SensorChoice stressed = choice("B");
   stressed.stress = {{Source::Clock, 0.0}};
-  const auto sensor = make_sensor(scene, stressed, kStart);
+  const auto sensor = make_sensor(scene, stressed, kChoiceStart);
   ASSERT_TRUE(sensor.has_value());
   EXPECT_EQ((*sensor)->clock().offset, 0.0);
-  const auto plain = make_sensor(scene, choice("B"), kStart);
+  const auto plain = make_sensor(scene, choice("B"), kChoiceStart);
   EXPECT_NE((*plain)->clock().offset, 0.0);
   EXPECT_EQ((*plain)->next_exposure(), (*sensor)->next_exposure());
 }
 
 TEST(SensorChoice, RefusesWhatItDoesNotHave) {
   const Scene scene = room();
-  EXPECT_EQ(make_sensor(scene, choice("Z"), kStart).error().code, ErrorCode::InvalidArgument);
+  EXPECT_EQ(make_sensor(scene, choice("Z"), kChoiceStart).error().code, ErrorCode::InvalidArgument);
   SensorChoice nowhere = choice("A");
   nowhere.place = 1;
-  EXPECT_EQ(make_sensor(scene, nowhere, kStart).error().code, ErrorCode::InvalidArgument);
-  EXPECT_FALSE(record(scene, nowhere, kStart, kEnd).has_value());
+  EXPECT_EQ(make_sensor(scene, nowhere, kChoiceStart).error().code, ErrorCode::InvalidArgument);
+  EXPECT_FALSE(record(scene, nowhere, kChoiceStart, kEnd).has_value());
 }
 
 TEST(SensorChoice, TellsWhichParametersMadeTheNumbers) {

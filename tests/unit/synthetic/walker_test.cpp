@@ -14,7 +14,7 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(10);
 
-class EveryPath : public testing::TestWithParam<std::tuple<PathKind, std::uint64_t>> {
+class EveryPath : public ::testing::TestWithParam<std::tuple<PathKind, std::uint64_t>> {
  protected:
   WalkerScript script() const {
     WalkerScript script;
@@ -71,10 +71,10 @@ TEST_P(EveryPath, IsAFunctionOfTimeAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, EveryPath,
-                         testing::Combine(testing::Values(PathKind::Random, PathKind::Circle,
-                                                          PathKind::Line, PathKind::Stand,
-                                                          PathKind::Turn, PathKind::Assembly),
-                                          testing::Values(1, 2)));
+                         ::testing::Combine(::testing::Values(PathKind::Random, PathKind::Circle,
+                                                              PathKind::Line, PathKind::Stand,
+                                                              PathKind::Turn, PathKind::Assembly),
+                                            ::testing::Values(1, 2)));
 
 TEST(Walker, WalksForward) {
   WalkerScript script;

@@ -81,7 +81,7 @@ TEST(ClockFilter, FollowsAClockThatRunsFast) {
   EXPECT_NEAR(seconds(estimate->ours_minus_theirs), -kRate * 34, 50e-6);
 }
 
-/// Requests and answers need not travel equally well: each direction has its own least delay.
+/// Requests and answers need not take equally long: each direction has its own smallest delay.
 TEST(ClockFilter, FindsEachDirectionsLeastDelayInAnotherExchange) {
   ClockFilter filter;
   filter.add(exchange(kT0, Duration{0}, microseconds(100), Duration{0}, milliseconds(40)));
@@ -107,7 +107,7 @@ TEST(ClockFilter, AStepOfTheOtherClockIsBelievedAtTheThirdContradiction) {
   EXPECT_EQ(filter.at(now)->ours_minus_theirs, -milliseconds(500));
 }
 
-/// A rate that wanders makes old knowledge wrong.
+/// A rate that wanders makes old estimates wrong.
 TEST(ClockFilter, ForgetsExchangesOlderThanTheWindow) {
   ClockFilterLimits limits;
   limits.max_rate = 0.0;

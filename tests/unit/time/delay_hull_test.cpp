@@ -1,4 +1,4 @@
-// The lower convex hull of delays, grown and forgotten in order of time.
+// The lower convex hull of delays, extended and shortened in order of time.
 #include "common/time/delay_hull.h"
 
 #include <cmath>

@@ -52,8 +52,8 @@ TEST(RequestGate, MakesFewConnectionsASecond) {
   EXPECT_EQ(made(kNow + std::chrono::hours(9)), 5);
 }
 
-/// What a flood and other hosts get in a minute: one address asks 500 times a second, each time for
-/// another port, and every two seconds another host asks once.
+/// What a flood and other hosts achieve in a minute: one address asks 500 times a second, each time
+/// for another port, and every two seconds another host asks once.
 struct Flood {
   int flooded = 0;
   int refused = 0;
@@ -104,7 +104,7 @@ TEST(RequestGate, RemembersAFewAddressesAndForgetsThemWhenTheyAreQuiet) {
     return verdict;
   };
   for (int i = 1; i <= 3; ++i) EXPECT_EQ(ask(i, 1, kNow), Verdict::Connect);
-  // All beyond the limit share one allowance.
+  // All addresses beyond the limit share one allowance.
   EXPECT_EQ(ask(4, 1, kNow), Verdict::Connect);
   EXPECT_EQ(ask(5, 1, kNow), Verdict::Connect);
   EXPECT_EQ(ask(6, 1, kNow), Verdict::Refused);

@@ -1,4 +1,4 @@
-// Sensors around somebody who walks: which of them was moved.
+// Sensors around somebody who walks, one of which is moved.
 #include "fusion-server/watch/watch.h"
 
 #include <cmath>
@@ -17,7 +17,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
@@ -25,8 +24,8 @@ constexpr Duration kStep = milliseconds(100);
 
 SensorId name(int sensor) { return sensor_id("s" + std::to_string(sensor + 1)); }
 
-/// Sensors on a ring with the errors of real ones: some last half a second, some depend on how the
-/// person stands to the sensor.
+/// Sensors on a ring with the errors of real ones: some last half a second, some depend on the
+/// person's orientation towards the sensor.
 class Room : public ::testing::Test {
  protected:
   void furnish(int sensors) {
@@ -43,7 +42,7 @@ class Room : public ::testing::Test {
     moved_[static_cast<std::size_t>(sensor)] = move;
   }
 
-  /// Until somebody stands out; the time that took, or none within `length`.
+  /// Time until a sensor stands out; none if that does not happen within `length`.
   std::optional<double> walk(Duration length, double speed = 0.9) {
     const Timestamp begin = now_;
     for (; now_ < begin + length; now_ += kStep) {
@@ -100,16 +99,16 @@ class Room : public ::testing::Test {
 TEST_F(Room, NobodyStandsOutWhileErrorsDependOnHowThePersonStands) {
   furnish(3);
   bias_ = 0.03;
-  EXPECT_EQ(walk(seconds(600)), std::nullopt);
+  EXPECT_EQ(walk(std::chrono::seconds(600)), std::nullopt);
   EXPECT_TRUE(watch_.shift_of(name(0)));
   EXPECT_FALSE(watch_.shift_of(sensor_id("stranger")));
 }
 
 TEST_F(Room, ASensorThatWasPushedIsNamedWithinSeconds) {
   furnish(4);
-  ASSERT_EQ(walk(seconds(60)), std::nullopt);
+  ASSERT_EQ(walk(std::chrono::seconds(60)), std::nullopt);
   push(2, {0.06, 0.0, -0.06});
-  const auto after = walk(seconds(20));
+  const auto after = walk(std::chrono::seconds(20));
   ASSERT_TRUE(after);
   EXPECT_LT(*after, 5.0);
   EXPECT_EQ(watch_.finding()->sensor, name(2));
@@ -121,9 +120,9 @@ TEST_F(Room, ASensorThatWasPushedIsNamedWithinSeconds) {
 
 TEST_F(Room, ASensorThatWasTurnedIsNamedWithinSeconds) {
   furnish(3);
-  ASSERT_EQ(walk(seconds(60)), std::nullopt);
+  ASSERT_EQ(walk(std::chrono::seconds(60)), std::nullopt);
   push(1, Vector3d::Zero(), deg(2));
-  const auto after = walk(seconds(20));
+  const auto after = walk(std::chrono::seconds(20));
   ASSERT_TRUE(after);
   EXPECT_LT(*after, 5.0);
   EXPECT_EQ(watch_.finding()->sensor, name(1));
@@ -131,9 +130,9 @@ TEST_F(Room, ASensorThatWasTurnedIsNamedWithinSeconds) {
 
 TEST_F(Room, OfTwoSensorsItIsNotToldWhichWasMoved) {
   furnish(2);
-  ASSERT_EQ(walk(seconds(60)), std::nullopt);
+  ASSERT_EQ(walk(std::chrono::seconds(60)), std::nullopt);
   push(0, {0.12, 0.0, 0.0});
-  ASSERT_TRUE(walk(seconds(20)));
+  ASSERT_TRUE(walk(std::chrono::seconds(20)));
   const Finding found = *watch_.finding();
   ASSERT_TRUE(found.or_else);
   EXPECT_NE(found.sensor, *found.or_else);
@@ -141,18 +140,18 @@ TEST_F(Room, OfTwoSensorsItIsNotToldWhichWasMoved) {
 
 TEST_F(Room, WhoStandsStillTellsNothing) {
   furnish(3);
-  ASSERT_EQ(walk(seconds(60)), std::nullopt);
+  ASSERT_EQ(walk(std::chrono::seconds(60)), std::nullopt);
   push(1, {0.1, 0.0, 0.0});
-  EXPECT_EQ(walk(seconds(60), 0.05), std::nullopt);
+  EXPECT_EQ(walk(std::chrono::seconds(60), 0.05), std::nullopt);
 }
 
 TEST_F(Room, ASensorThatSagsForAnHourHasDrifted) {
   furnish(4);
-  ASSERT_EQ(walk(seconds(60)), std::nullopt);
+  ASSERT_EQ(walk(std::chrono::seconds(60)), std::nullopt);
   std::optional<double> found;
   for (int minute = 1; minute <= 60 && !found; ++minute) {
     push(3, {0.0, -0.005 * minute, 0.0});
-    found = walk(seconds(60));
+    found = walk(std::chrono::seconds(60));
   }
   ASSERT_TRUE(found);
   EXPECT_EQ(watch_.finding()->sensor, name(3));
@@ -162,20 +161,20 @@ TEST_F(Room, ASensorThatSagsForAnHourHasDrifted) {
 
 TEST_F(Room, OnceForgottenTheOthersAreComparedAnew) {
   furnish(4);
-  ASSERT_EQ(walk(seconds(60)), std::nullopt);
+  ASSERT_EQ(walk(std::chrono::seconds(60)), std::nullopt);
   push(2, {0.2, 0.0, 0.0});
-  ASSERT_TRUE(walk(seconds(20)));
+  ASSERT_TRUE(walk(std::chrono::seconds(20)));
   watch_.forget();
   push(2, Vector3d::Zero());  // placed anew
-  EXPECT_EQ(walk(seconds(60)), std::nullopt);
+  EXPECT_EQ(walk(std::chrono::seconds(60)), std::nullopt);
 }
 
 TEST_F(Room, SwitchedOffItFindsNothing) {
   furnish(3);
   config_.enabled = false;
-  ASSERT_EQ(walk(seconds(30)), std::nullopt);
+  ASSERT_EQ(walk(std::chrono::seconds(30)), std::nullopt);
   push(1, {0.3, 0.0, 0.0});
-  EXPECT_EQ(walk(seconds(30)), std::nullopt);
+  EXPECT_EQ(walk(std::chrono::seconds(30)), std::nullopt);
   EXPECT_FALSE(watch_.shift_of(name(1)));
 }
 

@@ -37,7 +37,12 @@ Registration example() {
   edge.inliers = 601;
   r.edges.push_back(edge);
   r.clocks[sensor_id("s1")] = {std::chrono::milliseconds(-212), std::chrono::milliseconds(4)};
+  r.clocks[sensor_id("s1")].stated = std::chrono::milliseconds(12);
+  r.clocks[sensor_id("s1")].least_age = std::chrono::milliseconds(-204);
   r.clocks[sensor_id("s2")] = {};
+  r.edges.back().apart = 0.012;
+  r.sensors.at(sensor_id("s3")).next_chain = {sensor_id("s2"), sensor_id("s1"), sensor_id("s3")};
+  r.sensors.at(sensor_id("s3")).next_error = 0.034;
   return r;
 }
 
@@ -59,6 +64,15 @@ TEST(RegistrationFile, ReadsWhatItWrites) {
   EXPECT_EQ(read->clocks.at(sensor_id("s1")).added, std::chrono::milliseconds(-212));
   EXPECT_EQ(read->clocks.at(sensor_id("s1")).sigma, std::chrono::milliseconds(4));
   EXPECT_EQ(read->clocks.at(sensor_id("s2")).sigma, Duration{0});
+  EXPECT_EQ(read->clocks.at(sensor_id("s1")).stated, std::chrono::milliseconds(12));
+  EXPECT_EQ(read->clocks.at(sensor_id("s1")).least_age, std::chrono::milliseconds(-204));
+  EXPECT_FALSE(exchanges_time(seconds(read->clocks.at(sensor_id("s2")).stated)));
+  EXPECT_FALSE(read->clocks.at(sensor_id("s2")).least_age);
+  EXPECT_EQ(read->edges.at(0).apart, 0.012);
+  EXPECT_FALSE(read->edges.at(0).loop);
+  EXPECT_EQ(read->sensors.at(sensor_id("s3")).next_chain.size(), 3u);
+  EXPECT_EQ(read->sensors.at(sensor_id("s3")).next_error, 0.034);
+  EXPECT_TRUE(read->sensors.at(sensor_id("s1")).next_chain.empty());
   ASSERT_EQ(read->sensors.size(), 3u);
   for (const auto& [id, place] : written.sensors) {
     const Extrinsics& again = read->sensors.at(id);

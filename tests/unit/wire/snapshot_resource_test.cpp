@@ -1,4 +1,4 @@
-// A snapshot on the wire, and its instant between two captures.
+// A snapshot on the wire.
 #include "fusion-server/wire/snapshot_resource.h"
 
 #include <gtest/gtest.h>

@@ -6,6 +6,8 @@
 //   for (const auto& j : joints) frame.point(j.x, j.y, j.z, j.confidence);   // in the layout's order, metres; missing() for none
 //   if (!pusher.push(frame)) std::cerr << pusher.problem() << "\n";
 //
+// A sensor with TLS is wss://HOST:PORT, for which this needs chorus_push_tls.h beside it and OpenSSL: -DCHORUS_PUSH_TLS, -lssl -lcrypto.
+//
 // What the messages mean: proto/bridge.md.  Tested on Linux; the lines for Windows are there and were never compiled.
 #pragma once
 
@@ -22,10 +24,12 @@
 #include <unistd.h>
 #endif
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -167,11 +171,40 @@ class Stream {
   bool local_ = false;
 };
 
+}  // namespace chorus
+
+#ifdef CHORUS_PUSH_TLS
+#include "chorus_push_tls.h"
+#endif
+
+namespace chorus {
+
+#ifndef CHORUS_PUSH_TLS
+/// In place of chorus_push_tls.h: says how to have it.
+class Tls {
+ public:
+  bool is_open() const { return false; }
+  void close() {}
+  std::string open(Stream&, const std::string&, const std::string&, int) { return "this program was compiled without CHORUS_PUSH_TLS"; }
+  bool send(Stream&, const std::string&) { return false; }
+  bool receive(Stream&, std::string&, int) { return false; }
+};
+#endif
+
 class Pusher {
  public:
-  /// `where`: HOST:PORT, or the path of a local socket.  `hello`: the message, as JSON in one line.
-  Pusher(std::string where, std::string hello, std::string token = "")
-      : where_(std::move(where)), hello_(std::move(hello)), token_(std::move(token)) {}
+  /// `where`: HOST:PORT, ws://HOST:PORT, wss://HOST:PORT, or the path of a local socket.  `hello`: the message, as JSON in one line.
+  /// `ca`: a file of authorities to believe, for wss; empty: that of CHORUS_CA, else the system's.
+  Pusher(std::string where, std::string hello, std::string token = "", std::string ca = "")
+      : where_(std::move(where)), hello_(std::move(hello)), token_(std::move(token)), ca_(std::move(ca)) {
+    sealed_ = where_.compare(0, 6, "wss://") == 0;
+    if (sealed_ || where_.compare(0, 5, "ws://") == 0) {  // without the path, which is known
+      where_.erase(0, where_.find("//") + 2);
+      where_.erase(std::min(where_.find('/'), where_.size()));
+    }
+    const char* const named = std::getenv("CHORUS_CA");
+    if (ca_.empty() && named != nullptr) ca_ = named;
+  }
 
   /// Returns false if the frame was not sent; problem() says why, and a push at least a second after the last attempt connects
   /// again. Also answers the sensor's questions for the time: push at least twice a second, an empty frame if nobody is there.
@@ -194,6 +227,10 @@ class Pusher {
     heard_.clear();
     greeted_ = false;
     if (!stream_.open(where_)) return fail("cannot connect to " + where_);
+    if (sealed_) {
+      const std::string wrong = tls_.open(stream_, where_.substr(0, where_.rfind(':')), ca_, kPatienceMs);
+      if (!wrong.empty()) return fail(where_ + ": " + wrong);
+    }
     if (!stream_.is_local() && !shake_hands()) return fail(problem_);
     if (!send(hello_)) return false;
     while (!greeted_) {  // the welcome comes with the first question for the time
@@ -209,10 +246,10 @@ class Pusher {
                         "Sec-WebSocket-Key: Y2hvcnVzLWMrKy1wdXNoZXI=\r\n";
     if (!token_.empty()) asked += "Authorization: Bearer " + token_ + "\r\n";
     std::size_t end = std::string::npos;
-    if (stream_.send(asked + "\r\n")) {
+    if (send_bytes(asked + "\r\n")) {
       while ((end = heard_.find("\r\n\r\n")) == std::string::npos) {
         const std::size_t before = heard_.size();
-        if (!stream_.receive(heard_, kPatienceMs) || heard_.size() == before) break;
+        if (!receive(kPatienceMs) || heard_.size() == before) break;
       }
     }
     problem_ = heard_.empty() ? "no answer from " + where_ : heard_;
@@ -221,8 +258,12 @@ class Pusher {
     heard_.erase(0, end + 4);
     return true;
   }
+  bool send_bytes(const std::string& bytes) { return sealed_ ? tls_.send(stream_, bytes) : stream_.send(bytes); }
+  bool receive(int patience_ms) {
+    return sealed_ ? tls_.receive(stream_, heard_, patience_ms) : stream_.receive(heard_, patience_ms);
+  }
   bool send(const std::string& message) {
-    if (stream_.send(stream_.is_local() ? message + "\n" : frame_of(message))) return true;
+    if (send_bytes(stream_.is_local() ? message + "\n" : frame_of(message))) return true;
     return fail("the sensor has gone");
   }
   /// A masked text frame; the mask is zero, which changes nothing.
@@ -235,7 +276,7 @@ class Pusher {
     return frame + std::string(4, '\0') + text;
   }
   bool listen(int patience_ms) {
-    if (!stream_.receive(heard_, patience_ms)) return fail(problem_.empty() ? "the sensor closed the connection" : problem_);
+    if (!receive(patience_ms)) return fail(problem_.empty() ? "the sensor closed the connection" : problem_);
     const std::int64_t received = now_ns();
     for (std::string message; next(message);) {
       if (!hear(message, received)) return false;
@@ -260,7 +301,7 @@ class Pusher {
     if (heard_.size() < begin + size) return false;
     const int opcode = byte(0) & 0x0F;
     message = opcode == 1 ? heard_.substr(begin, size) : "";
-    if (opcode == 9) stream_.send(frame_of(heard_.substr(begin, size), 10));
+    if (opcode == 9) send_bytes(frame_of(heard_.substr(begin, size), 10));
     heard_.erase(0, begin + size);
     return true;
   }
@@ -284,6 +325,7 @@ class Pusher {
   }
   bool fail(std::string why) {
     problem_ = std::move(why);
+    tls_.close();
     stream_.close();
     return false;
   }
@@ -292,7 +334,10 @@ class Pusher {
   std::string where_;
   std::string hello_;
   std::string token_;
+  std::string ca_;
+  bool sealed_ = false;
   Stream stream_;
+  Tls tls_;
   std::string heard_;
   std::string problem_;
   bool greeted_ = false;

@@ -2,6 +2,11 @@
 //
 //   c++ -std=c++17 -O2 -o push_circle push_circle.cpp
 //   ./push_circle 127.0.0.1:8081 [seconds] [token]
+//
+// To a sensor with TLS:
+//
+//   c++ -std=c++17 -O2 -DCHORUS_PUSH_TLS -o push_circle push_circle.cpp -lssl -lcrypto
+//   CHORUS_CA=ca.crt ./push_circle wss://sensor-1.local:8081 [seconds] [token]
 #include <cmath>
 #include <cstdlib>
 #include <iostream>

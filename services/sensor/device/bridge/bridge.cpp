@@ -47,11 +47,11 @@ Result<std::unique_ptr<LineServer>> Bridge::listen() const {
 }
 
 Result<void> Bridge::run(std::stop_token stop, const Sink& sink) {
-  constexpr auto kPatience = std::chrono::milliseconds(200);
+  constexpr auto kWait = std::chrono::milliseconds(200);
   const auto lines = listen();
   if (!lines) return pass(lines);
   while (!stop.stop_requested()) {
-    for (Capture& capture : desk_->captures(kPatience)) sink(std::move(capture));
+    for (Capture& capture : desk_->captures(kWait)) sink(std::move(capture));
   }
   return {};
 }

@@ -17,8 +17,8 @@ namespace {
 using http::PathParams;
 using http::Request;
 
-// The page may load and ask this service only, and no other page may frame it: a camera is open in
-// it.  WebAssembly is compiled, hence 'wasm-unsafe-eval'.
+// The page may load from and talk to this service only, and no other page may frame it, because it
+// has a camera open. 'wasm-unsafe-eval' is needed to compile WebAssembly.
 constexpr std::string_view kLines =
     "Link: <http://www.w3.org/ns/ldp#NonRDFSource>; rel=\"type\"\r\n"
     "Content-Security-Policy: default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; "
@@ -61,7 +61,7 @@ constexpr std::array kModelFiles{
     Shared{"blazepose-full.bin", "blazepose-full.bin"},
 };
 
-/// A folder of which only the listed files are answered: it has others, and much that is large.
+/// Serves only the listed files of a folder, because it also contains other, large ones.
 void add_listed(http::Router& router, const std::string& prefix, const std::string& folder,
                 std::span<const Shared> listed) {
   const std::string pattern = prefix + "{file}";

@@ -1,6 +1,6 @@
-// `/capture/`: a page that makes the camera of a phone or laptop this sensor.  Its files are
-// answered without a token, because a person opens it before there is a place to enter one; they
-// are the same for everybody, and a list names each that does not lie in the page's own folder.
+// `/capture/`: a page that makes the camera of a phone or laptop this sensor.  Its files are served
+// without a token, because a person opens the page before there is a place to enter one.  The files
+// are the same for everybody; those outside the page's own folder are listed one by one.
 #pragma once
 
 #include <string>

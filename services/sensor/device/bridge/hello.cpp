@@ -15,7 +15,6 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kMaxName = 64;
-constexpr double kMaxPixels = 1e5;
 constexpr Bounds kShare{0.0, 1.0};
 
 struct Direction {

@@ -26,8 +26,8 @@ struct Hello {
   double inferred_from = 0.0;
 };
 
-/// Parses "right down ahead": the directions in which x, y and z point, seen by somebody who looks
-/// where the camera looks.
+/// Parses "right down ahead": the directions in which x, y and z point, as seen when looking in the
+/// camera's direction.
 [[nodiscard]] Result<Eigen::Matrix3d> read_axes(std::string_view words);
 
 /// Reads the floor n.x + d = 0 from nx, ny, nz, d in the pusher's axes [m]; the normal must point

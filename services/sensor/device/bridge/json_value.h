@@ -23,8 +23,8 @@ struct At {
   std::string_view key = {};
   std::optional<std::size_t> index = {};
 
-  /// Call it only on an At with a name, because the result points to that At.  `At{}` is the
-  /// message itself.
+  /// The result points to this At, so call this only on a named variable, not on a temporary.
+  /// `At{}` is the message itself.
   [[nodiscard]] At operator[](std::string_view inner) const { return {outer(), inner, {}}; }
   [[nodiscard]] At operator[](std::size_t inner) const { return {outer(), {}, inner}; }
   [[nodiscard]] std::string text() const;
@@ -37,6 +37,9 @@ struct Bounds {
   double least = 0.0;
   double most = 0.0;
 };
+
+/// Limit of a coordinate, length or focal length in a picture [px].
+inline constexpr double kMaxPixels = 1e5;
 
 /// A Malformed error that names the place.
 [[nodiscard]] tl::unexpected<Error> wrong(const At& at, std::string what_it_must_be);

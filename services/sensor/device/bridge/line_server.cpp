@@ -187,7 +187,7 @@ void LineServer::Impl::accept() {
   accepting = true;
   acceptor.async_accept([this](error_code failed, LocalSocket socket) {
     accepting = false;
-    if (failed) return;  // Perhaps no descriptor was left; look() tries again.
+    if (failed) return;  // Perhaps all file descriptors are in use; look() tries again.
     auto connection = std::make_shared<LineConnection>(std::move(socket), options.max_line_bytes);
     connections.insert(connection);
     accept();

@@ -19,7 +19,7 @@ struct LineServerOptions {
 
 class LineServer {
  public:
-  /// Replaces a socket that a program left when it ended; Io when the path is something else, or
+  /// Replaces a socket that an ended program left behind.  Io when the path is something else, or
   /// when another program listens there.
   [[nodiscard]] static Result<std::unique_ptr<LineServer>> start(LineServerOptions options);
   ~LineServer();  ///< Joins the thread and removes the socket.

@@ -100,7 +100,7 @@ std::uint64_t PushDesk::step_of(const PushedFrame& frame) const {
   return std::min(*frame.sequence - *holder_->last_count, kWidestGap);
 }
 
-/// The same rule as in SensorService; but here the program is told.
+/// The same rule as in SensorService, but here the program gets an error.
 bool PushDesk::advances(Timestamp captured) const {
   if (!last_captured_ || captured > *last_captured_) return true;
   if (*last_captured_ - captured > kMaxRepeat) return true;
@@ -153,7 +153,7 @@ void PushDesk::note_clock(Seat seat, const std::optional<ClockEstimate>& estimat
   if (holder_ && holder_->seat == seat) holder_->status.clock = estimate;
 }
 
-/// Human-readable: why no frames of the holder come.  Call it with the mutex held.
+/// Human-readable: why no frames arrive from the holder.  Call it with the mutex held.
 std::string PushDesk::silence_of(const Holder& holder) const {
   const std::string who = described(*holder.status.pusher);
   if (holder.refused_since) {

@@ -1,8 +1,8 @@
 // Receives pushed frames: one program at a time holds the sensor, and its frames go to the device's
-// thread.  Also gives a human-readable state.  Thread-safe, no IO.
+// thread.  Also reports a human-readable state.  Thread-safe, no IO.
 //
-// A program holds the sensor from its hello until it leaves.  One that has pushed no frame for
-// `yields_after` makes room for another.
+// A program holds the sensor from its hello until it leaves.  If it has pushed no frame for
+// `yields_after`, another program may take over.
 #pragma once
 
 #include <chrono>
@@ -78,9 +78,9 @@ class PushDesk {
   void leave(Seat seat, std::string_view why);
 
   /// Takes a frame whose times are by this host's clock.  Refuses it when its capture time does not
-  /// advance. But a step back by more than a second means that a clock was set; so does a smaller
-  /// step back if the next frame goes on from there.  Conflict when another program holds the
-  /// sensor.
+  /// advance, unless a clock was set: that is assumed when the time steps back by more than a
+  /// second, or by less and the next frame continues from there.  Conflict when another program
+  /// holds the sensor.
   [[nodiscard]] Result<void> take(Seat seat, PushedFrame frame, const Hello& hello);
   void note_refusal(Seat seat, const Error& error);
   void note_left_out(Seat seat);
@@ -118,7 +118,7 @@ class PushDesk {
   SteadyTime shut_until_{};
   std::uint64_t sequence_ = 0;
   std::optional<Timestamp> last_captured_;
-  /// Capture time of the previous frame, if that was refused because its time went back.
+  /// Capture time of the previous frame, if that frame was refused because its time went back.
   std::optional<Timestamp> refused_captured_;
 };
 

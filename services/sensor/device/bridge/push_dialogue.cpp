@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr auto kHelloWithin = std::chrono::seconds(5);
-// Time without a message or an answer to a question for the time.
+// Longest time without a message or an answer to our question for the time.
 constexpr auto kSilentFor = std::chrono::seconds(30);
 constexpr auto kClockEvery = std::chrono::seconds(1);
 constexpr auto kErrorEvery = std::chrono::seconds(1);
@@ -58,7 +58,8 @@ class PushDialogue final : public http::Dialogue {
   SteadyTime begun_;
   SteadyTime heard_;
   std::optional<SteadyTime> asked_;  ///< When we last asked the program for its time.
-  /// When the last complaint was sent: at most one a second, errors in between are only counted.
+  /// When the last complaint was sent.  There is at most one per second; errors in between are only
+  /// counted.
   std::optional<SteadyTime> complained_;
   std::uint64_t unsaid_ = 0;
   int errors_in_a_row_ = 0;

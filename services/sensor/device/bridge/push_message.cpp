@@ -18,9 +18,12 @@ namespace {
 using Json = nlohmann::json;
 using layout::Landmark;
 
-constexpr double kMaxPixels = 1e5;
 constexpr double kMaxVariance = 1e8;  // [m^2]
+constexpr double kMaxShape = 10.0;    // From the shape's origin [m].
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
+
+/// An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
+Eigen::Matrix3d sensor_from_image() { return Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal(); }
 
 /// What an element says besides the landmark's place.
 struct Sureness {
@@ -136,13 +139,20 @@ Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at)
   }
   const auto ray = ray_of({element->place[0], element->place[1]}, *hello.camera);
   if (!ray) return Landmark{};
-  // An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
-  const Eigen::Matrix3d sensor_from_image = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
-  Landmark landmark{sensor_from_image * *ray, state_of(element->sure, hello), Measurement::Ray};
+  Landmark landmark{sensor_from_image() * *ray, state_of(element->sure, hello), Measurement::Ray};
   if (sigma)
     landmark.covariance =
-        Covariance(ray_covariance(*ray, *hello.camera, *sigma)).turned(sensor_from_image);
+        Covariance(ray_covariance(*ray, *hello.camera, *sigma)).turned(sensor_from_image());
   return landmark;
+}
+
+/// Reads a landmark of `world`; how sure it is, its pixel says.
+Result<Landmark> read_shape_point(const Json& value, const Hello& /*hello*/, const At& at) {
+  if (value.is_null()) return Landmark{};
+  const auto element = read_element<3>(value, {-kMaxShape, kMaxShape}, at);
+  if (!element) return pass(element);
+  const auto& [x, y, z] = element->place;
+  return Landmark{sensor_from_image() * Eigen::Vector3d(x, y, z), JointState::Tracked};
 }
 
 using ReadLandmark = Result<Landmark> (*)(const Json&, const Hello&, const At&);
@@ -183,50 +193,82 @@ Result<std::vector<Landmark>> read_landmarks(const Json& value, ReadLandmark rea
   return landmarks;
 }
 
-Result<BodyFrame> read_body(const Json& value, const Hello& hello, const At& at) {
+struct PushedBody {
+  BodyFrame body;
+  Skeleton<SensorSpace> shape;
+};
+
+/// What a body says of where its landmarks are.
+struct Places {
+  const Json* points = nullptr;
+  const Json* pixels = nullptr;
+  const Json* world = nullptr;
+};
+
+Result<Places> places_of(const Json& body, const Hello& hello, const At& at) {
+  const Places places{find(body, "points"), find(body, "pixels"), find(body, "world")};
+  if ((places.points == nullptr) == (places.pixels == nullptr))
+    return wrong(at, "must have either \"points\" [m] or \"pixels\"");
+  if (places.pixels != nullptr && !hello.camera)
+    return wrong(at["pixels"], "mean nothing without \"intrinsics\" in the hello");
+  if (places.world != nullptr && places.pixels == nullptr)
+    return wrong(at["world"], "is the shape to \"pixels\"; \"points\" need none");
+  return places;
+}
+
+/// The joints made of the landmarks, if the message has any.
+Result<Skeleton<SensorSpace>> read_joints(const Json* value, ReadLandmark read, const Hello& hello,
+                                          const At& at) {
+  if (value == nullptr) return Skeleton<SensorSpace>{};
+  const auto landmarks = read_landmarks(*value, read, hello, at);
+  if (!landmarks) return pass(landmarks);
+  return Skeleton<SensorSpace>{layout::joints_of(*hello.layout, *landmarks)};
+}
+
+Result<PushedBody> read_body(const Json& value, const Hello& hello, const At& at) {
   if (!value.is_object())
     return wrong(at, "must be an object with \"id\" and \"points\" or \"pixels\"");
   const Json* id = find(value, "id");
   if (id == nullptr) return wrong(at["id"], "is missing; number the bodies, one number a person");
   const auto number = read_whole(*id, at["id"]);
   if (!number) return pass(number);
-  const Json* points = find(value, "points");
-  const Json* pixels = find(value, "pixels");
-  if ((points == nullptr) == (pixels == nullptr))
-    return wrong(at, "must have either \"points\" [m] or \"pixels\"");
-  if (pixels != nullptr && !hello.camera)
-    return wrong(at["pixels"], "mean nothing without \"intrinsics\" in the hello");
-  const auto landmarks = points != nullptr
-                             ? read_landmarks(*points, &read_point, hello, at["points"])
-                             : read_landmarks(*pixels, &read_pixel, hello, at["pixels"]);
-  if (!landmarks) return pass(landmarks);
-  BodyFrame body{BodyId{*number}, {}, {layout::joints_of(*hello.layout, *landmarks)}};
+  const auto places = places_of(value, hello, at);
+  if (!places) return pass(places);
+  const auto joints = places->points != nullptr
+                          ? read_joints(places->points, &read_point, hello, at["points"])
+                          : read_joints(places->pixels, &read_pixel, hello, at["pixels"]);
+  if (!joints) return pass(joints);
+  const auto shape = read_joints(places->world, &read_shape_point, hello, at["world"]);
+  if (!shape) return pass(shape);
+  PushedBody out{{BodyId{*number}, {}, *joints}, *shape};
   // Common to all landmarks: added to joints, so that the mean of two landmarks is no surer of it.
-  for (Joint& joint : body.skeleton.joints) widen_ray(joint, hello.focal_sigma);
-  return body;
+  for (Joint& joint : out.body.skeleton.joints) widen_ray(joint, hello.focal_sigma);
+  return out;
 }
 
-Result<std::vector<BodyFrame>> read_bodies(const Json& value, const Hello& hello,
-                                           Timestamp captured) {
+bool empty(const PushedBody& one) {
+  return std::ranges::none_of(one.body.skeleton.joints, &Joint::given);
+}
+
+/// Reads all bodies and their shapes; leaves out those without joints.
+Result<void> read_bodies(const Json& value, const Hello& hello, PushedFrame& out) {
   const At at = At{}["bodies"];
   if (!value.is_array() || value.size() > kMaxBodies)
     return wrong(
         at, fmt::format("must be an array of at most {}; [] when nobody is there", kMaxBodies));
-  std::vector<BodyFrame> bodies;
   std::vector<BodyId> ids;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    auto body = read_body(value[i], hello, at[i]);
-    if (!body) return pass(body);
-    if (std::find(ids.begin(), ids.end(), body->id) != ids.end())
+    auto one = read_body(value[i], hello, at[i]);
+    if (!one) return pass(one);
+    if (std::find(ids.begin(), ids.end(), one->body.id) != ids.end())
       return wrong(at[i]["id"], "two bodies of one frame have this id");
-    ids.push_back(body->id);
-    const auto& joints = body->skeleton.joints;
-    if (std::none_of(joints.begin(), joints.end(), [](const Joint& j) { return j.given(); }))
-      continue;
-    body->captured = captured;
-    bodies.push_back(std::move(*body));
+    ids.push_back(one->body.id);
+    if (empty(*one)) continue;
+    one->body.captured = out.captured;
+    out.bodies.push_back(std::move(one->body));
+    out.shapes.push_back(one->shape);
   }
-  return bodies;
+  return {};
 }
 
 Result<PushedFrame> read_frame(const Json& message, const Hello& hello) {
@@ -248,9 +290,7 @@ Result<PushedFrame> read_frame(const Json& message, const Hello& hello) {
   }
   const Json* bodies = find(message, "bodies");
   if (bodies == nullptr) return wrong(At{}["bodies"], "is missing; [] when nobody is there");
-  auto read = read_bodies(*bodies, hello, *stamp);
-  if (!read) return pass(read);
-  frame.bodies = std::move(*read);
+  if (const auto ok = read_bodies(*bodies, hello, frame); !ok) return pass(ok);
   return frame;
 }
 

@@ -13,16 +13,18 @@ namespace chorus::bridge {
 
 /// The pusher's answer to our question for its time.
 struct ClockAnswer {
-  Timestamp sent;      ///< By our clock, when we asked; copied from the question.
-  Timestamp received;  ///< By the pusher's clock, when the question arrived.
-  Timestamp answered;  ///< By the pusher's clock, when this answer was sent.
+  Timestamp sent;      ///< When we asked, by our clock; copied from the question.
+  Timestamp received;  ///< When the question arrived, by the pusher's clock.
+  Timestamp answered;  ///< When this answer was sent, by the pusher's clock.
 };
 
 struct PushedFrame {
   std::optional<std::uint64_t> sequence;  ///< The pusher's own frame number.
-  Timestamp captured;                     ///< By the pusher's clock; the same for all bodies.
+  Timestamp captured;                     ///< By the pusher's clock; common to all bodies.
   /// In sensor space; bodies without joints are left out.
   std::vector<BodyFrame> bodies;
+  /// The shape of each body as `world` tells it (body_placing.h); without joints where it does not.
+  std::vector<Skeleton<SensorSpace>> shapes;
   std::optional<FloorPlane> floor;
 };
 

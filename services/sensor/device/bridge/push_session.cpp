@@ -142,6 +142,9 @@ Result<Heard> PushSession::on(PushedFrame frame) {
   if (!shift) return pass(shift);
   frame.captured += *shift;
   for (BodyFrame& body : frame.bodies) body.captured = frame.captured;
+  PlacingErrors errors;
+  errors.focal = hello_->focal_sigma;
+  placer_.place(frame.bodies, frame.shapes, errors);
   const auto taken = desk_->take(seat_, std::move(frame), *hello_);
   if (!taken) return pass(taken);
   return Heard::Frame;

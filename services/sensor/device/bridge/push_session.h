@@ -1,4 +1,4 @@
-// One pushing program from its hello on: reads its messages, estimates its clock, and passes its
+// One pushing program, from its hello on.  Reads its messages, estimates its clock, and passes its
 // frames to the desk.  No IO; not thread-safe.
 #pragma once
 
@@ -8,11 +8,12 @@
 #include <string_view>
 
 #include "common/net/token_bucket.h"
+#include "common/sensor/body_placer.h"
 #include "services/sensor/device/bridge/push_desk.h"
 
 namespace chorus::bridge {
 
-/// What a message was, and what was done with it.
+/// What a message was and what was done with it.
 enum class Heard {
   Hello,
   Clock,
@@ -28,8 +29,8 @@ class PushSession {
   PushSession(const PushSession&) = delete;
   PushSession& operator=(const PushSession&) = delete;
 
-  /// Handles one message.  The program is told the error; lost() says whether it may continue after
-  /// that.
+  /// Handles one message.  An error is sent to the program; lost() says whether it may continue
+  /// after that.
   [[nodiscard]] Result<Heard> hear(std::string_view message);
   /// True when the program has sent too much, has been replaced, or has not sent a valid hello.
   [[nodiscard]] bool lost() const { return lost_; }
@@ -37,8 +38,8 @@ class PushSession {
   void leave_because(std::string why) { why_ = std::move(why); }
 
   [[nodiscard]] const std::optional<Hello>& hello() const { return hello_; }
-  /// Call this after asking for the pusher's time: for a second, frames that come before the answer
-  /// are left out.
+  /// Call this after asking for the pusher's time.  For a second, frames that arrive before the
+  /// answer are left out.
   void expect_clock();
   /// True when the pusher should be asked for its time again soon: there have been too few answers,
   /// or they contradict each other.
@@ -58,9 +59,10 @@ class PushSession {
   std::string why_ = "the connection ended";
   std::optional<Hello> hello_;
   PushDesk::Seat seat_ = 0;
+  BodyPlacer placer_;
   ClockFilter clock_;
   int exchanges_ = 0;
-  /// Until then frames are left out, if the pusher's clock is unknown.
+  /// While the pusher's clock is unknown, frames are left out until this time.
   SteadyTime unknown_until_{};
   net::TokenBucket messages_;
   net::TokenBucket bytes_;

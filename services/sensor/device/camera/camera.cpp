@@ -107,7 +107,7 @@ Result<Capture> Camera::ask(Looker& looker, const Shot& shot, const std::stop_to
   return capture_of(std::move(frame), shot.picture, found->lens);
 }
 
-/// Looks at pictures as long as one runner lives; success at the end of the pictures.
+/// Processes pictures as long as one runner lives; success at the end of the pictures.
 Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const Sink& sink) {
   auto looker = start_runner(stop);
   if (!looker) return pass(looker);
@@ -141,7 +141,7 @@ Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   return {};
 }
 
-/// Refuses a missing file, which will not turn up later; a missing camera may.
+/// Refuses a missing file, which will not appear later.  A missing camera may.
 Result<void> check_source(const CameraSettings& settings) {
   std::error_code failed;
   if (kind_of(settings.source) == SourceKind::Stream ||

@@ -12,7 +12,7 @@ namespace chorus::camera {
 
 /// Makes the device and adds `/camera` to the context's router; the reader's finish() reports
 /// mistakes.  An Error says what is missing: the file, the runner or its models.  A missing webcam
-/// or stream is not an error, because it may turn up later.
+/// or stream is not an error, because it may appear later.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_camera(
     ConfigReader& section, const sensor_service::DeviceContext& context);
 

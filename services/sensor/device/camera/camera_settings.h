@@ -28,12 +28,12 @@ struct CameraSettings {
   int height = 0;
   double rate_hz = 0.0;
   bool loop = true;  ///< True: a file starts again at its end.
-  /// Time from light to arrival, used if the camera has no clock that tells it.
+  /// Time from light to arrival, used if the camera has no clock that shows it.
   Duration latency = std::chrono::milliseconds(60);
   double max_rate_hz = 30.0;          ///< Most images per second that the runner gets.
   std::vector<std::string> runner{};  ///< The command; empty: the runner that comes with Chorus.
   std::string model = "movenet";      ///< Passed to the runner as --model, unless empty.
-  bool depth_from_size = false;       ///< Makes points instead of rays, if the runner supports it.
+  bool depth_from_size = false;  ///< Delivers points instead of rays, if the runner supports it.
   std::optional<FloorPlane> floor = {};  ///< Made from height and pitch, if they are configured.
   std::optional<Intrinsics> intrinsics = {};
   double focal_sigma = 0.0;  ///< Standard deviation of their focal length, relative to it.
@@ -42,7 +42,7 @@ struct CameraSettings {
 };
 
 [[nodiscard]] SourceKind kind_of(const std::string& source);
-/// The source in the form that may be shown: without the password in a URL.
+/// The source in a form that may be shown: without the password in a URL.
 [[nodiscard]] std::string told_source(const std::string& source);
 
 /// Reads the section; the reader's finish() reports mistakes.

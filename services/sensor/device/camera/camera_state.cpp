@@ -15,7 +15,7 @@ void smooth(double& value, Duration sample, bool first) {
   value += first ? now - value : kShare * (now - value);
 }
 
-/// Logs a trouble when its reason changes, not on every attempt.
+/// Logs a problem only when its reason changes, not on every attempt.
 void told(const char* event, std::string& trouble, std::string why) {
   if (trouble != why) log::warn(event, {{"reason", why}});
   trouble = std::move(why);

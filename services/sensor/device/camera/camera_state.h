@@ -15,7 +15,7 @@ struct CameraReport {
   std::string runner_trouble;  ///< Why no runner works; empty while one does.
   std::string runner;          ///< The runner's name, from its hello.
   std::string layout;
-  Size picture;                 ///< Size of the source's pictures.
+  Size picture;                 ///< Size of the source's pictures [px].
   Size sent;                    ///< Size in which the runner gets them.
   std::uint64_t pictures = 0;   ///< Number of pictures from the source.
   std::uint64_t looked_at = 0;  ///< Number of pictures that the runner looked at.

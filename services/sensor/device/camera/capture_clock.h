@@ -9,15 +9,15 @@
 
 namespace chorus::camera {
 
-/// A webcam's driver stamps each picture by the clock that has run since the host started.  `age`:
-/// that clock's present time minus the stamp.  Without a stamp, or with one that cannot be true,
-/// the latency is used instead.
+/// A webcam's driver stamps each picture by the host's monotonic clock.  `age`: that clock's
+/// present time minus the stamp.  Without a stamp, or with an implausible one, the latency is used
+/// instead.
 [[nodiscard]] Timestamp captured_by_driver(Timestamp arrived, std::optional<Duration> age,
                                            Duration latency);
 
 /// For a stream, whose pictures carry the time since its beginning by its own clock: the picture
-/// with the least delay determines the offset between the two clocks; for all others only the
-/// stream's steps count.  So capture times do not jitter as arrival times do.
+/// with the least delay determines the offset between the two clocks; all others are placed by the
+/// stream's own time.  So capture times do not jitter as arrival times do.
 class StreamClock {
  public:
   explicit StreamClock(Duration latency) : latency_(latency) {}

@@ -1,7 +1,7 @@
 // When each picture of a video file is due, at the file's own rate.
 //
 // A looping file begins its rounds at whole multiples of its length since 1970.  So several sensors
-// that loop videos of the same length show them in step without knowing of each other.
+// that loop videos of the same length show them in step without communicating.
 #pragma once
 
 #include <optional>
@@ -20,8 +20,8 @@ class FilePace {
  public:
   explicit FilePace(bool loop) : loop_(loop) {}
 
-  /// Call this each time the file has been opened.  Returns how much of the file's time is already
-  /// over.
+  /// Call this each time the file has been opened.  Returns the position in the file that is due
+  /// now.
   [[nodiscard]] Duration begin(const FileTiming& timing, Timestamp now);
   /// When the next picture is due.  `position`: the picture's time in the file, if the file states
   /// it.

@@ -10,7 +10,7 @@ namespace chorus::camera {
 
 struct Film {
   CameraSettings settings;  ///< The source is the file; max_rate_hz limits the pictures used.
-  std::vector<std::string> command;  ///< Starts the runner.
+  std::vector<std::string> command;  ///< The command that starts the runner.
   SensorId sensor;
   Timestamp start;  ///< Capture time of the first picture.
   /// Called after every picture with the share of the file that is done, in [0, 1].
@@ -22,10 +22,10 @@ struct FilmFrames {
   std::string runner;               ///< The runner's name.
   std::string layout;
   Lens lens;
-  std::size_t people = 0;  ///< Most people in one picture.
+  std::size_t people = 0;  ///< Largest number of people in one picture.
 };
 
-/// Runs the film; an error names the file and what is wrong with it, or the runner.
+/// Processes the film.  An error names the file and what is wrong with it, or the runner.
 [[nodiscard]] Result<FilmFrames> look_through(const Film& film, const std::stop_token& stop = {});
 
 }  // namespace chorus::camera

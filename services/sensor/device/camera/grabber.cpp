@@ -66,7 +66,7 @@ void Grabber::begin_file(Video& video) {
   if (over_ > kWorthSkipping) video.skip_to(over_);
 }
 
-/// True for a picture that was due before the instant at which the file was opened in its middle.
+/// True for a picture that was due before the file was opened, in the middle of a round.
 bool Grabber::is_over(const VideoMoment& taken) const {
   return kind_ == SourceKind::File && taken.time && *taken.time < over_;
 }
@@ -74,7 +74,7 @@ bool Grabber::is_over(const VideoMoment& taken) const {
 /// True if the runner should get this picture: limits the rate to max_rate_hz, and to one picture a
 /// second while a file is read too slowly.
 bool Grabber::is_wanted(Timestamp captured) const {
-  // A picture after this share of a step is wanted, because pictures are not evenly spaced.
+  // A picture is used from this share of a step on, because pictures are not evenly spaced.
   constexpr double kNearly = 0.9;
   if (!given_ || captured < *given_) return true;
   const Duration since = captured - *given_;

@@ -45,7 +45,7 @@ class Grabber {
   FilePace pace_;
   std::optional<Timestamp> given_;  ///< Capture time of the last picture passed on.
   Duration late_{0};                ///< By how much a file's last picture was late.
-  Duration over_{0};  ///< How much of a file's time was over when the file was opened.
+  Duration over_{0};                ///< Position in the file that was due when the file was opened.
 };
 
 /// Sleeps for `pause`; returns false if stopped before its end.

@@ -26,8 +26,7 @@ struct Lens {
 /// The size at which a picture is sent: at most `max_side` in either direction.
 [[nodiscard]] Size sent_size(Size picture, int max_side);
 
-/// The camera for landmarks in the picture in the size `sent`, where [0, 0] is the upper left
-/// corner.
+/// The camera for landmarks in the picture of size `sent`, where [0, 0] is the upper left corner.
 [[nodiscard]] Intrinsics sent_camera(const Intrinsics& camera, Size sent);
 
 }  // namespace chorus::camera

@@ -2,19 +2,11 @@
 
 #include <utility>
 
-#include "services/sensor/device/camera/apparent_size.h"
-
 namespace chorus::camera {
 namespace {
 
 constexpr Duration kReadyWithin = std::chrono::seconds(60);
 constexpr Duration kAnswerWithin = std::chrono::seconds(10);
-
-void widen_depths(std::vector<BodyFrame>& bodies, double focal_sigma) {
-  for (BodyFrame& body : bodies) {
-    for (Joint& joint : body.skeleton.joints) widen_depth(joint, focal_sigma);
-  }
-}
 
 }  // namespace
 
@@ -41,11 +33,12 @@ Result<Found> Looker::look(const Picture& picture, Timestamp captured, std::uint
   bridge::Hello hello = about_.hello;
   hello.camera = sent_camera(lens->camera, question.size);
   hello.focal_sigma = lens->focal_sigma;
-  const Depth depth = settings_->depth_from_size ? Depth::FromSize : Depth::None;
-  auto bodies = read_runner_answer(*line, question, hello, depth);
-  if (!bodies) return pass(bodies);
-  widen_depths(*bodies, lens->focal_sigma);
-  return Found{std::move(*bodies), *lens, question.size,
+  auto frame = read_runner_answer(*line, question, hello);
+  if (!frame) return pass(frame);
+  PlacingErrors errors;
+  errors.focal = lens->focal_sigma;
+  if (settings_->depth_from_size) placer_.place(frame->bodies, frame->shapes, errors);
+  return Found{std::move(frame->bodies), *lens, question.size,
                hello.floor ? hello.floor : settings_->floor};
 }
 

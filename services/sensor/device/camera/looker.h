@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/sensor/body_placer.h"
 #include "services/sensor/device/camera/picture.h"
 #include "services/sensor/device/camera/runner_process.h"
 #include "services/sensor/device/camera/runner_wire.h"
@@ -41,6 +42,7 @@ class Looker {
   const CameraSettings* settings_;
   std::unique_ptr<RunnerProcess> process_;
   RunnerHello about_;
+  BodyPlacer placer_;
 };
 
 }  // namespace chorus::camera

@@ -1,5 +1,5 @@
-// How long to wait before trying again: the pause doubles each time, and is short again after a
-// good run.
+// How long to wait before trying again.  The pause doubles each time, and is short again after a
+// long run.
 #pragma once
 
 #include <algorithm>

@@ -43,8 +43,8 @@ struct Streams {
     for (auto* pair : {&input, &output, &errors})
       for (int& end : *pair) close_if_open(end);
   }
-  /// Opens the streams.  The child's input is a socket: writing to a socket of a runner that has
-  /// ended is an error, not a signal.
+  /// Opens the streams.  The child's input is a socket, so that writing to a runner that has ended
+  /// is an error, not a signal.
   [[nodiscard]] bool open() {
     return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input.data()) == 0 &&
            pipe2(output.data(), O_CLOEXEC) == 0 && pipe2(errors.data(), O_CLOEXEC) == 0;

@@ -26,19 +26,19 @@ class RunnerProcess {
   /// Starts the process; NotFound when the program does not exist.
   [[nodiscard]] static Result<std::unique_ptr<RunnerProcess>> start(
       const std::vector<std::string>& command);
-  /// Closes the process's input, which tells it to end, and kills it if it has not ended within a
+  /// Closes the process's input, which asks it to end, and kills it if it has not ended within a
   /// second.
   ~RunnerProcess();
   RunnerProcess(const RunnerProcess&) = delete;
   RunnerProcess& operator=(const RunnerProcess&) = delete;
 
   /// Writes to the process.  Unavailable when it has ended; the message contains its exit status
-  /// and last words.  Timeout when it does not read.
+  /// and its last output.  Timeout when it does not read.
   [[nodiscard]] Result<void> send(std::string_view bytes, Duration within,
                                   const std::stop_token& stop);
   /// The next line of the process's output, without the line feed; errors as for send().
   [[nodiscard]] Result<std::string> read_line(Duration within, const std::stop_token& stop);
-  /// Reads the process's standard error; Unavailable when the process has ended.
+  /// Reads the process's standard error.  Unavailable when the process has ended.
   [[nodiscard]] Result<void> listen();
   /// Closes the process's input and waits until it ends; an exit code other than 0 is an error.
   [[nodiscard]] Result<void> finish(Duration within);

@@ -7,21 +7,19 @@
 
 #include "common/base/json.h"
 #include "services/sensor/device/bridge/json_value.h"
-#include "services/sensor/device/bridge/push_message.h"
-#include "services/sensor/device/camera/sized_message.h"
 
 namespace chorus::camera {
 namespace {
 
 using bridge::At;
 
-constexpr JsonLimits kLimits{.bytes = 64 * 1024, .nesting = 4};
+constexpr JsonLimits kLineLimits{.bytes = 64 * 1024, .nesting = 4};
 constexpr bridge::Bounds kSides{16.0, 4096.0};
 // Standard deviation as a share of the longest side, if the runner states none.
 constexpr double kSigmaShare = 0.01;
 
 Result<int> read_max_side(std::string_view line) {
-  const auto message = parse_json(line, kLimits);
+  const auto message = parse_json(line, kLineLimits);
   if (!message) return pass(message);
   const nlohmann::json* image = bridge::find(*message, "image");
   const nlohmann::json* side =
@@ -66,15 +64,9 @@ std::string image_header(const Question& question) {
       question.sequence, to_unix_ns(question.captured), width, height, 3L * width * height);
 }
 
-Result<std::vector<BodyFrame>> read_runner_answer(std::string_view line, const Question& question,
-                                                  const bridge::Hello& hello, Depth depth) {
-  std::string sized;
-  if (depth == Depth::FromSize) {
-    auto with_points = points_by_size(line, hello);
-    if (!with_points) return pass(with_points);
-    sized = std::move(*with_points);
-  }
-  auto read = bridge::read_push_message(sized.empty() ? line : std::string_view(sized), &hello);
+Result<bridge::PushedFrame> read_runner_answer(std::string_view line, const Question& question,
+                                               const bridge::Hello& hello) {
+  auto read = bridge::read_push_message(line, &hello);
   if (!read) return pass(read);
   auto* frame = std::get_if<bridge::PushedFrame>(&*read);
   if (frame == nullptr) return not_said("frame");
@@ -84,7 +76,7 @@ Result<std::vector<BodyFrame>> read_runner_answer(std::string_view line, const Q
                             "once, before the next",
                             question.sequence));
   }
-  return std::move(frame->bodies);
+  return std::move(*frame);
 }
 
 }  // namespace chorus::camera

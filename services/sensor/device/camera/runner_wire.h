@@ -4,16 +4,15 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "services/sensor/device/bridge/hello.h"
+#include "services/sensor/device/bridge/push_message.h"
 #include "services/sensor/device/camera/lens.h"
 
 namespace chorus::camera {
 
 /// What a runner says about itself.
 struct RunnerHello {
-  bridge::Hello hello;  ///< Without the camera, which only the sensor knows.
+  bridge::Hello hello;  ///< Does not contain the camera, which only the sensor knows.
   int max_side = 640;   ///< Largest width and height of an image [px].
 };
 
@@ -21,7 +20,7 @@ struct RunnerHello {
 struct Question {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  Size size;  ///< In which it is sent.
+  Size size;  ///< Size in which it is sent.
 };
 
 [[nodiscard]] Result<RunnerHello> read_runner_hello(std::string_view line);
@@ -29,17 +28,10 @@ struct Question {
 /// The line that precedes an image's bytes, including its line feed.
 [[nodiscard]] std::string image_header(const Question& question);
 
-/// What landmarks are turned into.
-enum class Depth {
-  None,      ///< Rays.
-  FromSize,  ///< Points, if the runner gives people's shape in metres; otherwise rays.
-};
-
-/// The people in the image of `question`.  `hello.camera` is the camera of the image in the size
-/// sent.
-[[nodiscard]] Result<std::vector<BodyFrame>> read_runner_answer(std::string_view line,
-                                                                const Question& question,
-                                                                const bridge::Hello& hello,
-                                                                Depth depth);
+/// The people in the image of `question`, as rays, and the shapes that the runner tells.
+/// `hello.camera` is the camera of the image in the size sent.
+[[nodiscard]] Result<bridge::PushedFrame> read_runner_answer(std::string_view line,
+                                                             const Question& question,
+                                                             const bridge::Hello& hello);
 
 }  // namespace chorus::camera

@@ -10,8 +10,8 @@ namespace chorus::camera {
 /// the runner that comes with Chorus.  NotFound when this runner is not there.
 [[nodiscard]] Result<std::vector<std::string>> runner_command(const CameraSettings& settings);
 
-/// Asks the runner that comes with Chorus whether it has everything it needs; does not ask other
-/// runners.
+/// Asks the runner that comes with Chorus whether it has everything it needs.  Other runners are
+/// not checked.
 [[nodiscard]] Result<void> check_runner(const CameraSettings& settings);
 
 }  // namespace chorus::camera

@@ -15,7 +15,7 @@
 namespace chorus::camera {
 namespace {
 
-constexpr int kPatienceMs = 5000;  // For opening a stream, and for its next picture.
+constexpr int kPatienceMs = 5000;  // [ms]; for opening a stream, and for its next picture.
 constexpr double kUsualRate = 30.0;
 constexpr int kSmallWebcam = 640;  // Wider pictures are fast enough only if compressed.
 

@@ -13,10 +13,10 @@ namespace chorus::sensor_service {
 
 namespace {
 
-// A frame that would be later than this is skipped, so that after the host has slept the past does
-// not come all at once.
+// A frame that would be later than this is skipped, so that a host that was suspended does not
+// deliver the past all at once.
 constexpr Duration kLatest = std::chrono::seconds(1);
-// UTC may be stepped while we wait, so a long wait checks the clock regularly.
+// UTC can be stepped while we wait, so a long wait checks the clock regularly.
 constexpr Duration kMaxNap = std::chrono::milliseconds(200);
 
 bool wait_on(const Clock& clock, std::stop_token stop, Timestamp until) {
@@ -127,8 +127,8 @@ class Player {
  public:
   Player(ReplayTape& tape, const ReplaySchedule& plan) : tape_(tape), plan_(plan) {}
 
-  /// Skips forward to the round before the one that is playing at `now`; run() leaves out its past
-  /// frames.
+  /// Skips to the round before the one that is playing at `now`. run() leaves out the frames that
+  /// are past.
   void skip_to(Timestamp now) {
     const std::int64_t round = plan_.round_before(now);
     if (round <= turn_.round && begun_) return;
@@ -172,7 +172,7 @@ Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
   const Timestamp start = time_.world->now();
   const auto plan = schedule(start);
   if (!plan) return pass(plan);
-  // Frames are delivered by the actual clock; those of "as recorded" keep their recorded times.
+  // Frames are delivered by the real clock; with "as recorded" they keep their recorded times.
   const Duration ahead = is_as_recorded() ? start - origin_of(*tape_, options_) : Duration::zero();
   Player player(*tape_, *plan);
   player.skip_to(start - ahead);

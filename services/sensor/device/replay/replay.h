@@ -18,7 +18,7 @@ namespace chorus::sensor_service {
 /// When the replay begins.
 enum class ReplayEpoch {
   Now,         ///< The set begins when the service starts.
-  AsRecorded,  ///< Captures keep their recorded times; the delivery begins when the service starts.
+  AsRecorded,  ///< Captures keep their recorded times; delivery begins when the service starts.
 };
 
 struct ReplayOptions {

@@ -42,7 +42,7 @@ class ReplaySchedule {
   /// A round that contains the first frame due at or after `now`, or the round before that one.
   [[nodiscard]] std::int64_t round_before(Timestamp now) const;
   [[nodiscard]] bool over(std::int64_t round) const;
-  /// Counts frames from the epoch on, beginning with 1; a gap means frames that were not played.
+  /// Number of the frame since the epoch, from 1; a gap means frames that were not played.
   [[nodiscard]] std::uint64_t sequence(const Turn& turn) const;
 
  private:

@@ -13,10 +13,8 @@ namespace {
 using synthetic::kOccluderKinds;
 using synthetic::Occluder;
 
-constexpr double kFarthest = 100.0;  // Distance of anything from the room's origin [m].
-constexpr double kLargest = 20.0;    // Longest edge of a thing [m].
-constexpr double kSmallest = 0.01;   // [m]
-constexpr int kMaxSeed = 1'000'000'000;
+constexpr double kLargest = 20.0;   // Longest edge of a thing [m].
+constexpr double kSmallest = 0.01;  // [m]
 constexpr int kMaxPeople = 6;
 constexpr std::size_t kMaxOccluders = 32;  // Each costs a ray test per joint and frame.
 constexpr Duration kUsualPeriod = std::chrono::seconds(20);

@@ -23,9 +23,12 @@
 
 namespace chorus::sensor_service {
 
+inline constexpr double kFarthest = 100.0;  ///< Of anything from the room's origin [m].
+inline constexpr int kMaxSeed = 1'000'000'000;
+
 struct SceneSettings {
   synthetic::Scene scene;  ///< Without sensors.
-  std::string people;      ///< Where their motion comes from: "CMU walking", "motion of walk.bvh".
+  std::string people;      ///< The source of their motion: "CMU walking", "motion of walk.bvh".
 };
 
 /// Reads the settings; the reader's finish() reports mistakes.

@@ -15,7 +15,7 @@ using synthetic::BodySensor;
 
 // After a stall, or when UTC was stepped, the device continues from now instead of catching up.
 constexpr Duration kMaxBehind = std::chrono::seconds(1);
-// UTC may be stepped while we wait, so a long wait checks the clock regularly.
+// UTC can be stepped while we wait, so a long wait checks the clock regularly.
 constexpr Duration kMaxNap = std::chrono::milliseconds(20);
 constexpr double kRate = 30.0;  // [Hz], for every profile
 
@@ -45,8 +45,7 @@ class Simulated final : public FrameSource {
   synthetic::CameraModel camera_;
 };
 
-/// True when the next frame is far from now: the clock was stepped, or the process did not run for
-/// long.
+/// True when the next frame is far from now: the clock was stepped, or the process was suspended.
 bool Simulated::is_lost(const BodySensor& sensor) const {
   const Duration ahead = sensor.next_exposure() + settings_->latency - time_.world->now();
   return ahead > kMaxBehind || -ahead > kMaxBehind;

@@ -6,12 +6,11 @@
 
 #include "common/base/fnv.h"
 #include "common/sensor/limits.h"
+#include "services/sensor/device/simulated/scene_settings.h"
 
 namespace chorus::sensor_service {
 namespace {
 
-constexpr double kFarthest = 100.0;  // Distance of anything from the room's origin [m].
-constexpr int kMaxSeed = 1'000'000'000;
 constexpr std::array<std::string_view, 5> kProfiles{synthetic::kGaussProfile, "A", "B", "C", "D"};
 
 void read_mm(ConfigReader& config, std::string_view key, double& out, double most) {
@@ -74,7 +73,7 @@ void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
   config.read("profile_draw", draw, 0, kMaxSeed);
   choice.profile = kProfiles.at(profile);
   if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
-  choice.own_clock = false;  // Own clock off: the service sets the host's clock.
+  choice.own_clock = false;  // No clock of its own: the service provides the host's clock.
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ namespace chorus::sensor_service {
 struct SimulatedSettings {
   synthetic::Scene scene;          ///< This sensor is the only one in it.
   synthetic::SensorChoice choice;  ///< The sensor model.
-  std::string people;              ///< Where their motion comes from: "CMU walking".
+  std::string people;              ///< The source of their motion: "CMU walking".
   Duration latency{0};
 
   /// The sensor in `scene`, from `start` on.

@@ -13,7 +13,8 @@ using testing::FailsWith;
 using ::testing::HasSubstr;
 using testing::IsOk;
 
-std::string row(const char* joint = "0.3 -0.5 3.0 0.6 0.8 0.0 0.0 ", std::size_t joints = 25) {
+std::string keraal_row(const char* joint = "0.3 -0.5 3.0 0.6 0.8 0.0 0.0 ",
+                       std::size_t joints = 25) {
   std::string text;
   for (std::size_t j = 0; j < joints; ++j) text += joint;
   return text + "\n";
@@ -21,7 +22,8 @@ std::string row(const char* joint = "0.3 -0.5 3.0 0.6 0.8 0.0 0.0 ", std::size_t
 
 TEST(KeraalText, ReadsPositionsAndScalarFirstQuaternions) {
   const TemporaryFolder folder;
-  const auto recording = read_keraal_text(folder.write("a.txt", row() + row() + "\n"));
+  const auto recording =
+      read_keraal_text(folder.write("a.txt", keraal_row() + keraal_row() + "\n"));
   ASSERT_THAT(recording, IsOk());
   ASSERT_EQ(recording->frames.size(), 2u);
   const Joint& joint = recording->frames[1].bodies.at(0).skeleton[JointId::HandLeft];
@@ -38,10 +40,10 @@ TEST(KeraalText, RefusesBadRowsNamingTheLine) {
     std::string text;
     const char* says;
   } const bad[] = {
-      {"cut off", row() + row().substr(0, 333) + "\n", ":2: holds"},
-      {"26 joints", row("1 1 1 0 0 0 0 ", 26), "more than the 175"},
-      {"nan", row("0 nan 1 0 0 0 0 "), ":1: value 2 (\"nan\")"},
-      {"no quaternion", row("0 0 1 20 0 0 0 "), "value 4"},
+      {"cut off", keraal_row() + keraal_row().substr(0, 333) + "\n", ":2: holds"},
+      {"26 joints", keraal_row("1 1 1 0 0 0 0 ", 26), "more than the 175"},
+      {"nan", keraal_row("0 nan 1 0 0 0 0 "), ":1: value 2 (\"nan\")"},
+      {"no quaternion", keraal_row("0 0 1 20 0 0 0 "), "value 4"},
       {"empty", "", "no row"},
   };
   for (const auto& each : bad) {

@@ -7,7 +7,7 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-constexpr TimeOfFlight kQuiet{0, 0, 0, 0, 0, 0.5, 4.5};
+constexpr TimeOfFlight kQuietImage{0, 0, 0, 0, 0, 0.5, 4.5};
 
 View empty() {
   View view;
@@ -76,7 +76,7 @@ TEST(DepthImage, ABoxBeforeAPersonHidesThem) {
 }
 
 TEST(Measure, NoiseGrowsWithTheSquareOfDepth) {
-  TimeOfFlight camera = kQuiet;
+  TimeOfFlight camera = kQuietImage;
   camera.noise_near = 0.0012;
   camera.noise_square = 0.0004;
   for (const double depth : {1.0, 2.5, 4.0}) {
@@ -103,15 +103,15 @@ TEST(Measure, NoiseGrowsWithTheSquareOfDepth) {
 }
 
 TEST(Measure, NothingIsSeenOutsideTheRange) {
-  EXPECT_EQ(measure(render(wall(0.4), {}), kQuiet, Draw{1}).at(64, 40), 0.0);
-  EXPECT_EQ(measure(render(wall(4.6), {}), kQuiet, Draw{1}).at(64, 40), 0.0);
-  EXPECT_NEAR(measure(render(wall(4.4), {}), kQuiet, Draw{1}).at(64, 40), 4.4, 1e-5);
+  EXPECT_EQ(measure(render(wall(0.4), {}), kQuietImage, Draw{1}).at(64, 40), 0.0);
+  EXPECT_EQ(measure(render(wall(4.6), {}), kQuietImage, Draw{1}).at(64, 40), 0.0);
+  EXPECT_NEAR(measure(render(wall(4.4), {}), kQuietImage, Draw{1}).at(64, 40), 4.4, 1e-5);
 }
 
 TEST(Measure, DarkClothLeavesItsShareOfHoles) {
   View view = wall(3.0);
   view.people = {Taper{{0, 0, 2}, {0, 0, 2}, 0.4, 0.4, true}};
-  TimeOfFlight camera = kQuiet;
+  TimeOfFlight camera = kQuietImage;
   camera.dark_hole_share = 0.3;
   const DepthImage exact = render(view, {});
   const DepthImage image = measure(exact, camera, Draw{3});
@@ -133,7 +133,7 @@ TEST(Measure, DarkClothLeavesItsShareOfHoles) {
 TEST(Measure, PixelsFlyBetweenTheTwoSidesOfAnEdgeOnly) {
   View view = wall(3.0);
   view.people = {Taper{{0, 0, 2}, {0, 0, 2}, 0.3, 0.3}};
-  TimeOfFlight camera = kQuiet;
+  TimeOfFlight camera = kQuietImage;
   camera.flying_share = 1.0;
   const DepthImage exact = render(view, {});
   const DepthImage image = measure(exact, camera, Draw{3});

@@ -5,7 +5,7 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-constexpr TimeOfFlight kQuiet{0, 0, 0, 0, 0, 0.5, 4.5};
+constexpr TimeOfFlight kQuietForeground{0, 0, 0, 0, 0, 0.5, 4.5};
 
 View room(std::vector<Taper> things) {
   View view;
@@ -15,7 +15,7 @@ View room(std::vector<Taper> things) {
 }
 
 Foreground seen(const View& view) {
-  return foreground_of(measure(render(view, {}), kQuiet, Draw{1}), {}, view.floor);
+  return foreground_of(measure(render(view, {}), kQuietForeground, Draw{1}), {}, view.floor);
 }
 
 TEST(Foreground, TheFloorIsNone) { EXPECT_TRUE(seen(room({})).points.empty()); }
@@ -40,7 +40,7 @@ TEST(Foreground, PointsLieOnTheSurfaceAndKnowTheirHeight) {
 
 TEST(Foreground, AStrayPixelIsLeftOut) {
   const View view = room({});
-  DepthImage image = measure(render(view, {}), kQuiet, Draw{1});
+  DepthImage image = measure(render(view, {}), kQuietForeground, Draw{1});
   image.depth[image.index(64, 40)] = 2.0f;
   EXPECT_TRUE(foreground_of(image, {}, view.floor).points.empty());
 }

@@ -7,13 +7,13 @@
 namespace chorus::synthetic::kinect {
 namespace {
 
-constexpr Timestamp kStart = from_unix_ns(1'795'000'000'000'000'000);
+constexpr Timestamp kDeliveryStart = from_unix_ns(1'795'000'000'000'000'000);
 const Delivery kDelivery = nominal_profile("A").delivery;
 
 TEST(Delivery, FramesComeAtTheStatedPaceWithBoundedJitter) {
-  const std::uint64_t first = first_frame(kDelivery, kStart, {});
-  EXPECT_GE(exposure(kDelivery, first, {}), kStart);
-  EXPECT_LT(exposure(kDelivery, first - 1, {}), kStart);
+  const std::uint64_t first = first_frame(kDelivery, kDeliveryStart, {});
+  EXPECT_GE(exposure(kDelivery, first, {}), kDeliveryStart);
+  EXPECT_LT(exposure(kDelivery, first - 1, {}), kDeliveryStart);
   const Timestamp begin = exposure(kDelivery, first, {});
   for (std::uint64_t i = 1; i < 1000; ++i) {
     const double expected = static_cast<double>(i) * kDelivery.period;
@@ -23,7 +23,7 @@ TEST(Delivery, FramesComeAtTheStatedPaceWithBoundedJitter) {
 }
 
 TEST(Delivery, EachSensorHasItsOwnPhase) {
-  const std::uint64_t number = first_frame(kDelivery, kStart, {1, 0, 0});
+  const std::uint64_t number = first_frame(kDelivery, kDeliveryStart, {1, 0, 0});
   EXPECT_NE(exposure(kDelivery, number, {1, 0, 0}), exposure(kDelivery, number, {1, 1, 0}));
 }
 
@@ -91,15 +91,15 @@ TEST(Delivery, LatencyIsNeverNegativeAndScattersAsStated) {
 
 TEST(HostClock, OffsetDriftAndStepAddUp) {
   HostClock clock;
-  clock.origin = kStart;
-  EXPECT_EQ(clock.host_time(kStart), kStart);
+  clock.origin = kDeliveryStart;
+  EXPECT_EQ(clock.host_time(kDeliveryStart), kDeliveryStart);
   clock.offset = 0.25;
   clock.drift = 50e-6;
   clock.step = -1.5;
-  clock.step_at = kStart + std::chrono::seconds(100);
-  EXPECT_NEAR(seconds(clock.host_time(kStart) - kStart), 0.25, 1e-9);
-  const Timestamp before = kStart + std::chrono::seconds(99);
-  const Timestamp after = kStart + std::chrono::seconds(200);
+  clock.step_at = kDeliveryStart + std::chrono::seconds(100);
+  EXPECT_NEAR(seconds(clock.host_time(kDeliveryStart) - kDeliveryStart), 0.25, 1e-9);
+  const Timestamp before = kDeliveryStart + std::chrono::seconds(99);
+  const Timestamp after = kDeliveryStart + std::chrono::seconds(200);
   EXPECT_NEAR(seconds(clock.host_time(before) - before), 0.25 + 99 * 50e-6, 1e-8);
   EXPECT_NEAR(seconds(clock.host_time(after) - after), 0.25 + 200 * 50e-6 - 1.5, 1e-8);
 }
@@ -110,13 +110,13 @@ TEST(HostClock, IsDrawnPerSensorWithTheStatedSpread) {
   error.drift = 20e-6;
   double offsets = 0, drifts = 0;
   for (std::uint64_t sensor = 0; sensor < 2000; ++sensor) {
-    const HostClock clock = draw_clock(error, kStart, {1, sensor, 0});
+    const HostClock clock = draw_clock(error, kDeliveryStart, {1, sensor, 0});
     offsets += clock.offset * clock.offset;
     drifts += clock.drift * clock.drift;
   }
   EXPECT_NEAR(std::sqrt(offsets / 2000), 0.005, 0.0004);
   EXPECT_NEAR(std::sqrt(drifts / 2000), 20e-6, 1.6e-6);
-  EXPECT_EQ(draw_clock(ClockError{}, kStart, {}).host_time(kStart), kStart);
+  EXPECT_EQ(draw_clock(ClockError{}, kDeliveryStart, {}).host_time(kDeliveryStart), kDeliveryStart);
 }
 
 TEST(HostClock, StepsOnTheStatedShareOfHostsEitherWayWithinTheStatedTime) {
@@ -126,15 +126,16 @@ TEST(HostClock, StepsOnTheStatedShareOfHostsEitherWayWithinTheStatedTime) {
   error.step_within = 60;
   int stepped = 0, forward = 0;
   for (std::uint64_t sensor = 0; sensor < 2000; ++sensor) {
-    const HostClock clock = draw_clock(error, kStart, {1, sensor, 0});
-    EXPECT_EQ(clock.host_time(kStart - std::chrono::seconds(1)), kStart - std::chrono::seconds(1));
-    const Timestamp end = kStart + std::chrono::seconds(60);
+    const HostClock clock = draw_clock(error, kDeliveryStart, {1, sensor, 0});
+    EXPECT_EQ(clock.host_time(kDeliveryStart - std::chrono::seconds(1)),
+              kDeliveryStart - std::chrono::seconds(1));
+    const Timestamp end = kDeliveryStart + std::chrono::seconds(60);
     const double jump = seconds(clock.host_time(end) - end);
     if (jump == 0) continue;
     ++stepped;
     forward += jump > 0;
     EXPECT_NEAR(std::abs(jump), 0.128, 1e-8);
-    EXPECT_GE(clock.step_at, kStart);
+    EXPECT_GE(clock.step_at, kDeliveryStart);
     EXPECT_LE(clock.step_at, end);
   }
   EXPECT_NEAR(stepped / 2000.0, 0.3, 0.04);
@@ -144,7 +145,8 @@ TEST(HostClock, StepsOnTheStatedShareOfHostsEitherWayWithinTheStatedTime) {
 TEST(HostClock, NeverStepsInTheFrozenProfiles) {
   for (const char* profile : {"A", "B"}) {
     for (std::uint64_t sensor = 0; sensor < 200; ++sensor) {
-      const HostClock clock = draw_clock(nominal_profile(profile).clock, kStart, {1, sensor, 0});
+      const HostClock clock =
+          draw_clock(nominal_profile(profile).clock, kDeliveryStart, {1, sensor, 0});
       EXPECT_EQ(clock.step_at, Timestamp::max());
     }
   }

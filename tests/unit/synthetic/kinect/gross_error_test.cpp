@@ -11,7 +11,7 @@ namespace {
 
 using enum JointId;
 
-Skeleton<SensorSpace> person(double facing) {
+Skeleton<SensorSpace> turned_person(double facing) {
   const Eigen::Isometry3d world_from_sensor = testing::sensor_pose({0, 1, 0}, 0.0);
   return to_sensor(world_from_sensor.inverse(),
                    testing::standing_person({0, 0, 2.5}, deg(180) + facing));
@@ -30,7 +30,7 @@ GrossError with_swap(double probability) {
 }
 
 TEST(MergeLegs, PullsTheFarLegTowardsTheNearOneWhereTheyCross) {
-  const auto exact = person(deg(90));
+  const auto exact = turned_person(deg(90));
   auto body = exact;
   merge_legs(body, with_merge(0.3));
   const bool left_far = exact[KneeLeft].position.z() > exact[KneeRight].position.z();
@@ -43,11 +43,11 @@ TEST(MergeLegs, PullsTheFarLegTowardsTheNearOneWhereTheyCross) {
 }
 
 TEST(MergeLegs, LeavesLegsThatAreSeenApartAndDoesNothingForNothing) {
-  auto front = person(0);
+  auto front = turned_person(0);
   merge_legs(front, with_merge(0.3));
-  EXPECT_EQ(front[KneeLeft].position, person(0)[KneeLeft].position);
+  EXPECT_EQ(front[KneeLeft].position, turned_person(0)[KneeLeft].position);
   EXPECT_EQ(front[KneeLeft].state, JointState::Tracked);
-  auto side = person(deg(90));
+  auto side = turned_person(deg(90));
   merge_legs(side, with_merge(0.0));
   EXPECT_EQ(side[KneeLeft].state, JointState::Tracked);
   EXPECT_EQ(side[KneeRight].state, JointState::Tracked);

@@ -1,0 +1,34 @@
+// Places the people of one camera whose model tells their shapes in metres beside their landmarks.
+#pragma once
+
+#include <map>
+#include <span>
+
+#include "common/body/body_frame.h"
+#include "common/sensor/body_placing.h"
+#include "common/sensor/learned_bones.h"
+
+namespace chorus {
+
+/// Keeps the bone lengths of each person.  Not thread-safe.
+class BodyPlacer {
+ public:
+  /// Makes points of the rays of each body that fits its shape (body_placing.h); `shapes` is as
+  /// long as `bodies`, and a shape without joints is none.  Other bodies stay as they are.
+  void place(std::span<BodyFrame> bodies, std::span<const Skeleton<SensorSpace>> shapes,
+             const PlacingErrors& errors);
+  /// Number of people who are remembered.
+  [[nodiscard]] std::size_t remembered() const { return people_.size(); }
+
+ private:
+  struct Person {
+    LearnedBones bones;
+    std::uint64_t last = 0;  ///< Frame in which the person was last seen.
+  };
+  void forget();
+
+  std::map<BodyId, Person> people_;
+  std::uint64_t frame_ = 0;
+};
+
+}  // namespace chorus

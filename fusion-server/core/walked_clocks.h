@@ -1,0 +1,71 @@
+// Applies what a walk has told about the sensors' clocks to their frames.
+//
+// A walk tells by how much each clock was off then. A host that does not answer with its time may
+// drift by tens of milliseconds an hour, or its clock may be set: then every frame arrives earlier
+// or later after its stamp than during the walk. The least such age is followed (the fastest frames
+// have had no delay but the constant one, which the walk has measured along with the offset).
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+
+#include "fusion-server/flow.h"
+
+namespace chorus::core {
+
+/// The least of a sensor's recent ages, from capture by its own stamps to receipt.  A frame that is
+/// younger than all before by more than jitter counts only once three in a row are; a clock that
+/// was set back is believed after three seconds, the end of an old delay after the whole window.
+class LeastAge {
+ public:
+  void add(Timestamp received, Duration age);
+  /// None until frames have come for three seconds without a longer pause, once.
+  [[nodiscard]] std::optional<Duration> value() const;
+
+ private:
+  struct Entry {
+    Timestamp received;
+    Duration age;
+  };
+  void forget_until(Timestamp received);
+
+  std::deque<Entry> entries_;  ///< Later ones are older in age: the first is the least.
+  std::optional<Timestamp> last_;
+  Timestamp since_;  ///< Received without a pause since then.
+  bool settled_ = false;
+  int younger_ = 0;  ///< Frames in a row that are younger than all before.
+};
+
+/// What is added to one sensor's capture times.
+struct WalkedClock {
+  Duration added{0};
+  Duration sigma{0};
+
+  bool operator==(const WalkedClock&) const = default;
+};
+
+class WalkedClocks {
+ public:
+  /// Takes a frame as the poller gives it; returns how much this sensor's capture times have to be
+  /// moved now beyond what they were before.  Frames that were moved already need the difference.
+  Duration take(const SensorFrame& frame, const Registration& registration);
+
+  /// None: nothing is added to this sensor's capture times.
+  [[nodiscard]] std::optional<WalkedClock> of(const SensorId& sensor) const;
+  /// Forgets sensors that are no longer configured.
+  template <class Sensors>
+  void keep(const Sensors& sensors) {
+    std::erase_if(states_, [&](const auto& entry) { return !sensors.contains(entry.first); });
+  }
+
+ private:
+  struct State {
+    LeastAge least;
+    std::optional<WalkedClock> applied;
+  };
+
+  std::map<SensorId, State> states_;
+};
+
+}  // namespace chorus::core

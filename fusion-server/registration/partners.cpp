@@ -1,0 +1,112 @@
+#include "fusion-server/registration/partners.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace chorus::registration {
+namespace {
+
+constexpr std::size_t kAllPairs = 12;           // sensors of which all pairs are tried
+constexpr std::size_t kPartners = 8;            // of each sensor, of more
+constexpr auto kBin = std::chrono::seconds(1);  // in which two sensors see the person together
+
+/// Number of frames in which the person had moved, by seconds since 1970.
+using Presence = std::map<std::int64_t, std::size_t>;
+
+Presence presence_of(const Trail& trail) {
+  Presence presence;
+  for (const TrailFrame& frame : trail.frames) {
+    if (frame.moved) ++presence[frame.captured.time_since_epoch() / Duration(kBin)];
+  }
+  return presence;
+}
+
+/// Frames that both have, bin by bin.
+std::size_t overlap(const Presence& a, const Presence& b) {
+  std::size_t common = 0;
+  for (auto first = a.begin(), second = b.begin(); first != a.end() && second != b.end();) {
+    if (first->first < second->first) {
+      ++first;
+    } else if (second->first < first->first) {
+      ++second;
+    } else {
+      common += std::min((first++)->second, (second++)->second);
+    }
+  }
+  return common;
+}
+
+using Overlaps = std::vector<std::vector<std::size_t>>;
+
+Overlaps overlaps_of(const std::map<SensorId, Walker>& walkers) {
+  std::vector<Presence> presences;
+  for (const auto& [sensor, walker] : walkers) presences.push_back(presence_of(walker.trail));
+  Overlaps overlaps(presences.size(), std::vector<std::size_t>(presences.size(), 0));
+  for (std::size_t i = 0; i < presences.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      overlaps[i][j] = overlaps[j][i] = overlap(presences[i], presences[j]);
+  }
+  return overlaps;
+}
+
+using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
+
+/// Those that share most with sensor i; of equals those that follow it, so that not all choose the
+/// same ones.
+void add_best(const Overlaps& overlaps, std::size_t i, Pairs& pairs) {
+  const std::size_t count = overlaps.size();
+  std::vector<std::size_t> others;
+  for (std::size_t step = 1; step < count; ++step) others.push_back((i + step) % count);
+  std::ranges::stable_sort(
+      others, [&](std::size_t a, std::size_t b) { return overlaps[i][a] > overlaps[i][b]; });
+  for (std::size_t k = 0; k < std::min(kPartners, others.size()); ++k)
+    pairs.insert(std::minmax(i, others[k]));
+}
+
+/// For each sensor the number of the group that these pairs connect it with.
+std::vector<std::size_t> groups_of(const Pairs& pairs, const Overlaps& overlaps) {
+  std::vector<std::size_t> group(overlaps.size());
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  for (const auto& [a, b] : pairs) {
+    if (overlaps[a][b] == 0) continue;
+    const std::size_t from = group[a];
+    const std::size_t to = group[b];
+    std::ranges::replace(group, from, to);
+  }
+  return group;
+}
+
+Pairs chosen_among(const Overlaps& overlaps) {
+  Pairs pairs;
+  for (std::size_t i = 0; i < overlaps.size(); ++i) add_best(overlaps, i, pairs);
+  const std::vector<std::size_t> group = groups_of(pairs, overlaps);
+  for (std::size_t i = 0; i < overlaps.size(); ++i) {
+    for (std::size_t j = i + 1; j < overlaps.size(); ++j) {
+      if (overlaps[i][j] == 0 || group[i] != group[j]) pairs.insert({i, j});
+    }
+  }
+  return pairs;
+}
+
+Pairs all_of(std::size_t count) {
+  Pairs pairs;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count; ++j) pairs.insert({i, j});
+  }
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<std::pair<SensorId, SensorId>> partners_of(const std::map<SensorId, Walker>& walkers) {
+  std::vector<SensorId> sensors;
+  for (const auto& [sensor, walker] : walkers) sensors.push_back(sensor);
+  const bool few = sensors.size() <= kAllPairs;
+  std::vector<std::pair<SensorId, SensorId>> partners;
+  for (const auto& [a, b] : few ? all_of(sensors.size()) : chosen_among(overlaps_of(walkers)))
+    partners.emplace_back(sensors[a], sensors[b]);
+  return partners;
+}
+
+}  // namespace chorus::registration

@@ -1,0 +1,44 @@
+// The points of a walk that the adjustment counts: what several sensors saw at one instant.
+#pragma once
+
+#include <optional>
+
+#include "fusion-server/registration/floor_prior.h"
+#include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/point_elimination.h"
+
+namespace chorus::registration {
+
+/// A sensor during the adjustment.
+struct Station {
+  SensorId id;
+  const Walker* walker = nullptr;
+  Eigen::Isometry3d level_from_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
+  FloorPrior floor = {};  ///< How well its own floor is known; zero: not at all.
+  bool master = false;
+  bool fixed = false;  ///< Has too few common points.
+
+  [[nodiscard]] Eigen::Isometry3d world_from_sensor() const {
+    return world_from_level * level_from_sensor;
+  }
+};
+
+/// A slot at one instant.
+struct WalkPoint {
+  double time = 0.0;     ///< Since the first instant [s].
+  std::size_t slot = 0;  ///< Of slots_of().
+  PointMeasurements seen;
+};
+
+/// In order of time.  Thinned out, but of many sensors there are more, so that no overlap is
+/// missed.
+[[nodiscard]] std::vector<WalkPoint> points_of(const std::vector<Station>& stations,
+                                               const RegistrationConfig& config);
+
+/// Which way each point goes, horizontally: from its fused places 0.3 s before and after.  None
+/// while it hardly moves.
+[[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> ways_of(
+    const std::vector<WalkPoint>& points, const std::vector<FusedPoint>& fused);
+
+}  // namespace chorus::registration

@@ -1,0 +1,76 @@
+// How sure the tracker is of a joint: its covariance as an ellipsoid, and in words.  Pure: nothing here draws.
+
+/// The 95 % quantile of chi squared with three degrees of freedom, square root: how many standard deviations the
+/// ellipsoid reaches that holds the true place in 95 % of all cases.
+export const REACH = Math.sqrt(7.8147);
+const NAMES = ['cxx', 'cxy', 'cxz', 'cyy', 'cyz', 'czz'];
+
+/// The terms [xx, xy, xz, yy, yz, zz] of a joint's covariance [m^2]; null where none is stated.
+export function covarianceOf(joint) {
+  const terms = NAMES.map((name) => Number(joint?.[name] ?? NaN));
+  return terms.every(Number.isFinite) ? terms : null;
+}
+
+/// The lower triangle [l11, l21, l22, l31, l32, l33] with L L^T = covariance: L turns the unit sphere into the ellipsoid of one
+/// standard deviation.  A covariance with no extent in some direction gives a flat one.
+export function rootOf([xx, xy, xz, yy, yz, zz]) {
+  const root = (square) => Math.sqrt(Math.max(square, 0));
+  const over = (value, pivot) => (pivot > 0 ? value / pivot : 0);
+  const l11 = root(xx);
+  const l21 = over(xy, l11);
+  const l31 = over(xz, l11);
+  const l22 = root(yy - l21 * l21);
+  const l32 = over(yz - l31 * l21, l22);
+  return [l11, l21, l22, l31, l32, root(zz - l31 * l31 - l32 * l32)];
+}
+
+/// Standard deviations along the ellipsoid's axes [m], largest first: the roots of the eigenvalues, by the
+/// trigonometric solution of the characteristic equation.
+export function axesOf([xx, xy, xz, yy, yz, zz]) {
+  const mean = (xx + yy + zz) / 3;
+  const [a, b, c] = [xx - mean, yy - mean, zz - mean];
+  const spread = Math.sqrt((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6);
+  if (spread <= 1e-9 * mean || spread === 0) return [mean, mean, mean].map(Math.sqrt);
+  const determinant = (a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)) / spread ** 3;
+  const turn = Math.acos(Math.min(Math.max(determinant / 2, -1), 1)) / 3;
+  return [0, -2, 2].map((k) => mean + 2 * spread * Math.cos(turn + (k * Math.PI) / 3))
+    .sort((first, second) => second - first)
+    .map((variance) => Math.sqrt(Math.max(variance, 0)));
+}
+
+const millimetres = (metres) => Math.round(1000 * metres);
+const percent = (share) => `${Math.round(100 * share)} %`;
+
+function sizeLine(joint) {
+  const covariance = covarianceOf(joint);
+  if (!covariance) return 'how sure: not stated';
+  const [long, middle, short] = axesOf(covariance).map((sigma) => millimetres(REACH * sigma));
+  return `95 % within ±${long} × ${middle} × ${short} mm`;
+}
+
+function sensorsLine(joint, sensors) {
+  const names = joint.contributors ?? [];
+  if (names.length === 0) return 'from no sensor: where it is expected';
+  const shares = names.map((id) => (Number.isFinite(sensors?.[id]?.share) ? `${id} (${percent(sensors[id].share)})` : id));
+  return `from ${shares.join(', ')}`;
+}
+
+/// "seen", or for how long nobody has seen the person.
+export function presence(body) {
+  return body.carriedFor === undefined ? 'seen' : `out of sight for ${Number(body.carriedFor).toFixed(1)} s`;
+}
+
+/// One line about a person: who, seen or carried, and how sure left and right are.
+export function personLine(body) {
+  const sides = Number(body.sidesConfidence ?? NaN);
+  const sure = Number.isFinite(sides) ? `left and right ${Math.floor(100 * sides)} % certain` : 'left and right not looked at';
+  return `person ${body.bodyId}: ${presence(body)}, ${sure}`;
+}
+
+/// What is known of one joint, in lines.  `sensors`: /sensors/ by id; `age` of the frame [ms].
+export function jointLines(body, name, sensors, age) {
+  const joint = body.joints[name];
+  const state = joint.state === 'Tracked' ? '' : ' (inferred)';
+  return [`${name}${state}, person ${body.bodyId}`, sizeLine(joint), sensorsLine(joint, sensors),
+    `${presence(body)}${Number.isFinite(age) ? `, ${Math.round(age)} ms old` : ''}`];
+}

@@ -1,0 +1,126 @@
+"""Boots a Debian root with the packages under systemd, in a container, and checks what only an init can show: the service starts at boot in its
+sandbox, tells when it is ready, is restarted when it is killed or stands still, and has its configuration and state after a reboot.
+By hand, as root: tests/run.sh --workshop.  Left out where the kernel lets systemd-nspawn boot nothing.
+
+CHORUS_PACKAGES and CHORUS_ROOT as in installed_root.py.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+import installed_root
+
+
+def wait_for(what, holds, patience=60.0):
+    until = time.monotonic() + patience
+    while time.monotonic() < until:
+        if holds():
+            return
+        time.sleep(0.1)
+    raise AssertionError(f"not within {patience:.0f} s: {what}")
+
+
+class Machine:
+    """A booted root, until it is switched off."""
+
+    def __init__(self, root):
+        self.root = root
+        self.boot()
+
+    def boot(self):
+        self.nspawn = subprocess.Popen(["systemd-nspawn", "--quiet", "-D", str(self.root), "--boot", "--register=no", "--keep-unit", "--private-network",
+                                        "--console=pipe"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.leader = None
+        wait_for("it boots", lambda: self.nspawn.poll() is not None or self.find_leader(), 30)
+        if self.nspawn.poll() is not None:
+            raise unittest.SkipTest("systemd-nspawn boots nothing here: " + self.nspawn.stdout.read()[-300:])
+        wait_for("it is up", lambda: self.do("systemctl is-system-running").strip() in ("running", "degraded"))
+
+    def find_leader(self):
+        children = Path(f"/proc/{self.nspawn.pid}/task/{self.nspawn.pid}/children").read_text().split()
+        self.leader = next((pid for pid in children if "systemd" in Path(f"/proc/{pid}/cmdline").read_text()
+                            and "nspawn" not in Path(f"/proc/{pid}/cmdline").read_text()), None)
+        return self.leader
+
+    def do(self, command):
+        done = subprocess.run(["nsenter", "-t", self.leader, "-a", "--", "bash", "-c", command], capture_output=True, text=True, check=False,
+                              env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL": "C.UTF-8"})
+        return done.stdout + done.stderr
+
+    def show(self, name):
+        return self.do(f"systemctl show --value -p {name} chorus-sensor").strip()
+
+    def pid(self):
+        return int(self.show("MainPID"))
+
+    def active(self):
+        return self.do("systemctl is-active chorus-sensor").strip() == "active" and self.pid() > 0
+
+    def off(self):
+        if self.nspawn.poll() is None:
+            self.do("systemctl poweroff")
+            try:
+                self.nspawn.wait(30)
+            except subprocess.TimeoutExpired:
+                self.nspawn.kill()
+                self.nspawn.wait()
+        self.nspawn.stdout.close()
+
+
+@unittest.skipUnless(shutil.which("systemd-nspawn"), "runs where systemd-nspawn is installed (Debian: systemd-container)")
+class Booted(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        installed_root.Installed.setUpClass()
+        cls.maker = installed_root.Installed()
+        cls.maker.setUp()
+        cls.addClassCleanup(cls.maker.doCleanups)
+        cls.maker.install("chorus-sensor")
+        cls.maker.inside("chorus init sensor --id b1 --device simulated; rm -r /packages; rm -f /usr/sbin/policy-rc.d")
+        cls.machine = Machine(cls.maker.root)
+        cls.addClassCleanup(cls.machine.off)
+        wait_for("the service is up", cls.machine.active)
+
+    def test_1_it_is_ready_and_shut_in(self):
+        self.assertIn("ok     chorus-sensor: answers at", self.machine.do("chorus doctor"))
+        self.assertEqual(self.machine.show("WatchdogUSec"), "20s")
+        self.assertEqual(self.machine.show("NRestarts"), "0")
+        status = self.machine.do(f"cat /proc/{self.machine.pid()}/status")
+        self.assertIn("CapEff:\t0000000000000000", status)
+        self.assertIn("NoNewPrivs:\t1", status)
+        self.assertIn("Seccomp:\t2", status)
+        self.assertRegex(self.machine.do("systemd-analyze --no-pager security chorus-sensor"), r"Overall exposure level .*: [01]\.\d OK")
+        self.assertEqual(self.machine.do("systemd-analyze verify chorus-sensor.service"), "")
+
+    def test_2_it_is_restarted_when_killed(self):
+        before, begun = self.machine.pid(), time.monotonic()
+        self.machine.do(f"kill -9 {before}")
+        wait_for("it is back", lambda: self.machine.active() and self.machine.pid() != before)
+        print(f"\nkilled, and back after {time.monotonic() - begun:.1f} s", file=sys.stderr)
+
+    def test_3_the_watchdog_ends_what_stands_still(self):
+        before, begun = self.machine.pid(), time.monotonic()
+        self.machine.do(f"kill -STOP {before}")
+        wait_for("it is back", lambda: self.machine.active() and self.machine.pid() != before, 90)
+        print(f"\nstopped, and back after {time.monotonic() - begun:.1f} s", file=sys.stderr)
+        self.assertIn("watchdog", self.machine.do("journalctl -u chorus-sensor").lower())
+
+    def test_4_a_reboot_keeps_what_was_there(self):
+        config = self.machine.do("cat /etc/chorus/sensor.json; touch /var/lib/chorus/sensor/kept")
+        self.machine.off()
+        self.machine.boot()
+        wait_for("the service is up by itself", self.machine.active)
+        self.assertEqual(self.machine.do("cat /etc/chorus/sensor.json"), config)
+        self.assertEqual(self.machine.do("stat -c %U /var/lib/chorus/sensor /var/lib/chorus/sensor/kept").split()[0], "chorus")
+        self.assertIn("ok     token of chorus-sensor: is taken", self.machine.do("chorus doctor"))
+
+
+if __name__ == "__main__":
+    if os.geteuid() != 0:
+        sys.exit("booted: this needs root")
+    unittest.main(verbosity=2)

@@ -1,0 +1,117 @@
+// What a walk told about clocks is added to capture times, and followed while clocks drift.
+#include "fusion-server/core/walked_clocks.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+#include "tests/unit/core/ring_of_three.h"
+
+namespace chorus::core {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::kStart;
+using testing::sensor_id;
+
+constexpr Duration kFrame = milliseconds(33);
+constexpr Duration kLatency = milliseconds(10);
+constexpr Duration kOff = milliseconds(200);  // the sensor's clock is behind ours by so much
+
+/// A frame without bodies, of a clock that is `behind` ours, `t` after the start.
+SensorFrame frame_at(Duration t, Duration behind, Duration latency = kLatency) {
+  SensorFrame frame = testing::sensor_frame("s2", kStart + t - behind, {});
+  frame.received = kStart + t + latency;
+  frame.clock_sigma = kUnknownClock;
+  return frame;
+}
+
+Registration walked() {
+  Registration registration = ring();
+  ClockOffset clock{kOff, milliseconds(4)};
+  clock.least_age = kOff + kLatency;
+  registration.clocks[sensor_id("s2")] = clock;
+  return registration;
+}
+
+Duration added(const WalkedClocks& clocks) {
+  const auto own = clocks.of(sensor_id("s2"));
+  return own ? own->added : Duration{0};
+}
+
+/// Takes frames from `from` on for `length`; returns by how much all of them were to be moved.
+template <class Behind>
+Duration run(WalkedClocks& clocks, const Registration& registration, Duration from, Duration length,
+             const Behind& behind) {
+  Duration moved{0};
+  for (Duration t = from; t < from + length; t += kFrame)
+    moved += clocks.take(frame_at(t, behind(t)), registration);
+  return moved;
+}
+
+constexpr auto kAsWalked = [](Duration) { return kOff; };
+
+TEST(WalkedClocks, TheFirstFrameIsMovedAndTheRestStays) {
+  WalkedClocks clocks;
+  EXPECT_EQ(clocks.take(frame_at(Duration{0}, kOff), walked()), kOff);
+  EXPECT_EQ(run(clocks, walked(), kFrame, seconds(60), kAsWalked), Duration{0});
+  EXPECT_EQ(added(clocks), kOff);
+}
+
+TEST(WalkedClocks, WithoutTheRegistrationEverythingIsAsBefore) {
+  WalkedClocks clocks;
+  (void)run(clocks, walked(), Duration{0}, seconds(5), kAsWalked);
+  EXPECT_EQ(clocks.take(frame_at(seconds(5), kOff), ring()), -kOff);
+  EXPECT_FALSE(clocks.of(sensor_id("s2")));
+}
+
+TEST(WalkedClocks, AHostThatBeginsToAnswerWithItsTimeIsBelievedInstead) {
+  WalkedClocks clocks;
+  (void)run(clocks, walked(), Duration{0}, seconds(5), kAsWalked);
+  SensorFrame corrected = frame_at(seconds(5), Duration{0});
+  corrected.clock_sigma = 0.02;  // worse than what the walk told, but about the same stamps
+  EXPECT_EQ(clocks.take(corrected, walked()), -kOff);
+}
+
+TEST(WalkedClocks, WhatAWalkAddedToAnsweredTimesHoldsUntilTheAnswersKnowBetter) {
+  Registration registration = walked();
+  registration.clocks.at(sensor_id("s2")).stated = milliseconds(20);
+  WalkedClocks clocks;
+  SensorFrame frame = frame_at(Duration{0}, Duration{0});
+  frame.clock_sigma = 0.02;
+  EXPECT_EQ(clocks.take(frame, registration), kOff);
+  frame.captured += kFrame;
+  frame.clock_sigma = 0.003;
+  EXPECT_EQ(clocks.take(frame, registration), -kOff);
+}
+
+TEST(WalkedClocks, ADriftingClockIsFollowed) {
+  WalkedClocks clocks;
+  const auto drifting = [](Duration t) { return kOff + t / 10'000; };  // 100 ppm
+  (void)run(clocks, walked(), Duration{0}, std::chrono::minutes(20), drifting);
+  EXPECT_NEAR(chorus::seconds(added(clocks)), 0.200 + 0.120, 0.008);
+}
+
+TEST(WalkedClocks, ASetClockIsFollowedWithinSeconds) {
+  WalkedClocks ahead;
+  (void)run(ahead, walked(), Duration{0}, seconds(10), kAsWalked);
+  (void)run(ahead, walked(), seconds(10), 4 * kFrame, [](Duration) { return milliseconds(-300); });
+  EXPECT_EQ(added(ahead), milliseconds(-300));
+  WalkedClocks back;
+  (void)run(back, walked(), Duration{0}, seconds(10), kAsWalked);
+  (void)run(back, walked(), seconds(10), seconds(4), [](Duration) { return milliseconds(900); });
+  EXPECT_EQ(added(back), milliseconds(900));
+}
+
+TEST(WalkedClocks, OddFramesAndABusyLinkChangeNothing) {
+  WalkedClocks clocks;
+  (void)run(clocks, walked(), Duration{0}, seconds(10), kAsWalked);
+  (void)clocks.take(frame_at(seconds(10), milliseconds(-500)), walked());  // one from the future
+  EXPECT_EQ(added(clocks), kOff);
+  for (Duration t = seconds(10) + kFrame; t < seconds(30); t += kFrame)
+    (void)clocks.take(frame_at(t, kOff, milliseconds(60)), walked());
+  EXPECT_EQ(added(clocks), kOff);
+}
+
+}  // namespace
+}  // namespace chorus::core

@@ -1,0 +1,88 @@
+#include "fusion-server/registration/view_bias.h"
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr double kRatio = 2.0;
+constexpr double kSigma = 0.0025;  // [m] of a coefficient
+
+/// Two sensors at a right angle that see one point without error.
+struct Scene {
+  std::vector<Eigen::Isometry3d> places;
+  PointMeasurements seen;
+  Eigen::Vector3d x{0.2, 1.3, 0.1};
+
+  Scene() {
+    for (const double yaw : {0.0, deg(90)}) {
+      Eigen::Isometry3d place(about_y(yaw));
+      place.translation() = place.linear() * Eigen::Vector3d(0, 1.6, -3);
+      const Eigen::Vector3d own = place.inverse() * x;
+      seen.push_back({places.size(), own, own.normalized(), 0.01});
+      places.push_back(place);
+    }
+  }
+  [[nodiscard]] Eigen::Matrix3d axes(std::size_t sensor) const {
+    Eigen::Vector3d view = x - places[sensor].translation();
+    view.y() = 0.0;
+    Eigen::Matrix3d axes;
+    axes.col(0) = view.normalized();
+    axes.col(1) = Eigen::Vector3d::UnitY().cross(axes.col(0));
+    axes.col(2) = Eigen::Vector3d::UnitY();
+    return axes;
+  }
+  /// The score when one sensor's sight is off by `off` (world).
+  [[nodiscard]] Eigen::VectorXd score(std::size_t sensor, const Eigen::Vector3d& off) const {
+    PointMeasurements wrong = seen;
+    wrong[sensor].x += places[sensor].linear().transpose() * off;
+    PlaceEquations equations{Eigen::MatrixXd::Zero(12, 12), Eigen::VectorXd::Zero(12)};
+    add_point(equations, wrong, fuse_point(wrong, places, kRatio), 1.0);
+    return equations.right;
+  }
+  [[nodiscard]] Eigen::MatrixXd scores(const std::optional<Eigen::Vector3d>& walking) const {
+    ViewBias bias({places[0].translation(), places[1].translation()});
+    bias.add(seen, fuse_point(seen, places, kRatio), 1.0, walking);
+    return bias.scores();
+  }
+};
+
+TEST(ViewBias, IsWhatDisplacedSightsDoToTheScores) {
+  const Scene scene;
+  constexpr double kStep = 1e-6;
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(12, 12);
+  for (std::size_t sensor = 0; sensor < 2; ++sensor) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::VectorXd score =
+          scene.score(sensor, kStep * scene.axes(sensor).col(axis)) / kStep;
+      expected += kSigma * kSigma * score * score.transpose();
+    }
+  }
+  const Eigen::MatrixXd found = scene.scores(std::nullopt);
+  EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm());
+}
+
+/// cos^2 + sin^2 = 1 for both harmonics: one point counts three times, whichever way it goes.
+TEST(ViewBias, KnowsFiveTermsWhereTheWayIsKnown) {
+  const Scene scene;
+  const Eigen::MatrixXd constant = scene.scores(std::nullopt);
+  for (const Eigen::Vector3d& way : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.3, 0, -0.8)})
+    EXPECT_LT((scene.scores(way) - 3.0 * constant).norm(), 1e-9 * constant.norm());
+}
+
+TEST(ViewBias, CancelsInPartWhereThePersonTurnsAround) {
+  const Scene scene;
+  ViewBias bias({scene.places[0].translation(), scene.places[1].translation()});
+  const FusedPoint fused = fuse_point(scene.seen, scene.places, kRatio);
+  bias.add(scene.seen, fused, 1.0, Eigen::Vector3d(0, 0, 1));
+  bias.add(scene.seen, fused, 1.0, Eigen::Vector3d(0, 0, -1));
+  // The first harmonic cancels, the constant and the second add up: 4 (1 + 1) instead of 4 (1 + 2).
+  const Eigen::MatrixXd constant = scene.scores(std::nullopt);
+  EXPECT_LT((bias.scores() - 8.0 * constant).norm(), 1e-9 * constant.norm());
+}
+
+}  // namespace
+}  // namespace chorus::registration
