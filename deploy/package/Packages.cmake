@@ -119,14 +119,11 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS chorus-sensor)
 set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folders of a workshop host
  Writes configurations, checks hosts, registers sensors and records.")
 set(CPACK_COMPONENT_SENSOR_DESCRIPTION "Chorus: a body-tracking device as a web service
- Serves the skeletons of one device (pushed, replayed or simulated) as linked
- data over HTTP.")
+ Serves the skeletons of a device, pushed, replayed or simulated, over HTTP.")
 set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams, video files and phones as sensors
- The device camera of chorus-sensor, the runner that finds people in its
- pictures, and a page that does so on a phone.")
+ The device camera, the runner that finds people, and a page for phones.")
 set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
- Reads sensors, finds where they stand from a walking person, and serves
- one tracker in many protocols.")
+ Reads sensors, places them by a person who walks, and serves one tracker.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
  The commands import, replay, fuse, export and calibrate.")
 include(CPack)
