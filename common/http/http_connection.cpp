@@ -6,6 +6,7 @@
 #include "common/http/server_core.h"
 #include "common/http/websocket.h"
 #include "common/net/address.h"
+#include "common/net/prompt.h"
 #include "common/net/small_queue.h"
 
 namespace chorus::http {
@@ -33,8 +34,7 @@ HttpConnection::HttpConnection(ServerCore& core, net::Socket socket,
       conversation_({core.config, core.responder, core.counters, core.stopping},
                     peer_of(core, stream_.socket(), remote),
                     [this](const std::string& account) { return core_.charge(*this, account); }) {
-  net::error_code ignored;
-  stream_.socket().set_option(net::tcp::no_delay(true), ignored);
+  net::make_prompt(stream_.socket());
 }
 
 void HttpConnection::start() { begin(&Conversation::begin); }

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/net/prompt.h"
+
 namespace chorus::net {
 namespace {
 
@@ -20,8 +22,7 @@ struct Attempt : std::enable_shared_from_this<Attempt> {
     socket.async_connect(endpoint, [self = shared_from_this()](error_code failed) {
       if (!self->to.wanted()) return;
       if (failed && !self->endpoints.empty()) return self->next();
-      error_code unimportant;
-      if (!failed) self->socket.set_option(tcp::no_delay(true), unimportant);
+      if (!failed) make_prompt(self->socket);
       self->done(failed, "connect");
     });
   }

@@ -29,29 +29,38 @@ struct Places {
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
 };
 
-bool shows(const SensorView& view, JointId left) {
-  return view.skeleton[left].seen() && view.skeleton[mirror(left)].seen();
-}
+/// A view that shows both joints of a pair.
+struct Sight {
+  std::size_t view = 0;  ///< Index into Person::views.
+  Places places;
+};
 
-Places places_of(const SensorView& view, JointId left) {
-  return {view.skeleton[left].position, view.skeleton[mirror(left)].position};
-}
-
-/// The mean of the other views that show the pair, and the number of these views.
-std::pair<Places, std::size_t> others(const Person& person, std::size_t self, JointId left) {
-  Places mean;
-  std::size_t count = 0;
+/// The views that show the pair: a table of its own, because every view is compared with all others
+/// and views are large.
+std::vector<Sight> sights_of(const Person& person, JointId left) {
+  const JointId right = mirror(left);
+  std::vector<Sight> sights;
+  sights.reserve(person.views.size());
   for (std::size_t v = 0; v < person.views.size(); ++v) {
-    if (v == self || !shows(person.views[v], left)) continue;
-    const Places places = places_of(person.views[v], left);
-    mean.left += places.left;
-    mean.right += places.right;
-    ++count;
+    const Skeleton<WorldSpace>& body = person.views[v].skeleton;
+    if (body[left].seen() && body[right].seen())
+      sights.push_back({v, {body[left].position, body[right].position}});
   }
-  if (count == 0) return {mean, count};
-  mean.left /= static_cast<double>(count);
-  mean.right /= static_cast<double>(count);
-  return {mean, count};
+  return sights;
+}
+
+/// The mean of the sights but one.
+Places mean_of_others(const std::vector<Sight>& sights, std::size_t self) {
+  Places mean;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    if (i == self) continue;
+    mean.left += sights[i].places.left;
+    mean.right += sights[i].places.right;
+  }
+  const auto count = static_cast<double>(sights.size() - 1);
+  mean.left /= count;
+  mean.right /= count;
+  return mean;
 }
 
 double misfit(const Places& a, const Places& b) {
@@ -88,27 +97,25 @@ bool contradicts(const Places& seen, const Eigen::Vector3d& held, const LimbLimi
 
 enum class Verdict { Right, Exchanged, Doubtful };
 
-Verdict judge(const Person& person, std::size_t view, std::size_t pair, const Spans& held,
+Verdict judge(const std::vector<Sight>& sights, std::size_t self, const Eigen::Vector3d& held,
               const LimbLimits& limits) {
-  const JointId left = kSidePairs[pair];
-  if (!shows(person.views[view], left)) return Verdict::Right;
-  const Places seen = places_of(person.views[view], left);
+  const Places& seen = sights[self].places;
   if ((seen.left - seen.right).norm() <= limits.apart) return Verdict::Right;
-  const auto [mean, count] = others(person, view, left);
-  if (count >= kEnough)
-    return fits_exchanged(seen, mean, limits) ? Verdict::Exchanged : Verdict::Right;
-  return contradicts(seen, held[pair], limits) ? Verdict::Doubtful : Verdict::Right;
+  if (sights.size() > kEnough)
+    return fits_exchanged(seen, mean_of_others(sights, self), limits) ? Verdict::Exchanged
+                                                                      : Verdict::Right;
+  return contradicts(seen, held, limits) ? Verdict::Doubtful : Verdict::Right;
 }
 
 }  // namespace
 
 void mend_limbs(Person& person, const Spans& held, const LimbLimits& limits) {
   if (!limits.mend) return;
-  const Person before = person;
-  for (std::size_t view = 0; view < person.views.size(); ++view) {
-    for (std::size_t pair = 0; pair < kSidePairs.size(); ++pair) {
-      const Verdict verdict = judge(before, view, pair, held, limits);
-      Skeleton<WorldSpace>& body = person.views[view].skeleton;
+  for (std::size_t pair = 0; pair < kSidePairs.size(); ++pair) {
+    const std::vector<Sight> sights = sights_of(person, kSidePairs[pair]);
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      const Verdict verdict = judge(sights, i, held[pair], limits);
+      Skeleton<WorldSpace>& body = person.views[sights[i].view].skeleton;
       if (verdict == Verdict::Exchanged) exchange_pair(body, pair);
       if (verdict == Verdict::Doubtful) count_as_guessed(body, pair);
     }

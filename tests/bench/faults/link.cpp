@@ -11,6 +11,7 @@
 
 #include "common/base/duration.h"
 #include "common/net/asio.h"
+#include "common/net/prompt.h"
 
 namespace chorus::bench {
 namespace {
@@ -202,9 +203,9 @@ struct Pump::Impl {
       connections.push_back(connection);
       connection->server.async_connect(ends.target, [connection](const error_code& refused) {
         if (refused) return connection->cut();
-        error_code ignored;
+        // Stands in for the connections of the services, which set the same on theirs.
         for (net::Socket* each : {&connection->client, &connection->server})
-          each->set_option(net::tcp::no_delay(true), ignored);
+          net::make_prompt(*each);
         connection->requests.start(connection);
         connection->answers.start(connection);
       });

@@ -148,6 +148,23 @@ TEST(FrameReader, RefusesMoreBodiesThanThereMayBe) {
   EXPECT_EQ(refused.error().code, ErrorCode::TooLarge);
 }
 
+/// One sensor that speaks of very much would keep the reader from the others.
+TEST(FrameReader, RefusesADocumentThatSpeaksOfTooManyThings) {
+  const auto frame = read(good());
+  ASSERT_TRUE(frame);
+  const std::string turtle = write(*frame, Format::Turtle);
+  const auto with = [&](int strangers) {
+    std::string text = turtle;
+    for (int i = 0; i < strangers; ++i) text += "<x" + std::to_string(i) + "> <urn:p> 1 .\n";
+    return read_frame(text, Format::Turtle);
+  };
+  EXPECT_TRUE(with(4000));
+  const auto refused = with(4100);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::TooLarge);
+  EXPECT_NE(refused.error().message.find("4096 things"), std::string::npos);
+}
+
 TEST(FrameReader, ForgivesWhatChangesNothing) {
   const std::vector<std::function<void(Json&)>> harmless{
       [](Json& f) { f["remark"] = "of another program"; },
