@@ -1,3 +1,5 @@
+#include "tests/bench/camera/four_views.h"
+
 #include <cstdlib>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include "common/base/units.h"
 #include "fusion-server/pipeline/offline.h"
 #include "services/sensor/device/camera/film.h"
-#include "tests/bench/camera/four_views.h"
 #include "tests/judge/statistics.h"
 
 namespace chorus::bench {
