@@ -10,6 +10,8 @@
 #include <array>
 #include <cstring>
 
+#include "tests/support/free_port.h"
+
 namespace chorus::testing {
 namespace {
 
@@ -42,14 +44,6 @@ std::optional<VrpnPose> read_pose(const VrpnMessage& message, std::string_view t
   pose.orientation = {f64_at(p, 56), f64_at(p, 32), f64_at(p, 40), f64_at(p, 48)};
   if (size > 64) pose.interval = f64_at(p, 64);
   return pose;
-}
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
 }
 
 std::uint16_t bound_port(int socket) {

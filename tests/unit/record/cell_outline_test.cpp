@@ -40,8 +40,7 @@ FusedFrame outline_fused(int i) {
 }
 
 void write_outlined_cell(const std::filesystem::path& path) {
-  write_outlined_cell(path, {kStart, R"({"version":1,"sensors":{}})", {}}, outline_seen_by,
-                      outline_fused);
+  write_cell(path, {kStart, R"({"version":1,"sensors":{}})", {}}, outline_seen_by, outline_fused);
 }
 
 TEST(CellOutline, TellsWhoWasThereAndWhenWithoutReadingItThrough) {
