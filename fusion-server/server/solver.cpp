@@ -81,9 +81,9 @@ std::map<SensorId, Walker> walkers_of(const std::vector<WalkTrack>& walk,
 
 Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
   std::vector<WalkTrack> walk = core::assembled(job.walk);
+  const registration::Stopped stopped = [&] { return job.stop.stop_requested(); };
   const registration::PairSearch search{
-      [&] { return job.stop.stop_requested(); },
-      [](std::size_t count, const auto& work) { on_all_cores(count, work); }};
+      stopped, [](std::size_t count, const auto& work) { on_all_cores(count, work); }};
   const registration::WalkClocks clocks = registration::clocks_of(walk, job.config, search);
   registration::bring_in_step(walk, clocks);
   const auto walkers = walkers_of(walk, job.config);

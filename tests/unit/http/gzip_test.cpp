@@ -22,27 +22,27 @@ std::string unpacked(const std::string& bytes) {
   return out.substr(0, stream.total_out);
 }
 
-std::string frame_text() {
+std::string repetitive_text() {
   std::string text;
   for (int i = 0; i < 200; ++i) text += "\"Head\": {\"x\": " + std::to_string(i * 37 % 101) + "}, ";
   return text;
 }
 
 TEST(Gzip, IsReadBackAndSmaller) {
-  for (const std::string& text : {frame_text(), std::string(), std::string("x")}) {
+  for (const std::string& text : {repetitive_text(), std::string(), std::string("x")}) {
     EXPECT_EQ(unpacked(gzipped(text)), text);
     EXPECT_EQ(unpacked(gzipped(text)), text) << "the state is used again";
   }
-  EXPECT_LT(gzipped(frame_text()).size() * 4, frame_text().size());
+  EXPECT_LT(gzipped(repetitive_text()).size() * 4, repetitive_text().size());
 }
 
 TEST(Gzip, PiecesFollowEachOtherInAnyOrder) {
-  const std::string a = gzip_piece(frame_text());
+  const std::string a = gzip_piece(repetitive_text());
   const std::string b = gzip_piece("b\n");
   const std::string begin(gzip_begin());
-  EXPECT_EQ(unpacked(begin + a + b + a), frame_text() + "b\n" + frame_text());
+  EXPECT_EQ(unpacked(begin + a + b + a), repetitive_text() + "b\n" + repetitive_text());
   EXPECT_EQ(unpacked(begin + b + b), "b\nb\n");
-  EXPECT_EQ(unpacked(begin + a), frame_text()) << "whole as soon as it has come";
+  EXPECT_EQ(unpacked(begin + a), repetitive_text()) << "whole as soon as it has come";
 }
 
 TEST(CodingFor, TakesGzipWhereItIsAccepted) {
