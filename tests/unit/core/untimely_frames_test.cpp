@@ -14,13 +14,13 @@ using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
-CoreConfig config() { return of_three<CoreConfig>(); }
+CoreConfig untimely_config() { return of_three<CoreConfig>(); }
 
 /// What a walk told of a clock is added to the frames, those that came before included, and taken
 /// back with the registration.
 TEST(UntimelyFrames, AClockThatAWalkToldIsAddedAndUndoneWithIt) {
   const Duration off = milliseconds(400);
-  FusionCore core(config(), ring());
+  FusionCore core(untimely_config(), ring());
   const auto feed = [&](Duration from, Duration length) {
     std::optional<Snapshot> last;
     for (Duration t = from; t < from + length; t += milliseconds(1)) {
@@ -52,7 +52,7 @@ TEST(UntimelyFrames, AClockThatAWalkToldIsAddedAndUndoneWithIt) {
 }
 
 TEST(UntimelyFrames, AreCountedByWhatBecameOfThem) {
-  FusionCore core(config(), ring());
+  FusionCore core(untimely_config(), ring());
   const SensorId s1 = sensor_id("s1");
   const auto send = [&](Duration captured, std::uint64_t sequence, Duration received) {
     SensorFrame frame = sight(0, captured);
