@@ -34,10 +34,10 @@ bool wants_events(const RequestHead& head, const Document& document) {
 
 /// The media type of the events: JSON, unless Accept prefers Turtle.
 std::string_view event_type_of(std::string_view accept) {
-  constexpr std::string_view kJson = "application/json";
+  constexpr std::string_view kJsonType = "application/json";
   constexpr std::string_view kTurtle = "text/turtle";
   const int turtle = explicit_quality_of(kTurtle, accept).value_or(0);
-  return turtle > explicit_quality_of(kJson, accept).value_or(0) ? kTurtle : kJson;
+  return turtle > explicit_quality_of(kJsonType, accept).value_or(0) ? kTurtle : kJsonType;
 }
 
 constexpr std::string_view kStreamBegin = "retry: 1000\n\n";  // Browsers reconnect after 1 s.

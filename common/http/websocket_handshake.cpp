@@ -33,15 +33,15 @@ bool may_open(const RequestHead& head, std::string_view allowed_origin) {
 }
 
 Subprotocols subprotocols_of(const RequestHead& head, std::string_view protocol) {
-  constexpr std::string_view kToken = "chorus.token.";
+  constexpr std::string_view kTokenMark = "chorus.token.";
   Subprotocols found;
   for (const Field& field : head.fields) {
     if (!equal_ignoring_case(field.name, "Sec-WebSocket-Protocol")) continue;
     for (std::string_view list = field.value; !list.empty();) {
       const std::string_view one = next_element(list, ',');
       if (one == protocol) found.named = true;
-      if (!one.starts_with(kToken)) continue;
-      const auto decoded = decode_query("token=" + std::string(one.substr(kToken.size())));
+      if (!one.starts_with(kTokenMark)) continue;
+      const auto decoded = decode_query("token=" + std::string(one.substr(kTokenMark.size())));
       if (decoded) found.token = decoded->at("token");
     }
   }

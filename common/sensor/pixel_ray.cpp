@@ -17,7 +17,7 @@ Eigen::Vector2d distorted(const Eigen::Vector2d& x, const Intrinsics& camera) {
 
 std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel, const Intrinsics& camera) {
   constexpr int kMaxSteps = 50;
-  constexpr double kConverged = 1e-10;
+  constexpr double kRayConverged = 1e-10;
   constexpr double kGood = 1e-6;  // A thousandth of a pixel.
   const Eigen::Vector2d seen((pixel.x() - camera.cx) / camera.fx,
                              (pixel.y() - camera.cy) / camera.fy);
@@ -25,7 +25,7 @@ std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel, const Intrin
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Vector2d error = seen - distorted(x, camera);
     x += error;
-    if (error.squaredNorm() < kConverged * kConverged) break;
+    if (error.squaredNorm() < kRayConverged * kRayConverged) break;
   }
   if (!((seen - distorted(x, camera)).norm() < kGood)) return std::nullopt;
   return Eigen::Vector3d(x.x(), x.y(), 1.0).normalized();

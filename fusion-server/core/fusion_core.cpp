@@ -27,13 +27,13 @@ constexpr std::string_view kFrozen =
 /// True if some sensor has nearly the same place in both registrations, so that people can be
 /// matched: both use the same world.
 bool share_a_place(const Registration& one, const Registration& other) {
-  constexpr double kSame = 0.3;  // [m]
+  constexpr double kSamePlace = 0.3;  // [m]
   const Eigen::Vector3d mark = kReach * Eigen::Vector3d::UnitZ();
   return std::ranges::any_of(one.sensors, [&](const auto& entry) {
     const auto found = other.sensors.find(entry.first);
     return found != other.sensors.end() &&
            (entry.second.world_from_sensor * mark - found->second.world_from_sensor * mark).norm() <
-               kSame;
+               kSamePlace;
   });
 }
 

@@ -190,7 +190,7 @@ Eigen::Matrix3d SightedBody::stated(std::size_t joint) const {
 }
 
 std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
-  constexpr double kAxes = 3.0;
+  constexpr double kDimensions = 3.0;
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -198,7 +198,8 @@ std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
     if (!determined(j) || !sights.round || sights.views.size() < 2) continue;
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
       const Eigen::Vector3d off = sights.views[v].joint.position - body[j].position;
-      sum += sights.weighings[v].trust * off.squaredNorm() / (kAxes * sights.weighings[v].variance);
+      sum += sights.weighings[v].trust * off.squaredNorm() /
+             (kDimensions * sights.weighings[v].variance);
       count += 1.0;
     }
   }

@@ -61,12 +61,12 @@ std::string sensors_report(const nlohmann::json& sensors) {
 
 /// What the sensor's own service reports as wrong with its device; empty if nothing is wrong.
 std::string own_words(const std::string& sensor_url) {
-  constexpr http::ClientLimits kBrief{1 << 16, std::chrono::seconds(1), std::chrono::seconds(1)};
+  constexpr http::ClientLimits kBriefly{1 << 16, std::chrono::seconds(1), std::chrono::seconds(1)};
   const auto url = http::parse_url(sensor_url);
   if (!url) return {};
   http::ClientRequest request;
   request.target = url->target + (url->target.ends_with('/') ? "healthz" : "/healthz");
-  const auto answer = client::fetch_trusted(*url, request, kBrief);
+  const auto answer = client::fetch_trusted(*url, request, kBriefly);
   if (!answer || answer->status < http::status::kBadRequest) return {};
   return client::text_at(nlohmann::json::parse(answer->body, nullptr, false), "detail", "");
 }

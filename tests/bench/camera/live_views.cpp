@@ -19,14 +19,13 @@ namespace chorus::bench {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using Json = nlohmann::json;
 
 constexpr double kTakeSeconds = 100.0 / kTruthHz;
 // Left out around the end of the take, where bodies jump to its beginning [s].
 constexpr double kJoin = 0.3;
-constexpr auto kPatience = seconds(120);
-constexpr auto kSettling = seconds(6);
+constexpr auto kPatience = std::chrono::seconds(120);
+constexpr auto kSettling = std::chrono::seconds(6);
 constexpr double kWatched = 30.0;  // [s]
 
 struct Cell {

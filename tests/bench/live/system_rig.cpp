@@ -16,9 +16,8 @@ namespace chorus::bench {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
-constexpr auto kRegistrationPatience = seconds(60);
+constexpr auto kRegistrationPatience = std::chrono::seconds(60);
 
 /// The integer after `key` in a Turtle document; cheap, so that the watcher costs little.
 std::int64_t number_after(const std::string& text, const std::string& key) {
@@ -48,9 +47,10 @@ class Watcher {
       request.headers.emplace_back("If-None-Match", etag_);
       request.headers.emplace_back("Prefer", "wait=5");
     }
-    client_.send(std::move(request), seconds(10), [this](Result<http::ClientResponse> answer) {
-      if (!stopped_) take(answer);
-    });
+    client_.send(std::move(request), std::chrono::seconds(10),
+                 [this](Result<http::ClientResponse> answer) {
+                   if (!stopped_) take(answer);
+                 });
   }
 
   void take(const Result<http::ClientResponse>& answer) {

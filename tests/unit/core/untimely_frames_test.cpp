@@ -10,17 +10,16 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
-CoreConfig config() { return of_three<CoreConfig>(); }
+CoreConfig untimely_config() { return of_three<CoreConfig>(); }
 
 /// What a walk told of a clock is added to the frames, those that came before included, and taken
 /// back with the registration.
 TEST(UntimelyFrames, AClockThatAWalkToldIsAddedAndUndoneWithIt) {
   const Duration off = milliseconds(400);
-  FusionCore core(config(), ring());
+  FusionCore core(untimely_config(), ring());
   const auto feed = [&](Duration from, Duration length) {
     std::optional<Snapshot> last;
     for (Duration t = from; t < from + length; t += milliseconds(1)) {
@@ -37,22 +36,23 @@ TEST(UntimelyFrames, AClockThatAWalkToldIsAddedAndUndoneWithIt) {
     }
     return last->bodies.at(0).contributors[index_of(JointId::Neck)];
   };
-  EXPECT_EQ(feed(Duration{0}, seconds(3)), 0b011U) << "its frames are all too old";
+  EXPECT_EQ(feed(Duration{0}, std::chrono::seconds(3)), 0b011U) << "its frames are all too old";
   Registration walked = ring();
   walked.clocks[sensor_id("s3")] = {off, milliseconds(4)};
-  ASSERT_TRUE(core.start_session(seconds(8), kStart));
-  EXPECT_EQ(core.solved({1, SolveKind::Final, walked}, kStart + seconds(3)), Outcome::Adopted);
-  EXPECT_EQ(feed(seconds(3), seconds(2)), 0b111U);
+  ASSERT_TRUE(core.start_session(std::chrono::seconds(8), kStart));
+  EXPECT_EQ(core.solved({1, SolveKind::Final, walked}, kStart + std::chrono::seconds(3)),
+            Outcome::Adopted);
+  EXPECT_EQ(feed(std::chrono::seconds(3), std::chrono::seconds(2)), 0b111U);
   EXPECT_EQ(core.walked_clock(sensor_id("s3"))->added, off);
   EXPECT_EQ(core.fates(sensor_id("s3")), FrameFates{}) << "nothing is lost by the change";
   ASSERT_TRUE(core.undo());
-  EXPECT_EQ(feed(seconds(5), seconds(2)), 0b011U);
+  EXPECT_EQ(feed(std::chrono::seconds(5), std::chrono::seconds(2)), 0b011U);
   EXPECT_FALSE(core.walked_clock(sensor_id("s3")));
   EXPECT_EQ(core.fates(sensor_id("s3")), FrameFates{});
 }
 
 TEST(UntimelyFrames, AreCountedByWhatBecameOfThem) {
-  FusionCore core(config(), ring());
+  FusionCore core(untimely_config(), ring());
   const SensorId s1 = sensor_id("s1");
   const auto send = [&](Duration captured, std::uint64_t sequence, Duration received) {
     SensorFrame frame = sight(0, captured);
@@ -60,18 +60,20 @@ TEST(UntimelyFrames, AreCountedByWhatBecameOfThem) {
     frame.received = kStart + received;
     core.take(frame);
   };
-  send(seconds(2), 10, seconds(2));
-  send(seconds(3), 12, seconds(3));
-  send(milliseconds(2500), 11, seconds(3));  // overtaken
-  send(seconds(3), 12, seconds(3));          // doubled
-  send(seconds(9), 13, seconds(3));          // from the future
-  send(seconds(1), 5, seconds(3));           // too late to be of use
+  send(std::chrono::seconds(2), 10, std::chrono::seconds(2));
+  send(std::chrono::seconds(3), 12, std::chrono::seconds(3));
+  send(milliseconds(2500), 11, std::chrono::seconds(3));       // overtaken
+  send(std::chrono::seconds(3), 12, std::chrono::seconds(3));  // doubled
+  send(std::chrono::seconds(9), 13, std::chrono::seconds(3));  // from the future
+  send(std::chrono::seconds(1), 5, std::chrono::seconds(3));   // too late to be of use
   FrameFates expected;
   expected.late = expected.doubled = expected.early = expected.stale = 1;
   EXPECT_EQ(core.fates(s1), expected);
-  EXPECT_NE(core.complaint(s1, kStart + seconds(3)).find("holds frames back"), std::string::npos);
+  EXPECT_NE(core.complaint(s1, kStart + std::chrono::seconds(3)).find("holds frames back"),
+            std::string::npos);
   for (const std::uint64_t sequence : {14U, 15U, 16U})
-    send(milliseconds(2600 + 33 * static_cast<int>(sequence - 14)), sequence, seconds(3));
+    send(milliseconds(2600 + 33 * static_cast<int>(sequence - 14)), sequence,
+         std::chrono::seconds(3));
   EXPECT_EQ(core.fates(s1).restarts, 1U);
   EXPECT_EQ(core.fates(s1).backwards, 1U) << "the stale one was the first of three";
 }

@@ -10,7 +10,6 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
@@ -54,21 +53,21 @@ constexpr auto kAsWalked = [](Duration) { return kOff; };
 TEST(WalkedClocks, TheFirstFrameIsMovedAndTheRestStays) {
   WalkedClocks clocks;
   EXPECT_EQ(clocks.take(frame_at(Duration{0}, kOff), walked()), kOff);
-  EXPECT_EQ(run(clocks, walked(), kFrame, seconds(60), kAsWalked), Duration{0});
+  EXPECT_EQ(run(clocks, walked(), kFrame, std::chrono::seconds(60), kAsWalked), Duration{0});
   EXPECT_EQ(added(clocks), kOff);
 }
 
 TEST(WalkedClocks, WithoutTheRegistrationEverythingIsAsBefore) {
   WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, seconds(5), kAsWalked);
-  EXPECT_EQ(clocks.take(frame_at(seconds(5), kOff), ring()), -kOff);
+  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);
+  EXPECT_EQ(clocks.take(frame_at(std::chrono::seconds(5), kOff), ring()), -kOff);
   EXPECT_FALSE(clocks.of(sensor_id("s2")));
 }
 
 TEST(WalkedClocks, AHostThatBeginsToAnswerWithItsTimeIsBelievedInstead) {
   WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, seconds(5), kAsWalked);
-  SensorFrame corrected = frame_at(seconds(5), Duration{0});
+  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);
+  SensorFrame corrected = frame_at(std::chrono::seconds(5), Duration{0});
   corrected.clock_sigma = 0.02;  // worse than what the walk told, but about the same stamps
   EXPECT_EQ(clocks.take(corrected, walked()), -kOff);
 }
@@ -94,21 +93,24 @@ TEST(WalkedClocks, ADriftingClockIsFollowed) {
 
 TEST(WalkedClocks, ASetClockIsFollowedWithinSeconds) {
   WalkedClocks ahead;
-  (void)run(ahead, walked(), Duration{0}, seconds(10), kAsWalked);
-  (void)run(ahead, walked(), seconds(10), 4 * kFrame, [](Duration) { return milliseconds(-300); });
+  (void)run(ahead, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+  (void)run(ahead, walked(), std::chrono::seconds(10), 4 * kFrame,
+            [](Duration) { return milliseconds(-300); });
   EXPECT_EQ(added(ahead), milliseconds(-300));
   WalkedClocks back;
-  (void)run(back, walked(), Duration{0}, seconds(10), kAsWalked);
-  (void)run(back, walked(), seconds(10), seconds(4), [](Duration) { return milliseconds(900); });
+  (void)run(back, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+  (void)run(back, walked(), std::chrono::seconds(10), std::chrono::seconds(4),
+            [](Duration) { return milliseconds(900); });
   EXPECT_EQ(added(back), milliseconds(900));
 }
 
 TEST(WalkedClocks, OddFramesAndABusyLinkChangeNothing) {
   WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, seconds(10), kAsWalked);
-  (void)clocks.take(frame_at(seconds(10), milliseconds(-500)), walked());  // one from the future
+  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+  (void)clocks.take(frame_at(std::chrono::seconds(10), milliseconds(-500)),
+                    walked());  // one from the future
   EXPECT_EQ(added(clocks), kOff);
-  for (Duration t = seconds(10) + kFrame; t < seconds(30); t += kFrame)
+  for (Duration t = std::chrono::seconds(10) + kFrame; t < std::chrono::seconds(30); t += kFrame)
     (void)clocks.take(frame_at(t, kOff, milliseconds(60)), walked());
   EXPECT_EQ(added(clocks), kOff);
 }

@@ -41,8 +41,8 @@ TEST(PointFilter, StatesTheVarianceThatItsErrorsHave) {
   PointFilter filter(kDensity);
   double now = 0.0;
   double ahead = 0.0;
-  constexpr int kSteps = 3000;
-  for (int i = 0; i < kSteps; ++i) {
+  constexpr int kPointSteps = 3000;
+  for (int i = 0; i < kPointSteps; ++i) {
     const double variance = filter.variance_at(at_step(i));
     const auto predicted = filter.at(at_step(i));
     if (predicted && i > 30) ahead += (*predicted - point.position).squaredNorm() / variance;
@@ -52,8 +52,8 @@ TEST(PointFilter, StatesTheVarianceThatItsErrorsHave) {
       now += (*filter.at(at_step(i)) - point.position).squaredNorm() / filter.position_variance();
     point.go();
   }
-  EXPECT_NEAR(now / (3.0 * (kSteps - 31)), 1.0, 0.1);
-  EXPECT_NEAR(ahead / (3.0 * (kSteps - 31)), 1.0, 0.1);
+  EXPECT_NEAR(now / (3.0 * (kPointSteps - 31)), 1.0, 0.1);
+  EXPECT_NEAR(ahead / (3.0 * (kPointSteps - 31)), 1.0, 0.1);
 }
 
 TEST(PointFilter, GoesOnWithTheSpeedThatItSaw) {

@@ -12,12 +12,12 @@ constexpr double kRatio = 2.0;
 constexpr double kSigma = 0.0025;  // [m] of a coefficient
 
 /// Two sensors at a right angle that see one point without error.
-struct Scene {
+struct BiasScene {
   std::vector<Eigen::Isometry3d> places;
   PointMeasurements seen;
   Eigen::Vector3d x{0.2, 1.3, 0.1};
 
-  Scene() {
+  BiasScene() {
     for (const double yaw : {0.0, deg(90)}) {
       Eigen::Isometry3d place(about_y(yaw));
       place.translation() = place.linear() * Eigen::Vector3d(0, 1.6, -3);
@@ -51,7 +51,7 @@ struct Scene {
 };
 
 TEST(ViewBias, IsWhatDisplacedSightsDoToTheScores) {
-  const Scene scene;
+  const BiasScene scene;
   constexpr double kStep = 1e-6;
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(12, 12);
   for (std::size_t sensor = 0; sensor < 2; ++sensor) {
@@ -67,14 +67,14 @@ TEST(ViewBias, IsWhatDisplacedSightsDoToTheScores) {
 
 /// cos^2 + sin^2 = 1 for both harmonics: one point counts three times, whichever way it goes.
 TEST(ViewBias, KnowsFiveTermsWhereTheWayIsKnown) {
-  const Scene scene;
+  const BiasScene scene;
   const Eigen::MatrixXd constant = scene.scores(std::nullopt);
   for (const Eigen::Vector3d& way : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.3, 0, -0.8)})
     EXPECT_LT((scene.scores(way) - 3.0 * constant).norm(), 1e-9 * constant.norm());
 }
 
 TEST(ViewBias, CancelsInPartWhereThePersonTurnsAround) {
-  const Scene scene;
+  const BiasScene scene;
   ViewBias bias({scene.places[0].translation(), scene.places[1].translation()});
   const FusedPoint fused = fuse_point(scene.seen, scene.places, kRatio);
   bias.add(scene.seen, fused, 1.0, Eigen::Vector3d(0, 0, 1));
