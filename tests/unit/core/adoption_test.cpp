@@ -76,27 +76,27 @@ TEST(Replacing, ProvisionalOnesFollowEachOtherDuringAWalk) {
 /// clock has drifted by 5 ms since.
 TEST(Extending, TakesTheNewcomersClockByOurCommonClock) {
   using std::chrono::milliseconds;
-  Registration current = ring(Verdict::Good, {1, 2, 3});
-  current.clocks[id("s1")] = {milliseconds(0), milliseconds(0)};
-  current.clocks[id("s2")] = {milliseconds(100), milliseconds(3)};
-  current.clocks[id("s2")].least_age = milliseconds(110);
-  Registration candidate = ring(Verdict::Good, {1, 2, 3, 4});
-  candidate.clocks[id("s2")] = {milliseconds(75), milliseconds(4)};
-  candidate.clocks[id("s2")].least_age = milliseconds(115);
-  candidate.clocks[id("s4")] = {milliseconds(-50), milliseconds(0)};
+  Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
+  current.clocks[named("s1")] = {milliseconds(0), milliseconds(0)};
+  current.clocks[named("s2")] = {milliseconds(100), milliseconds(3)};
+  current.clocks[named("s2")].least_age = milliseconds(110);
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3, 4});
+  candidate.clocks[named("s2")] = {milliseconds(75), milliseconds(4)};
+  candidate.clocks[named("s2")].least_age = milliseconds(115);
+  candidate.clocks[named("s4")] = {milliseconds(-50), milliseconds(0)};
   const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
   ASSERT_TRUE(wider) << wider.error().message;
-  EXPECT_EQ(wider->clocks.at(id("s2")).added, milliseconds(100)) << "held";
-  EXPECT_EQ(wider->clocks.at(id("s4")).added, milliseconds(-20));
-  EXPECT_NEAR(chorus::seconds(wider->clocks.at(id("s4")).sigma), 0.005, 1e-6);
+  EXPECT_EQ(wider->clocks.at(named("s2")).added, milliseconds(100)) << "held";
+  EXPECT_EQ(wider->clocks.at(named("s4")).added, milliseconds(-20));
+  EXPECT_NEAR(chorus::seconds(wider->clocks.at(named("s4")).sigma), 0.005, 1e-6);
 
   // Where all held clocks are known by exchange, theirs is the common one.
   current.clocks.clear();
-  candidate.clocks[id("s2")] = {milliseconds(1), milliseconds(4), milliseconds(1), {}};
+  candidate.clocks[named("s2")] = {milliseconds(1), milliseconds(4), milliseconds(1), {}};
   const auto known = adopted(current, candidate, SolveKind::Provisional, true);
   ASSERT_TRUE(known);
-  EXPECT_EQ(known->clocks.at(id("s4")).added, milliseconds(-51));
-  EXPECT_FALSE(known->clocks.contains(id("s2")));
+  EXPECT_EQ(known->clocks.at(named("s4")).added, milliseconds(-51));
+  EXPECT_FALSE(known->clocks.contains(named("s2")));
 }
 
 TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {

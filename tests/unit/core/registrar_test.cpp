@@ -103,31 +103,31 @@ TEST_F(Sessions, OneThatStartedByItselfBecomesTheClientsOwnAndAnotherClientsIsRe
 }
 
 TEST_F(Sessions, OneEndsByItselfOnceAllSensorsArePlacedWellEnough) {
-  RegistrarConfig ambitious = config();
+  RegistrarConfig ambitious = registrar_config();
   ambitious.session.target_radius = 0.03;
   registrar_.emplace(ambitious, Registration{}, 7);
-  ASSERT_TRUE(registrar().start(seconds(60), now_));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(60), now_));
   const auto placed_to = [](double sigma) {
     Registration r = ring();
     for (auto& [sensor, place] : r.sensors)
       place.covariance = sigma * sigma * Eigen::Matrix<double, 6, 6>::Identity();
     return r;
   };
-  auto job = walk(seconds(20));
+  auto job = walk(std::chrono::seconds(20));
   ASSERT_TRUE(job);
   (void)answer(*job, placed_to(0.02));
   EXPECT_FALSE(newest().reached);
   ASSERT_EQ(newest().accuracy.size(), 3U);
   EXPECT_NEAR(*newest().accuracy[1].radius, 2.45 * 0.02, 1e-3);
-  job = walk(seconds(20));
+  job = walk(std::chrono::seconds(20));
   ASSERT_EQ(job->kind, SolveKind::Provisional);
   Registration short_walk = placed_to(0.01);
   short_walk.verdict = Verdict::Provisional;
   (void)answer(*job, short_walk);
   EXPECT_FALSE(newest().reached) << "a walk that is too short stays provisional";
-  (void)answer(*walk(seconds(20)), placed_to(0.01));
+  (void)answer(*walk(std::chrono::seconds(20)), placed_to(0.01));
   EXPECT_TRUE(newest().reached);
-  job = walk(seconds(1));
+  job = walk(std::chrono::seconds(1));
   EXPECT_EQ(job->kind, SolveKind::Final);
   EXPECT_LT(newest().elapsed, 20.0);
   EXPECT_EQ(newest().target, 60.0);

@@ -301,15 +301,15 @@ TEST(BodyFilter, ABodyThatOneSourceStatesWithItsCovariancesIsTakenAsItIs) {
   };
   auto moving = standing();
   Room room;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kFilterSteps; ++i) {
     moving[WristLeft].position.x() += i % 2 == 0 ? 0.03 : -0.03;  // no bone keeps its length
     EXPECT_LT(wrist_off(room.at(i, {stated(moving)}), moving), 1e-12) << i;
   }
   // Once others see the person too, one body is made of all, also while one is left.
-  for (int i = 0; i < kSteps; ++i)
-    (void)room.at(kSteps + i, {stated(standing()), view_of(2, standing())});
+  for (int i = 0; i < kFilterSteps; ++i)
+    (void)room.at(kFilterSteps + i, {stated(standing()), view_of(2, standing())});
   moving[WristLeft].position.x() += 0.1;
-  EXPECT_GT(wrist_off(room.at(2 * kSteps, {stated(moving)}), moving), 0.005);
+  EXPECT_GT(wrist_off(room.at(2 * kFilterSteps, {stated(moving)}), moving), 0.005);
 }
 
 TEST(BodyFilter, WhatASensorErrsByIsForgottenAsThePersonTurns) {
@@ -321,11 +321,11 @@ TEST(BodyFilter, WhatASensorErrsByIsForgottenAsThePersonTurns) {
     auto body = standing();
     auto wrong = body;
     wrong[WristLeft].position.y() += 0.04;
-    for (int i = 0; i < kSteps; ++i)
+    for (int i = 0; i < kFilterSteps; ++i)
       (void)room.at(i, {view_of(1, body), view_of(2, wrong), view_of(3, body)});
     for (Joint& joint : body.joints) joint.position = about_y(deg(60)) * joint.position;
-    (void)room.all_see(kSteps, body);
-    return wrist_off(room.all_see(kSteps + 1, body), body);
+    (void)room.all_see(kFilterSteps, body);
+    return wrist_off(room.all_see(kFilterSteps + 1, body), body);
   };
   EXPECT_LT(after_a_turn(deg(15)), 0.3 * after_a_turn(deg(360)));
 }
