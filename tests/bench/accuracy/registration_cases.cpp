@@ -156,12 +156,12 @@ std::vector<RegistrationCase> disturbed_rings(const std::string& profile) {
   return cases;
 }
 
-struct Metric {
+struct PlaceMetric {
   const char* name;
   const char* unit;
   double (*value)(const Score&);
 };
-constexpr Metric kMetrics[] = {
+constexpr PlaceMetric kMetrics[] = {
     {"position_mm", "mm", [](const Score& s) { return to_mm(s.position); }},
     {"position_worst_mm", "mm", [](const Score& s) { return to_mm(s.position_worst); }},
     {"horizontal_mm", "mm", [](const Score& s) { return to_mm(s.horizontal); }},
@@ -209,7 +209,7 @@ std::vector<std::vector<MethodScores>> run_case(const RegistrationCase& each,
 
 void report_case(Report& report, const std::string& name, const std::vector<MethodScores>& scores,
                  double table1) {
-  for (const Metric& metric : kMetrics) {
+  for (const PlaceMetric& metric : kMetrics) {
     Comparison comparison(name, metric.name, metric.unit);
     for (const MethodScores& method : scores) {
       for (std::size_t i = 0; i < method.draws.size(); ++i) {

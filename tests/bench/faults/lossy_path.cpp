@@ -102,14 +102,14 @@ bool configure(const char* mine, const char* opposite) {
 }
 
 /// A network namespace and the device through which its packets leave.
-struct End {
+struct PathEnd {
   Descriptor space;
   Descriptor device;
 };
 
-Result<End> make_end(const char* mine, const char* opposite) {
+Result<PathEnd> make_end(const char* mine, const char* opposite) {
   if (::unshare(CLONE_NEWNET) != 0) return failed("no network namespace");
-  End end;
+  PathEnd end;
   end.space = Descriptor(::open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC));
   end.device = Descriptor(::open("/dev/net/tun", O_RDWR | O_NONBLOCK | O_CLOEXEC));
   if (end.space.get() < 0 || end.device.get() < 0) return failed("/dev/net/tun");
@@ -121,7 +121,7 @@ Result<End> make_end(const char* mine, const char* opposite) {
 }
 
 /// A TCP socket that stays in the end's namespace, whichever thread uses it.
-Result<int> socket_in(const End& end) {
+Result<int> socket_in(const PathEnd& end) {
   return in_thread([&]() -> Result<int> {
     if (::setns(end.space.get(), CLONE_NEWNET) != 0) return failed("setns");
     const int made = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -175,8 +175,8 @@ struct LossyPath::Impl {
   [[nodiscard]] int wait_ms(SteadyClock::time_point now) const;
 
   PacketModel model;
-  End near;
-  End far;
+  PathEnd near;
+  PathEnd far;
   std::atomic<bool> losing{false};
   std::array<Way, 2> ways{Way{-1, -1}, Way{-1, -1}};
   std::jthread thread;  // destroyed first

@@ -21,7 +21,7 @@ constexpr double kBendOverStep =
 constexpr double kArm = 0.35;  // from the mount to the body's axis [m]
 
 /// A sensor at the origin looking along +z; people are placed in front of it.
-Scene scene_with(Person mannequin) {
+Scene scene_with(synthetic::Person mannequin) {
   Scene scene;
   scene.epoch = from_unix_ns(0) + std::chrono::hours(1);
   scene.people = {std::move(mannequin)};
