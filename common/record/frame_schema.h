@@ -26,7 +26,7 @@ inline constexpr std::string_view kFrameSchema = R"({
       "type": "object",
       "required": ["bodyId", "joints"],
       "properties": {
-        "bodyId": {"type": "integer"},
+        "bodyId": {"description": "integer; beyond 2^53 its digits as a string"},
         "sidesConfidence": {"type": "number", "minimum": 0, "maximum": 1, "description": "probability that left and right are not exchanged"},
         "carriedFor": {"type": "number", "minimum": 0, "description": "for how long no sensor has seen the person, who is where they are expected [s]; absent: seen"},
         "slot": {"type": "integer", "minimum": 0, "description": "the person's number in every output of the tracker"},

@@ -14,7 +14,7 @@ struct PlacingErrors {
   double across = 0.04;  ///< Of a joint of the shape, across the line of sight [m].
   double along = 0.10;   ///< The same along it, where a camera sees little [m].
   double turn = 0.2;     ///< Of the whole shape about any axis [rad].
-  double size = 0.08;    ///< Of the person's size, relative to it.
+  double size = 0.12;    ///< Of the person's size, relative to it.
   double focal = 0.0;    ///< Of the focal length, relative to it.
   double ray = 0.01;     ///< Of a ray that has no covariance [rad].
 };

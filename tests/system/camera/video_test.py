@@ -102,7 +102,7 @@ class Video(unittest.TestCase):
         stated = json.loads((TRUTH / "cameras.json").read_text(encoding="utf-8"))[0]["camera_from_world"]
         world = json.loads((TRUTH / "triangulated.json").read_text(encoding="utf-8"))["frames"]
         ratios = []
-        for frame in self.frames(self.looking("blazepose-lite", "--set", "device.camera.depth_from_size=true"), 4):
+        for frame in self.frames(self.looking("blazepose-lite", "--set", "device.camera.depth_from_size=true"), 8):
             seen = world[picture_of(frame)]
             for name, joint in frame["bodies"][0]["joints"].items():
                 place = seen[JOINTS[name]] if name in JOINTS else None
@@ -111,7 +111,8 @@ class Video(unittest.TestCase):
                 depth = sum(r * p for r, p in zip(stated["R"][2], place)) + stated["t_m"][2]
                 ratios.append((joint["z"] - depth) / joint["czz"] ** 0.5)
         self.assertGreater(len(ratios), 4 * 6)
-        self.assertLess(abs(statistics.median(ratios)), 1.5)
+        # The size of the person is one error for all joints and pictures: this is one draw of it.
+        self.assertLess(abs(statistics.median(ratios)), 2.5)
         self.assertLess(statistics.pstdev(ratios), 1.5)
 
     def test_a_runner_that_is_killed_comes_back(self):

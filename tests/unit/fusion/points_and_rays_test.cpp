@@ -55,7 +55,9 @@ TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
     const Eigen::Vector3d sigma(across, across, along);
     view.skeleton[JointId::Neck].covariance =
         Covariance(Eigen::Matrix3d(sigma.cwiseProduct(sigma).asDiagonal()));
-    return Person{PersonId{1}, {view}};
+    SensorView other = view;  // what one source alone states counts as fused already
+    other.sensor = testing::sensor_id("s2");
+    return Person{PersonId{1}, {view, other}};
   };
   FusionConfig config;
   config.method = Method::BodyFilter;

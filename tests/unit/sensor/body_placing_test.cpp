@@ -166,8 +166,8 @@ TEST(BodyPlacing, DepthIsWorseThanDirectionAndFocalLengthAddsToIt) {
   };
   EXPECT_NEAR(sigma_of(0), 4 * 0.002, 1e-4);
   const double alone = sigma_of(2);
-  EXPECT_GT(alone, std::hypot(0.08 * 4.0, 0.10));
-  EXPECT_LT(alone, std::hypot(0.08 * 4.0, 0.10, 0.10));
+  EXPECT_GT(alone, std::hypot(errors.size * 4.0, 0.10));
+  EXPECT_LT(alone, std::hypot(errors.size * 4.0, 0.10, 0.10));
   errors.focal = 0.1;
   EXPECT_NEAR(sigma_of(2), std::hypot(alone, 0.4), 1e-3);
 }
