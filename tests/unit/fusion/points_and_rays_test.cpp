@@ -50,14 +50,16 @@ TEST(PointsAndRays, TwoRaysMakeAJointWithItsContributors) {
 }
 
 TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
+  // Two sensors: what one source alone states counts as fused already.
   const auto person = [](double along, double across) {
-    SensorView view = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 3});
     const Eigen::Vector3d sigma(across, across, along);
-    view.skeleton[JointId::Neck].covariance =
-        Covariance(Eigen::Matrix3d(sigma.cwiseProduct(sigma).asDiagonal()));
-    SensorView other = view;  // what one source alone states counts as fused already
-    other.sensor = testing::sensor_id("s2");
-    return Person{PersonId{1}, {view, other}};
+    Person seen{PersonId{1}, {}};
+    for (const int sensor : {1, 2}) {
+      SensorView& view = seen.views.emplace_back(neck_view(sensor, {0, 1, 0}, 0.5, {0, 1, 3}));
+      view.skeleton[JointId::Neck].covariance =
+          Covariance(Eigen::Matrix3d(sigma.cwiseProduct(sigma).asDiagonal()));
+    }
+    return seen;
   };
   FusionConfig config;
   config.method = Method::BodyFilter;
