@@ -19,7 +19,7 @@
 
 namespace chorus::record {
 
-/// A message in the buffer in which it was unpacked; valid until the next call.
+/// A view of a message in the stream's own buffer; valid until next() or rewind() is called.
 struct MessageView {
   std::string_view topic;
   std::uint32_t sequence = 0;

@@ -15,7 +15,8 @@
 namespace chorus::poll {
 
 struct PollTimings {
-  /// For Prefer: wait.  A stream without frames for this long is silent.
+  /// Sent as Prefer: wait.  Also how long a stream may be without frames before it counts as
+  /// silent.
   Duration wait = std::chrono::seconds(2);
   /// An answer that comes later than `wait` + this counts as a failure.
   Duration answer_slack = std::chrono::seconds(1);

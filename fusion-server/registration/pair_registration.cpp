@@ -111,7 +111,8 @@ Extent extent_of(const std::vector<Pair>& pairs, const std::vector<double>& weig
   return {std::sqrt(major + minor), major > 0 ? minor / major : 0.0};
 }
 
-/// The neck clouds of the pairs, or those of the first slot that has pairs.
+/// The clouds of the slot of the first pair: the necks, unless the first frame had none or all
+/// joints are paired.
 void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& target,
                std::vector<Eigen::Vector3d>& source) {
   const std::size_t slot = pairs.front().slot;
@@ -122,8 +123,8 @@ void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& tar
   }
 }
 
-/// Otto 5.2: ICP on the neck clouds.  Returns its residual.  Its pose is used only if it does not
-/// contradict the timed pairs, which contain more information.
+/// Otto 5.2: ICP on the clouds of clouds_of().  Returns its residual.  Its pose is used only if it
+/// does not contradict the timed pairs, which contain more information.
 double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double along_ratio) {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;

@@ -40,7 +40,8 @@ Start start_of(const Walker& walker) {
   return {point.place, point.heading};
 }
 
-/// The pose at some time before the end of the beginning.
+/// A pose during the opening (standing, waving, walking backwards or coming in), relative to where
+/// the walk will start.
 struct Pose {
   double ahead = 0.0;  ///< In front of the start, along its heading [m]
   double phase = 0.0;  ///< Phase of the gait; runs backwards like the feet.

@@ -24,8 +24,9 @@ struct FlipState {
 /// the reliable angle.  Odd and continuous; for a person in the front state.
 [[nodiscard]] double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour);
 
-/// The angles of one sensor: the profile's with a deviation of up to flip_own, and of up to
-/// flip_back_own for the way back.
+/// One sensor's own angles of exchange: flip_to_rear and flip_to_front of the profile, both moved
+/// by the same deviation of up to flip_own, and flip_to_front by a further one of up to
+/// flip_back_own; it never exceeds flip_to_rear.
 [[nodiscard]] YawBehaviour own_behaviour(YawBehaviour behaviour, std::uint64_t seed,
                                          std::uint64_t sensor);
 

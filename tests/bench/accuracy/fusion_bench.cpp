@@ -136,7 +136,8 @@ Contender without(const char* part, void (*leave_out)(fusion::FusionConfig&)) {
   return ours(config, std::string("without-") + part);
 }
 
-/// What each part of the body filter contributes: `ours` has all, every other row leaves one out.
+/// What each part of the body filter, and the consensus about sides, contributes: `ours` has all,
+/// every other row leaves one out.
 void ablate(Report& report) {
   using fusion::FusionConfig;
   FusionConfig whole;

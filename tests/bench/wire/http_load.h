@@ -59,9 +59,10 @@ struct LongPollLoad {
   double run_seconds = 5.0;
 };
 
-/// Age [s] of the document at its receipt, one per answer.  Every body begins with "# <steady
-/// ns>".
+/// What long polls measured.  The server under test must begin every document with "# <steady ns>",
+/// when it was made.
 struct LongPollAges {
+  /// Age of the document when received [s], one per answer after the warm-up.
   std::vector<double> ages;
   std::uint64_t answers = 0;             ///< All answers, including the warm-up.
   std::uint64_t repeated_or_missed = 0;  ///< Versions that did not follow the previous one.
