@@ -1,10 +1,10 @@
-// Applies what a walk has told about the sensors' clocks to their frames.
+// Corrects the capture times of frames by the clock offsets that a walk has determined.
 //
-// A walk tells by how much each clock was off then. A host that does not answer with its time may
-// drift by tens of milliseconds an hour, or its clock may be set: then every frame arrives earlier
-// or later after its stamp than during the walk. So the least age of recent frames, from stamp to
-// receipt, is followed: the fastest frames have only the constant delay, which the walk has
-// measured along with the offset.
+// A walk shows by how much each clock was off during the walk. A host that does not answer with its
+// time may drift by tens of milliseconds an hour, or its clock may be set: then every frame arrives
+// earlier or later after its stamp than during the walk. So the least age of recent frames, from
+// stamp to receipt, is followed: the fastest frames have only the constant delay, which the walk
+// has measured along with the offset.
 #pragma once
 
 #include <deque>

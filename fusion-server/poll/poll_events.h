@@ -77,7 +77,7 @@ struct Failed {
 struct StreamFrame {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  /// True if its time does not fit the clock estimate: request the clock at once.
+  /// True if the frame's time does not fit the clock estimate: request the clock at once.
   bool odd = false;
 };
 struct StreamEnded {

@@ -180,7 +180,7 @@ Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom fr
                           const std::string& both, double min_spread) {
   const std::vector<Pair> early = half_of(pairs, false);
   const std::vector<Pair> late = half_of(pairs, true);
-  // A half in which the person stayed on one spot cannot be used for this.
+  // A half in which the person stayed on one spot cannot be used for this comparison.
   for (const auto* half : {&early, &late}) {
     if (extent_of(*half, std::vector<double>(half->size(), 1.0)).spread < min_spread) return {};
   }
@@ -201,7 +201,8 @@ Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom fr
                           both, typical));
 }
 
-/// A straight walk leaves the rotation about it open, unless floor or body height determine it.
+/// A straight walk leaves the rotation about its own line open, unless floor or body height
+/// determine that rotation.
 Result<void> determined(const Extent& extent, bool levelled, const std::string& both,
                         JointChoice joints) {
   if (extent.slimness >= kMinSlimness || levelled || joints != JointChoice::Neck) return {};

@@ -167,7 +167,7 @@ Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
          std::sqrt(1.0 - coloured.follow_share) * own_unit(i, state, coloured);
 }
 
-/// A unit error stretched along the ray to the joint.
+/// An error of unit variance, stretched along the ray to the joint.
 Eigen::Vector3d stretched(const Eigen::Vector3d& unit, const Eigen::Vector3d& ray, double factor) {
   return unit + (factor - 1.0) * ray.dot(unit) * ray;
 }

@@ -30,8 +30,8 @@ struct FlipState {
 [[nodiscard]] YawBehaviour own_behaviour(YawBehaviour behaviour, std::uint64_t seed,
                                          std::uint64_t sensor);
 
-/// Goes on by one frame: decides the state from the true facing angle (0: directly facing the
-/// sensor).
+/// Advances by one frame: decides between the front and the rear state from the true facing angle
+/// (0: directly facing the sensor).
 void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour);
 
 /// The error of the yaw that the SDK shows for the shoulders, not counting exchanged labels [rad,
