@@ -27,7 +27,7 @@ constexpr double kWaveRate = 1.2;    // [Hz]
 constexpr double kWaveReach = 0.15;  // [m]
 constexpr std::uint64_t kPurpose = 761;
 
-/// The start of the walk that follows the beginning.
+/// The place and heading at which the walk starts, after the opening.
 struct Start {
   Eigen::Vector2d place;
   double heading = 0.0;  ///< [rad]
@@ -89,7 +89,7 @@ Skeleton<WorldSpace> body_in(const Pose& pose, const Start& start, const Gait& g
   return body;
 }
 
-/// Distance from the start at which a straight way in begins [m].
+/// Distance from `start` at which the straight path of a person who comes in begins [m].
 double way_in(const Start& start) {
   const double along = start.place.dot(start.forward());
   const double aside = start.place.squaredNorm() - along * along;

@@ -24,7 +24,7 @@ struct Told {
   Skeleton<SensorSpace> shape;
 };
 
-/// What a runner would tell of these landmarks.
+/// What a runner would report for these landmarks.
 Told told_by(const importers::DetectedLandmarks& detected, const Intrinsics& camera) {
   const Eigen::Matrix3d turn = importers::sensor_from_opencv();
   Landmarks rays = importers::landmark_rays(detected, camera);

@@ -1,4 +1,4 @@
-// chorus-bench growth: what many clients and many sensors cost the fusion server.
+// chorus-bench growth: measures what many clients and many sensors cost the fusion server.
 #include <chrono>
 #include <thread>
 

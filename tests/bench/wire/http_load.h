@@ -41,8 +41,8 @@ class ServingProcess {
 };
 
 enum class Side { Server, Load };
-/// Pins this process, and those it starts, to one core: servers to one, load generators to another.
-/// Does nothing on a machine with one core.
+/// Pins this process, and the processes it starts, to one core: servers to one core, load
+/// generators to another. Does nothing on a machine with one core.
 void keep_to_side(Side side);
 
 struct WrkResult {
