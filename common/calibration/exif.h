@@ -10,7 +10,8 @@ namespace chorus::calibration {
 /// if the photo does not state it.
 [[nodiscard]] std::optional<double> focal_on_35mm_film(std::string_view jpeg);
 
-/// The same in pixels, for a picture of this size; compares diagonals, as CIPA DCG-001 does.
+/// Converts such a focal length to pixels, for a picture of this size; compares diagonals, as CIPA
+/// DCG-001 does.
 [[nodiscard]] double pixels_of_35mm(double focal_mm, int width, int height);
 
 }  // namespace chorus::calibration

@@ -38,7 +38,7 @@ class RecordingStream {
   /// applies to what is in memory at one time, and `max_file_bytes` does not apply.
   [[nodiscard]] static Result<RecordingStream> open(const std::filesystem::path& path,
                                                     const ReadLimits& limits = {});
-  /// The same from bytes, which must outlive the stream.
+  /// open() for a file in memory; `bytes` must outlive the stream.
   [[nodiscard]] static Result<RecordingStream> of_bytes(std::string_view bytes,
                                                         const ReadLimits& limits = {});
   RecordingStream(RecordingStream&&) noexcept;

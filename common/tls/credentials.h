@@ -18,7 +18,7 @@ class Identity {
   /// PEM, an encrypted key, or the key of another certificate.
   [[nodiscard]] static Result<Identity> load(const std::string& certificate_file,
                                              const std::string& key_file);
-  /// The same from PEM texts; an Error's context is "certificate" or "key".
+  /// load() from PEM texts; an Error's context is "certificate" or "key".
   [[nodiscard]] static Result<Identity> of(std::string certificate, const std::string& key);
 
   [[nodiscard]] ssl_ctx_st* context() const { return context_.get(); }
@@ -40,7 +40,7 @@ class Trust {
   /// Only those in a PEM file; empty: those of the operating system.  The certificate of a single
   /// server works as well.
   [[nodiscard]] static Result<Trust> load(const std::string& file);
-  /// The same from a PEM text; `name` is used in messages.
+  /// load() from a PEM text; `name` is used in messages.
   [[nodiscard]] static Result<Trust> of(std::string authorities, std::string name);
 
   /// Never null; a default-constructed value makes it at the first call.

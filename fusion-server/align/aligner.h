@@ -51,8 +51,8 @@ struct AlignConfig {
 /// frames; none until there are enough frames with a time of receipt.
 [[nodiscard]] std::optional<Duration> longest_wait(const History& history);
 
-/// The median of these times instead of the longest; a single frame that was delayed on a busy
-/// processor does not change it.
+/// The median of the times of which longest_wait() is the longest; a single frame that was delayed
+/// on a busy processor does not change it.
 [[nodiscard]] std::optional<Duration> usual_wait(const History& history);
 
 }  // namespace chorus::align

@@ -36,7 +36,7 @@ struct FusedJoint {
                                                     const std::vector<SensorId>& sensors,
                                                     const ErrorModel& errors);
 
-/// The same, rays included.
+/// joint_views_of(), rays included.
 [[nodiscard]] std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
                                                         const std::vector<SensorId>& sensors,
                                                         const ErrorModel& errors);

@@ -1,8 +1,8 @@
-// How well the answered people keep their identities, compared with the truth.
+// How well the people that a method reports keep their identities, compared with the truth.
 //
-// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach; the other
-// people get the other answers one-to-one, with the least total distance.  Horizontal distances
-// [m].
+// CLEAR-MOT matching: a true person keeps the reported person it was matched with as long as that
+// one is within reach; all others are matched one-to-one, with the least total distance.
+// Horizontal distances [m].
 #pragma once
 
 #include <cstdint>

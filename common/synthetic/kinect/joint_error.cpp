@@ -158,7 +158,7 @@ Eigen::Vector3d own_unit(std::size_t i, const ColouredState& state, const Colour
          std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i].value();
 }
 
-/// The same including the part that follows the joint's leader.
+/// own_unit() together with the part that follows the joint's leader.
 Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
                               const ColouredError& coloured) {
   const auto led_by = leader(static_cast<JointId>(i));
