@@ -78,7 +78,8 @@ int rank_of(const std::string& address) {
   return address.find(':') == std::string::npos ? 0 : 1;
 }
 
-/// Loopback, and what needs the name of an interface: nobody can be led astray by these.
+/// True for loopback addresses, and for addresses that are useless without the name of an
+/// interface: announcing these misleads nobody.
 bool leads_nowhere(const std::string& address) { return rank_of(address) >= 3; }
 
 /// Whether both are the same sensor, perhaps at different addresses.  The id alone does not decide:
