@@ -8,7 +8,7 @@
 
 namespace chorus::calibration {
 
-/// Below these a calibration is refused.
+/// What a calibration must achieve; otherwise it is refused.
 struct Demands {
   std::size_t views = 12;
   std::size_t tilted_views = 3;

@@ -37,13 +37,13 @@ class Trust {
  public:
   Trust() = default;  ///< The authorities of the operating system.
 
-  /// Only those in a PEM file; empty: those of the operating system.  The certificate of a single
-  /// server works as well.
+  /// Trusts only the authorities in a PEM file; `file` empty: those of the operating system.  The
+  /// certificate of a single server works as well.
   [[nodiscard]] static Result<Trust> load(const std::string& file);
   /// load() from a PEM text; `name` is used in messages.
   [[nodiscard]] static Result<Trust> of(std::string authorities, std::string name);
 
-  /// Never null; a default-constructed value makes it at the first call.
+  /// Never null; a default-constructed value creates the context when this is first called.
   [[nodiscard]] std::shared_ptr<ssl_ctx_st> context() const;
   /// For messages: "those in /etc/chorus/tls/ca.crt", "the authorities of this system".
   [[nodiscard]] std::string name() const;
