@@ -25,7 +25,8 @@ enum class Basis {
   Exact,         ///< The sensor captured at exactly that instant.
   Interpolated,  ///< The instant is between two captures.
   Pending,       ///< A later capture may still arrive; ask again.
-  /// There will be none: the sensor is past the instant, or the gap between captures is too wide.
+  /// There will be no bodies: the sensor is past the instant, or the gap between captures is too
+  /// wide.
   Lost,
 };
 
@@ -33,7 +34,8 @@ enum class Basis {
 struct AlignedSensor {
   SensorId sensor;
   Basis basis = Basis::Lost;
-  /// Their `captured` is the common instant; empty unless Exact or Interpolated.
+  /// The `captured` of each is the common instant.  Empty unless the basis is Exact or
+  /// Interpolated.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
 };
@@ -43,7 +45,7 @@ struct Extrinsics {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
   double error = 0.0;           ///< Sum of the edge errors along the chain [m].
-  /// The best chain that ends with another edge, and its error: why this one was chosen.
+  /// The best chain that ends with another edge, and its error; they show why `chain` was chosen.
   std::vector<SensorId> next_chain = {};
   double next_error = 0.0;
   /// Covariance of (rotation vector, sensor position) in world axes, relative to the master [rad^2,
@@ -65,8 +67,8 @@ struct PairwiseRegistration {
   /// How far this pair alone would place a person in front of its source from where all pairs
   /// together do [m]; none: not known.
   std::optional<double> apart = {};
-  /// The worst loop closure error of the edge with two others, there and back again [m]; none: it
-  /// is in no such loop.
+  /// The worst closure error of the loops that the edge forms with two other edges [m]; none: it is
+  /// in no such loop.
   std::optional<double> loop = {};
   double inflation = 1.0;  ///< Because pairs are correlated: number of pairs per independent pair.
   /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad
@@ -88,11 +90,12 @@ struct ClockOffset {
   Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
   /// The SensorFrame::clock_sigma of the capture times that it was found from.
   Duration stated = from_seconds(kUnknownClock);
-  /// The shortest time from such a capture time to receipt during the walk; none: not known.
+  /// The shortest time from capture, by the sensor's own stamp, to receipt during the walk; none:
+  /// not known.
   std::optional<Duration> least_age = {};
 };
 
-/// Whether the host of these capture times answers with its own time.
+/// Whether a host whose capture times have this clock_sigma answers with its own time.
 [[nodiscard]] constexpr bool exchanges_time(double clock_sigma) {
   return clock_sigma < 0.5 * kUnknownClock;
 }
@@ -142,8 +145,8 @@ struct Person {
   std::vector<SensorView> views;
   /// Probability that left and right are not swapped; none if the sides were not resolved.
   std::optional<double> sides_confidence = {};
-  /// Set if no sensor sees the person: where their middle is expected, world [m].  Then there are
-  /// no views.
+  /// Where the middle of the person is expected, world [m].  Set only if no sensor sees the person;
+  /// then there are no views.
   std::optional<Eigen::Vector3d> carried = {};
 };
 

@@ -26,7 +26,7 @@ struct FrameFates {
   bool operator==(const FrameFates&) const = default;
 };
 
-/// How many frames these left out because of their time, but for doubles.
+/// How many frames were left out because of their time, not counting doubles.
 [[nodiscard]] constexpr std::uint64_t refused(const FrameFates& fates) {
   return fates.early + fates.backwards + fates.stale;
 }
@@ -45,7 +45,7 @@ struct SensorStatus {
   double share_afterwards = 0.0;  ///< The same, including its late frames, as /frame?at= shows it.
   /// Share of the instants that waited for this sensor as long as they could.
   double awaited = 0.0;
-  /// Our clock minus the sensor's, as its host's answers tell it.
+  /// Our clock minus the sensor's, as estimated from the answers of the sensor's host.
   std::optional<Duration> clock_offset;
   std::optional<Duration> clock_uncertainty;
   bool clock_corrected = false;           ///< True if the offset is added to its capture times.
@@ -61,13 +61,13 @@ struct SensorStatus {
   /// Distance between where this sensor and the others see the same people, less what is usual for
   /// this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
-  /// That it was moved, as a sentence for people; empty if it stands as registered.
+  /// Says in a sentence for people that the sensor was moved; empty if it stands as registered.
   std::string alarm;
 
   bool operator==(const SensorStatus&) const = default;
 };
 
-/// All that is known of how far our clock is ahead of the sensor's; none: nothing is.
+/// Our clock minus the sensor's, from everything that is known about it; none if nothing is known.
 [[nodiscard]] inline std::optional<Duration> total_offset(const SensorStatus& sensor) {
   if (!sensor.clock_offset && !sensor.walked_offset) return std::nullopt;
   return sensor.clock_offset.value_or(Duration{0}) + sensor.walked_offset.value_or(Duration{0});
@@ -86,7 +86,7 @@ struct PairCoverage {
   SensorId second;
   std::size_t sightings = 0;  ///< Instants at which both saw the only person.
   double spread = 0.0;        ///< rms radius of these about their centre [m].
-  /// Radius inside which one would be placed relative to the other, in 95 % [m].
+  /// 95 % radius to which one sensor would be placed relative to the other [m].
   double expected = 0.0;
 
   bool operator==(const PairCoverage&) const = default;
@@ -104,8 +104,8 @@ struct CoveredCell {
 /// How well a session places one sensor so far.
 struct SensorAccuracy {
   SensorId sensor;
-  /// Radius inside which it stands on the floor, relative to the master, in 95 % [m]; none: the
-  /// last provisional solve did not place it.
+  /// 95 % radius of the sensor's place on the floor, relative to the master [m]; none: the last
+  /// provisional solve did not place the sensor.
   std::optional<double> radius;
 
   bool operator==(const SensorAccuracy&) const = default;

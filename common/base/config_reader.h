@@ -44,7 +44,7 @@ class ConfigReader {
   void read_s(std::string_view key, Duration& out, Duration least, Duration most);
   /// The key ends in _deg; the value is in degrees, `out` in radians.
   void read_deg(std::string_view key, double& out, double least_deg, double most_deg);
-  /// Sets `index` to the position in `names` of the value; an absent key leaves it unchanged.
+  /// Sets `index` to the position of the value in `names`; an absent key leaves `index` unchanged.
   void read_choice(std::string_view key, std::size_t& index,
                    const std::vector<std::string_view>& names);
 

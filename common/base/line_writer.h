@@ -34,7 +34,7 @@ class LineWriter {
   /// Waits until all queued lines are written; false if the reader takes nothing for `patience`.
   bool flush(std::chrono::milliseconds patience);
 
-  /// The same, for a signal handler: takes no lock and allocates nothing.
+  /// flush() for a signal handler: takes no lock and allocates nothing.
   void flush_in_signal_handler(std::chrono::milliseconds patience) const noexcept;
 
   [[nodiscard]] std::uint64_t dropped() const noexcept;

@@ -19,8 +19,8 @@ class BoardFinder {
   explicit BoardFinder(const Board& board);
   ~BoardFinder();
 
-  /// Empty when there is no board, or too little of it: fewer than eight corners, or all of them on
-  /// a line.  The picture is grey or BGR.
+  /// The corners found; empty when there is no board, or too little of it: fewer than eight
+  /// corners, or all corners on a line.  The picture is grey or BGR.
   [[nodiscard]] std::vector<Corner> find(const cv::Mat& picture) const;
 
  private:

@@ -6,11 +6,12 @@
 
 namespace chorus::calibration {
 
-/// FocalLengthIn35mmFilm of a JPEG [mm]: the lens that would show the same on 36 x 24 mm film; none
-/// if the photo does not state it.
+/// FocalLengthIn35mmFilm of a JPEG [mm]: the focal length with which 36 x 24 mm film would show the
+/// same; none if the photo does not state it.
 [[nodiscard]] std::optional<double> focal_on_35mm_film(std::string_view jpeg);
 
-/// The same in pixels, for a picture of this size; compares diagonals, as CIPA DCG-001 does.
+/// Converts such a focal length to pixels, for a picture of this size; compares diagonals, as CIPA
+/// DCG-001 does.
 [[nodiscard]] double pixels_of_35mm(double focal_mm, int width, int height);
 
 }  // namespace chorus::calibration

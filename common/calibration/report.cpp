@@ -36,7 +36,7 @@ std::string intrinsics_json(const Intrinsics& camera, double focal_sigma) {
                              {"cy", rounded(camera.cy, kPixels)},
                              {"distortion", nlohmann::ordered_json::array()}};
   for (const double term : camera.distortion) out["distortion"].push_back(rounded(term, kRounding));
-  // Rounded up: 0 would say that it is known exactly.
+  // Rounded up, because 0 would mean that the focal length is known exactly.
   out["focal_sigma_percent"] = std::ceil(focal_sigma * 1e4) / 100.0;
   return out.dump(1) + "\n";
 }

@@ -8,7 +8,7 @@
 
 namespace chorus::calibration {
 
-/// Below these a calibration is refused.
+/// What a calibration must achieve; otherwise it is refused.
 struct Demands {
   std::size_t views = 12;
   std::size_t tilted_views = 3;
@@ -23,7 +23,7 @@ struct Demands {
 [[nodiscard]] std::vector<std::string> weaknesses(const Calibration& calibration,
                                                   const Demands& demands = {});
 
-/// The same for views that are too few for a calibration.
+/// The weaknesses of views that are too few for a calibration.
 [[nodiscard]] std::vector<std::string> missing_views(const std::vector<View>& views,
                                                      PictureSize size, const Demands& demands = {});
 

@@ -37,7 +37,7 @@ struct FittedPose {
   std::vector<Eigen::Quaterniond> turns;
 };
 
-/// How far the chain is from the fused joints it was fitted to.
+/// How far the chain is from the fused joints to which it was fitted.
 struct FitResidual {
   double rms = 0.0;                    ///< Over all seen joints of all frames with a SpineBase [m].
   double largest = 0.0;                ///< [m]

@@ -12,7 +12,7 @@
 
 namespace chorus::http {
 
-/// Both ends of the connection that a request came over.
+/// What is known about the two ends of the connection by which a request came.
 struct Peer {
   bool loopback = false;
   std::string local_address = {};  ///< Our address on this connection, without the port.

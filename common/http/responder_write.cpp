@@ -1,4 +1,5 @@
-// Writing methods: who may write, how much, and how the action's result is answered.
+// The HTTP methods that write: who may use them, how much they may send, and how the action's
+// result is answered.
 #include "common/http/handler_call.h"
 #include "common/http/responder.h"
 #include "common/http/status.h"

@@ -52,7 +52,7 @@ Result<std::optional<std::array<double, Count>>> numbers(
   return values;
 }
 
-/// The covariance that a joint's one standard deviation says; unknown without one.
+/// The covariance from the column sd_mm, equal along all axes; unknown if the field is empty or 0.
 Result<Covariance> covariance_of(const Table& row) {
   constexpr double kWidest = 1e4;  // [mm]
   const auto deviation = row.number("sd_mm", kWidest);

@@ -34,7 +34,7 @@ class LineReader {
   [[nodiscard]] std::optional<std::string_view> next();
   /// The next line that is not blank.
   [[nodiscard]] std::optional<std::string_view> next_filled();
-  /// A Malformed error for "file:line", the line returned last.
+  /// A Malformed error whose context is "file:line", with the line that was returned last.
   [[nodiscard]] tl::unexpected<Error> malformed(std::string message) const;
 
  private:

@@ -34,7 +34,7 @@ class ByteWalk {
   [[nodiscard]] std::uint64_t at() const { return at_; }
   [[nodiscard]] std::uint64_t left() const { return source_.size() - at_; }
   void skip(std::uint64_t count) { at_ += count; }
-  /// The next bytes, without consuming them; fewer at the end.  Valid until the next call.
+  /// The next bytes, without consuming them; fewer at the end.  Valid until peek() is called again.
   [[nodiscard]] std::string_view peek(std::size_t count);
 
  private:

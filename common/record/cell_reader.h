@@ -46,7 +46,7 @@ struct CellQuery {
 [[nodiscard]] Result<CellRecording> read_cell(const std::vector<std::filesystem::path>& files,
                                               const CellQuery& query = {});
 
-/// The same for a recording that has already been read; `name` is used in messages.
+/// read_cell() for a recording that has already been read; `name` is used in messages.
 [[nodiscard]] Result<CellRecording> cell_of(const Recording& recording,
                                             const std::filesystem::path& name,
                                             const CellQuery& query = {});

@@ -81,7 +81,7 @@ class Sorting {
     std::optional<Timestamp> newest;  ///< Capture time of the newest frame kept.
     std::size_t left_out = 0;
     std::size_t kept_before = 0;  ///< The value of `kept` when the current file began.
-    /// Newest of the frames of the current file that were left out.
+    /// Capture time of the newest frame of the current file that was left out.
     std::optional<Timestamp> newest_out;
   };
 

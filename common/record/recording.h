@@ -104,7 +104,7 @@ struct ReadLimits {
 
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,
                                                const ReadLimits& limits = {});
-/// The same for bytes in memory, for tests and fuzzing.
+/// read_recording() for bytes in memory, for tests and fuzzing.
 [[nodiscard]] Result<Recording> read_recording_bytes(std::string_view bytes,
                                                      const ReadLimits& limits = {});
 

@@ -23,7 +23,8 @@ Result<Recording> collect(RecordingStream stream, const ReadLimits& limits) {
     if (bytes > limits.max_total_bytes) return tl::unexpected<Error>(over_total(limits));
     out.messages.push_back((*message)->copy());
   }
-  // Needed because a chunk may state a wrong first time.
+  // The stream orders chunks by the time of the first message that each states; where that time is
+  // wrong, messages come out of order.
   std::ranges::stable_sort(out.messages, {}, &Message::log_time);
   out.channels = stream.channels();
   out.metadata = stream.metadata();

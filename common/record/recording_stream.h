@@ -19,7 +19,7 @@
 
 namespace chorus::record {
 
-/// A message in the buffer in which it was unpacked; valid until the next call.
+/// A view of a message in the stream's own buffer; valid until next() or rewind() is called.
 struct MessageView {
   std::string_view topic;
   std::uint32_t sequence = 0;
@@ -38,7 +38,7 @@ class RecordingStream {
   /// applies to what is in memory at one time, and `max_file_bytes` does not apply.
   [[nodiscard]] static Result<RecordingStream> open(const std::filesystem::path& path,
                                                     const ReadLimits& limits = {});
-  /// The same from bytes, which must outlive the stream.
+  /// open() for a file in memory; `bytes` must outlive the stream.
   [[nodiscard]] static Result<RecordingStream> of_bytes(std::string_view bytes,
                                                         const ReadLimits& limits = {});
   RecordingStream(RecordingStream&&) noexcept;

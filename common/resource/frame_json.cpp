@@ -1,5 +1,5 @@
-// Writes the frame in JSON and JSON-LD from a template.  `linked` means JSON-LD: with @context, and
-// decimals as strings.
+// Writes the frame in JSON and JSON-LD as fixed text with values put between.  `linked` means
+// JSON-LD: with @context, decimals as strings, and names by frame.
 #include <algorithm>
 
 #include "common/body/bones.h"

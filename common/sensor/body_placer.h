@@ -1,4 +1,5 @@
-// Places the people of one camera whose model tells their shapes in metres beside their landmarks.
+// Places the people of one camera whose model states, in addition to their landmarks, their shapes
+// in metres.
 #pragma once
 
 #include <map>

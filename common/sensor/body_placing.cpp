@@ -23,7 +23,7 @@ constexpr double kInferred = 2.0;   // How much more an inferred joint errs.
 constexpr int kRounds = 8;          // Of each part of the fit.
 constexpr double kConverged = 1e-6;
 constexpr double kStartOff = 0.04;  // [m]
-// Median distance from the rays [standard deviations]; beyond it, this is not that body.
+// Median distance from the rays [standard deviations] above which the rays are not of this body.
 constexpr double kUseless = 4.0;
 // Least determinant of the start's matrix, relative to its mean diagonal cubed; below it, all rays
 // are nearly parallel.
@@ -154,7 +154,7 @@ Normal normal_of(const std::vector<Sighting>& seen, const Pose& pose, double tur
   return normal;
 }
 
-/// Steps of Gauss-Newton; false when one does not exist.
+/// Takes steps of Gauss-Newton; false when a step cannot be computed.
 bool refine(const std::vector<Sighting>& seen, double turn_sigma, Loss loss, Pose& pose) {
   for (int round = 0; round < kRounds; ++round) {
     const Normal normal = normal_of(seen, pose, turn_sigma, loss);
@@ -181,8 +181,9 @@ bool fits(const std::vector<Sighting>& seen, const Pose& pose) {
   return *middle < kUseless;
 }
 
-/// Mean square of what the joints are off their rays by, never below what was assumed; as many
-/// joints as the fit has parameters count as having said one.
+/// Sum of the squared distances of joints from their rays, in units of the assumed variance, per
+/// degree of freedom; never below 1.  As a prior, as many residuals of 1 as the fit has parameters
+/// are added.
 double scale_of(const std::vector<Sighting>& seen, const Pose& pose) {
   double sum = 0.0;
   double count = 0.0;

@@ -8,7 +8,7 @@
 
 namespace chorus {
 
-/// Standard deviations.  Those of the shape are what BlazePose errs by on four real cameras
+/// Standard deviations.  Those of the shape are the errors of BlazePose on four real cameras
 /// (docs/benchmarks/camera.md).
 struct PlacingErrors {
   double across = 0.04;  ///< Of a joint of the shape, across the line of sight [m].

@@ -1,5 +1,5 @@
-// The lengths of a person's bones, learned while a model guesses the person's shape in each image
-// anew.
+// The lengths of a person's bones, learned over many images, although a model guesses the person's
+// shape from each image separately.
 #pragma once
 
 #include <array>

@@ -16,8 +16,8 @@ namespace chorus {
 [[nodiscard]] std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel,
                                                     const Intrinsics& camera);
 
-/// Covariance of that unit vector [rad^2] if both pixel coordinates have the standard deviation
-/// `sigma` [px].  Distortion changes the direction, but hardly its error.
+/// Covariance of the unit vector of a pixel's direction [rad^2] if both pixel coordinates have the
+/// standard deviation `sigma` [px].  Distortion changes the direction, but hardly its error.
 [[nodiscard]] Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& camera,
                                              double sigma);
 

@@ -12,7 +12,8 @@ using http::PathParams;
 using http::Request;
 using resource::FrameResource;
 
-/// Options for the document of a body: it is revalidated, and has no immutable copy.
+/// Options for the document of a body, which clients revalidate, and of which there is no immutable
+/// copy.
 DocumentOptions body_options(const FrameResource& frame, const Serving& serving) {
   DocumentOptions options = resource::latest_options(frame, serving.run);
   options.content_location.clear();

@@ -65,7 +65,8 @@ std::optional<double> hit(const Capsule& capsule, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d axis = capsule.to - capsule.from;
   const double length = axis.norm();
   if (length < 1e-9) return hit_ball(capsule.from, capsule.radius, ray);
-  // With the infinite cylinder about the axis: |(t ray - from) x axis|^2 = radius^2 |axis|^2.
+  // Intersects the ray with the infinite cylinder about the axis: |(t ray - from) x axis|^2 =
+  // radius^2 |axis|^2.
   const Eigen::Vector3d unit = axis / length;
   const Eigen::Vector3d ray_across = ray - ray.dot(unit) * unit;
   const Eigen::Vector3d from_across = capsule.from - capsule.from.dot(unit) * unit;

@@ -1,8 +1,8 @@
 // One gait cycle of real walking, cut from a CMU take and closed to a seamless loop.
 //
 // The loop consists of joint angles, so bone lengths stay exact.  Its root keeps only the motion
-// that is left after the mean forward motion has been removed (sway, bob, surge); a Path says where
-// the person goes.
+// that is left after the mean forward motion has been removed (sway, bob, surge); where the person
+// goes is determined by a Path.
 #pragma once
 
 #include <vector>

@@ -2,7 +2,7 @@
 //
 // A simulated person has all 25 joints at every instant: gaps are filled, and joints that the file
 // lacks are derived from others.  A T-pose before the motion is left out.  Paths, turns and speeds
-// are those captured.
+// stay as captured.
 #pragma once
 
 #include <filesystem>

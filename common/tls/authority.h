@@ -9,7 +9,7 @@
 
 namespace chorus::tls {
 
-/// Both in PEM; the owner of the key is the authority, or the host.
+/// A certificate and its key, both in PEM; they belong to the authority or to a host.
 struct Issued {
   std::string certificate;
   std::string key;

@@ -18,7 +18,7 @@ class Identity {
   /// PEM, an encrypted key, or the key of another certificate.
   [[nodiscard]] static Result<Identity> load(const std::string& certificate_file,
                                              const std::string& key_file);
-  /// The same from PEM texts; an Error's context is "certificate" or "key".
+  /// load() from PEM texts; an Error's context is "certificate" or "key".
   [[nodiscard]] static Result<Identity> of(std::string certificate, const std::string& key);
 
   [[nodiscard]] ssl_ctx_st* context() const { return context_.get(); }
@@ -37,13 +37,13 @@ class Trust {
  public:
   Trust() = default;  ///< The authorities of the operating system.
 
-  /// Only those in a PEM file; empty: those of the operating system.  The certificate of a single
-  /// server works as well.
+  /// Trusts only the authorities in a PEM file; `file` empty: those of the operating system.  The
+  /// certificate of a single server works as well.
   [[nodiscard]] static Result<Trust> load(const std::string& file);
-  /// The same from a PEM text; `name` is used in messages.
+  /// load() from a PEM text; `name` is used in messages.
   [[nodiscard]] static Result<Trust> of(std::string authorities, std::string name);
 
-  /// Never null; a default-constructed value makes it at the first call.
+  /// Never null; a default-constructed value creates the context when this is first called.
   [[nodiscard]] std::shared_ptr<ssl_ctx_st> context() const;
   /// For messages: "those in /etc/chorus/tls/ca.crt", "the authorities of this system".
   [[nodiscard]] std::string name() const;

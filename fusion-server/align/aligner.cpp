@@ -59,7 +59,7 @@ const BodyFrame* body_of(const SensorFrame& frame, BodyId id) {
 }
 
 /// True if one person cannot have moved that far between the two frames.  False for ray bodies,
-/// which do not show it.
+/// which do not show how far somebody moved.
 bool is_somebody_else(const BodyFrame& before, const BodyFrame& after, double reach) {
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   double count = 0.0;

@@ -26,7 +26,8 @@ struct AlignConfig {
   /// the others usually need, so that one bad link does not delay everybody's bodies.
   Duration unsteady = std::chrono::milliseconds(30);
   /// Where most sensors are slow (cameras whose pictures take long), `max_gap` and `patience` grow
-  /// with their periods and delays, up to this.  If this is less than both, they never grow.
+  /// with their periods and delays, up to this.  If this is less than `max_gap` and `patience`,
+  /// they never grow.
   Duration slowest = std::chrono::milliseconds(2000);
   double max_speed = 6.0;  ///< Greatest speed of the mean of a body's core joints [m/s].
 
@@ -50,8 +51,8 @@ struct AlignConfig {
 /// frames; none until there are enough frames with a time of receipt.
 [[nodiscard]] std::optional<Duration> longest_wait(const History& history);
 
-/// The median of these times instead of the longest; a single frame that was delayed on a busy
-/// processor does not change it.
+/// The median of the times of which longest_wait() is the longest; a single frame that was delayed
+/// on a busy processor does not change it.
 [[nodiscard]] std::optional<Duration> usual_wait(const History& history);
 
 }  // namespace chorus::align

@@ -84,7 +84,8 @@ void History::move_in_time(Duration by) {
   habit_ = habit_of(frames_);
 }
 
-/// What a frame is, as if it were the only one of its kind; Restarted is for push() to say.
+/// The verdict on a frame by itself.  Restarted depends on several frames in a row, so push()
+/// decides it.
 PushVerdict History::verdict_on(const SensorFrame& frame) const {
   const bool received_known = frame.received != Timestamp{};
   if (received_known && frame.captured - frame.received > limits_.max_future)

@@ -32,7 +32,8 @@ struct HistoryLimits {
   Duration max_future = std::chrono::seconds(2);
   /// A late frame that was captured this long before the newest one is of no use any more.
   Duration latest = std::chrono::milliseconds(1500);
-  /// So many frames in a row that were captured before the newest one are believed.
+  /// This many frames in a row that were captured before the newest one are believed: the history
+  /// restarts with them.
   int steps_to_restart = 3;
 };
 
@@ -55,7 +56,8 @@ class History {
   /// Adds a frame.  If two bodies of the frame have the same id, the first one is kept.
   PushVerdict push(SensorFrame frame);
 
-  /// Moves all capture times: the sensor's clock is known to be off by another amount from now on.
+  /// Moves all capture times by `by`, because the sensor's clock turned out to be off by another
+  /// amount.
   void move_in_time(Duration by);
 
   [[nodiscard]] const std::deque<SensorFrame>& frames() const noexcept { return frames_; }

@@ -34,8 +34,8 @@ class Admission {
   /// body.
   void judge(Track& track) const;
 
-  /// True if sensors on different sides look at `place` and see nobody there who could be that
-  /// track. Then the person is not there: nothing can hide a place from all sides.
+  /// True if sensors on different sides look at `place` and see nobody there who could be the
+  /// track's person. Then the person is not there: nothing can hide a place from all sides.
   [[nodiscard]] bool seen_through(const Track& track, const Eigen::Vector3d& place) const;
 
  private:

@@ -24,8 +24,8 @@ struct Spans {
   double views = 0.0;  ///< Number of views averaged.
 };
 
-/// The mean over the views that track both ends of a length.  Ray views have no lengths; where
-/// there are no others, the points `met`, at which their rays meet, are used.
+/// The mean over the views that track both ends of a length.  Ray views have no lengths; if all
+/// views are ray views, `met` is used: the points at which the rays meet.
 [[nodiscard]] Spans spans_of(std::span<const PlacedView> views, const Located& met);
 
 struct Build {
@@ -41,8 +41,8 @@ struct Build {
 /// How long the person's build was in view [s]: the median over the lengths.
 [[nodiscard]] double sight_of(const Build& build);
 
-/// Log likelihood ratio of two builds being one person's against being those of any two people; 0
-/// when they have no length in common.
+/// Log likelihood ratio: both builds are of one person, against builds of any two people; 0 when
+/// they have no length in common.
 [[nodiscard]] double likeness(const Build& one, const Build& other);
 
 }  // namespace chorus::associate

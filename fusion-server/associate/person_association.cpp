@@ -59,7 +59,7 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
 }
 
 /// Removes a new body near a person of whom its sensor already has a body: it is a second detection
-/// of that person, unless another sensor has two there as well.
+/// of that person, unless another sensor has two bodies there as well.
 void drop_rivals(std::vector<std::vector<PlacedView>>& newcomers,
                  const std::vector<Candidate>& candidates, double limit) {
   std::erase_if(newcomers, [&](const std::vector<PlacedView>& members) {
@@ -75,7 +75,7 @@ bool share_a_sensor(const Candidate& a, const Candidate& b) {
                      [&](const PlacedView& s) { return has_sensor(b.sights, s.view.sensor); });
 }
 
-/// True if both are seen at one spot at this instant, but by different sensors.
+/// True if both candidates are seen at one spot at this instant, but by different sensors.
 bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
   return !a.sights.empty() && !b.sights.empty() && !share_a_sensor(a, b) &&
          horizontal_distance(a.track.core, b.track.core) <= limit;

@@ -20,7 +20,7 @@ namespace chorus::associate {
 
 struct Grouping {
   /// The confirmed, admitted and named people, seen or expected, ordered by id.  At most as many as
-  /// a frame holds; then those whom several sensors see are preferred.
+  /// a frame holds; if there are more, those whom several sensors see are preferred.
   std::vector<Person> people;
   Tracks tracks;
 };

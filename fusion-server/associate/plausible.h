@@ -14,8 +14,8 @@ struct BodyLimits {
   double max_reach = 2.0;   ///< From the middle of the body to any of its joints [m].
   /// The farthest joint is at least this far from the middle, if there are ten or more [m].
   double min_reach = 0.15;
-  /// How long a body may keep exactly the same coordinates; a real sensor never measures these
-  /// twice.
+  /// How long a body may keep exactly the same coordinates; a real sensor never measures the same
+  /// coordinates twice.
   Duration max_frozen = std::chrono::seconds(2);
 
   bool operator==(const BodyLimits&) const = default;

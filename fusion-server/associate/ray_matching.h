@@ -24,7 +24,7 @@ namespace chorus::associate {
 [[nodiscard]] std::optional<double> misfit(const SensorView& view, const Located& body,
                                            const Eigen::Vector3d& shift);
 
-/// The same for a track of which only the core is known.
+/// The misfit to a track of which only the core is known.
 [[nodiscard]] std::optional<double> misfit(const SensorView& view, const Eigen::Vector3d& core);
 
 /// Groups ray views that show the same person: at least two views, at most one per sensor.

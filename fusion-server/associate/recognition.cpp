@@ -8,7 +8,7 @@ namespace chorus::associate {
 namespace {
 
 constexpr std::size_t kMostMissingTracks = 64;
-// [s] of sight, summed over the views, from which on builds can exclude people.
+// Time in view [s], summed over the views, after which builds can exclude people.
 constexpr double kGlance = 1.5;
 // With n times as many views as this, a fraction 1/n of the time is enough to recognise somebody.
 constexpr double kManyViews = 4.0;
@@ -17,7 +17,7 @@ constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
 constexpr double kContinuity = 1.5;
 // Log odds below which a person who was lost and found loses the id.
 constexpr double kUnlikely = -0.5;
-// A build is not waited for longer than this.
+// A decision waits for a newcomer's build no longer than this.
 constexpr Duration kNoBones = std::chrono::seconds(2);
 
 /// True if the candidate's person is missing.  A candidate without an id has given it back, and is
@@ -31,7 +31,7 @@ Missing missing_of(const Track& track) {
   return {track.id, track.before ? track.lost : track.seen, track.before.value_or(track.build)};
 }
 
-/// The missing people that a track found at that time may be.
+/// The missing people who may be the person of a track that was found at this time.
 std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate>& candidates,
                                     const Tracks& tracks) {
   std::vector<Missing> all = tracks.missing;

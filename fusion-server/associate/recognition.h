@@ -2,8 +2,8 @@
 //
 // While people are missing, a newcomer gets no id until it is decided whether the newcomer is one
 // of them: after AssociationConfig::recognise in view at the latest, sooner if the builds differ
-// too much.  A person who was lost and found keeps the id meanwhile.  If the builds show that they
-// are different people, the id goes back to the lost one.
+// too much.  A person who was lost and found keeps the id while the builds are compared.  If the
+// builds show that they are different people, the id goes back to the lost one.
 #pragma once
 
 #include "fusion-server/associate/association_config.h"

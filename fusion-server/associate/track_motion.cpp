@@ -46,8 +46,8 @@ std::vector<Footprint> footprints_of(const std::vector<PlacedView>& sights) {
   return prints;
 }
 
-/// Mean displacement of the joints that the same bodies have in both; none if there are no such
-/// joints.
+/// Mean displacement of the joints that the same bodies have at both instants; none if there are no
+/// such joints.
 std::optional<Eigen::Vector3d> way_between(const std::vector<Footprint>& before,
                                            const std::vector<Footprint>& now) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -30,8 +30,8 @@ Timestamp received(const http::ClientResponse& answer) { return from_unix_ns(ans
 
 Duration from_milliseconds(double ms) { return from_seconds(ms / 1e3); }
 
-/// The clock model that /sensors/ reports, exact to the microsecond, without what a walk told: that
-/// is recorded with the registration.
+/// The clock model that /sensors/ reports, exact to the microsecond, without the correction found
+/// from a walk, which is recorded with the registration.
 record::ClockModel clock_of(const nlohmann::json& sensor) {
   record::ClockModel clock;
   const bool walked = sensor.contains("clockFromWalkMilliseconds");

@@ -34,7 +34,7 @@ class LiveRecording {
   /// The counts of each topic, such as "/frame" or "/sensors/s1/frame"; contains from the beginning
   /// all topics that the service has announced.
   [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
-  /// The last errors in reading other states (clocks, registration), by path.
+  /// The last errors in reading resources other than frames (clocks, registration), by path.
   [[nodiscard]] const std::map<std::string, std::string>& troubles() const { return troubles_; }
   /// Time since the last answer to any request.
   [[nodiscard]] std::chrono::steady_clock::duration silence() const;

@@ -11,8 +11,8 @@
 
 namespace chorus::client {
 
-/// The files, those of a folder sorted by name; a file is taken as it is.  An error if none is
-/// found.
+/// The files that are named, and those of the folders that are named, each folder's sorted by name.
+/// An error if none is found.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
 

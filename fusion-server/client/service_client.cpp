@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kAuthoritiesVariable = "CHORUS_CA";
 constexpr const char* kAuthoritiesOfWorkshop = "/etc/chorus/tls/ca.crt";
 
-/// The environment variable with the bearer token for servers that require one.
+/// The environment variable that holds the bearer token for servers that require a token.
 constexpr const char* kTokenVariable = "CHORUS_TOKEN";
 
 }  // namespace

@@ -14,11 +14,12 @@
 
 namespace chorus::client {
 
-/// The error that a problem document states; if there is none, the bare status.  `where`: the
-/// request.
+/// The error that the answer's problem document states; if it has none, an error with the bare
+/// status.  `where`: the request.
 [[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
 
-/// The Authorization header with the bearer token in CHORUS_TOKEN; empty if that is not set.
+/// The Authorization header with the bearer token in CHORUS_TOKEN; empty if the variable is not
+/// set.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
 /// The authorities that are accepted for an https:// server: those in the file that CHORUS_CA

@@ -65,7 +65,8 @@ void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& mark
   }
 }
 
-/// From the candidate's world to ours, by the sensors that both place and that are held.
+/// From the candidate's world to ours, computed from the held sensors that both registrations
+/// place.
 std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
                                                 const Registration& candidate,
                                                 const std::set<SensorId>& moving) {
@@ -94,8 +95,8 @@ void lead_from_master(const Registration& current, Extrinsics& place) {
   place.error += known->second.error;
 }
 
-/// What a sensor's clock is off by in our registration, by the stamps of the candidate's walk; none
-/// if that is not known.
+/// The sensor's clock offset to our common clock, as it holds for the capture times of the
+/// candidate's walk (`walked`); none if it is not known.
 std::optional<ClockOffset> our_clock(const Registration& current, const SensorId& sensor,
                                      const ClockOffset& walked) {
   const auto own = current.clocks.find(sensor);
@@ -109,8 +110,8 @@ std::optional<ClockOffset> our_clock(const Registration& current, const SensorId
   return ClockOffset{Duration{0}, walked.stated, walked.stated, walked.least_age};
 }
 
-/// What is added to the candidate's offsets so that they are by our common clock: by the held
-/// sensor for which that is known best.
+/// What is added to the candidate's offsets to refer them to our common clock, taken from the held
+/// sensor whose own clock offset is known best.
 ClockOffset between_clocks(const Registration& current, const Registration& candidate,
                            const std::set<SensorId>& added) {
   std::optional<ClockOffset> best;
@@ -124,7 +125,7 @@ ClockOffset between_clocks(const Registration& current, const Registration& cand
   return best.value_or(ClockOffset{});
 }
 
-/// The newcomers' clocks as the candidate's walk tells them, by our common clock.
+/// Takes over the newcomers' clock offsets from the candidate's walk, referred to our common clock.
 void take_clocks(Registration& wider, const Registration& candidate,
                  const std::set<SensorId>& added) {
   const ClockOffset ours_from_theirs = between_clocks(wider, candidate, added);

@@ -1,6 +1,6 @@
 // What a new solve may change in the current registration.
 //
-// Sensors that stand well are held: a solve that adds another sensor moves none of them.
+// Sensors that are placed well are held: a solve that adds another sensor moves none of them.
 #pragma once
 
 #include <set>
@@ -22,13 +22,13 @@ namespace chorus::core {
                                   SolveKind kind);
 
 /// The current places, plus those of sensors that only the candidate places well (at the end of a
-/// walk: at all), moved into the world of the held ones.  NotFound: the candidate adds no sensor.
-/// Conflict: the walk contradicts the places of the held sensors relative to one another.
+/// walk: places at all), moved into the world of the held ones.  NotFound: the candidate adds no
+/// sensor. Conflict: the walk contradicts the places of the held sensors relative to one another.
 [[nodiscard]] Result<Registration> extended(const Registration& current,
                                             const Registration& candidate, SolveKind kind);
 
-/// The registration to use after this solve, in the world of the current one (world.h); on an
-/// error the current one stays.  `hold`: sensors that stand well stay where they are even if the
+/// The registration to use after this solve, in the world of the current one (world.h); on an error
+/// the current one stays.  `hold`: sensors that are placed well keep their places even if the
 /// candidate as a whole is equally good.
 [[nodiscard]] Result<Registration> adopted(const Registration& current,
                                            const Registration& candidate, SolveKind kind,
@@ -37,8 +37,8 @@ namespace chorus::core {
 /// Notes the reason for each sensor that neither the registration nor the candidate could place.
 void note_refusals(Registration& current, const Registration& candidate);
 
-/// The registration without this sensor's place, which is no longer true; the sensor is refused
-/// with `reason`.  If it was the master, the best of the others becomes the master.
+/// The registration without the place of this sensor, which was moved; the sensor is refused with
+/// `reason`.  If it was the master, the best of the others becomes the master.
 [[nodiscard]] Registration without(Registration current, const SensorId& sensor,
                                    const std::string& reason);
 

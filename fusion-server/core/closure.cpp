@@ -11,7 +11,7 @@ namespace {
 
 using EdgeMap = std::map<std::pair<SensorId, SensorId>, const PairwiseRegistration*>;
 
-/// In front of a sensor, where people walk; the best distance of Otto Eq. (1).
+/// A point in front of a sensor, where people walk: at the best distance by Otto Eq. (1).
 const Eigen::Vector3d kWalk(0.0, 0.0, 2.5);
 
 /// x_in_a = (.) x_in_b by the pair's own registration; none: there is no such edge.
@@ -37,7 +37,7 @@ std::optional<double> worst_loop(const PairwiseRegistration& edge, const EdgeMap
   return worst;
 }
 
-/// The best chain to the sensor that ends with another edge than its own.
+/// Notes the best chain to the sensor whose last edge is not that of the chosen chain.
 void note_next_chain(Registration& registration, const SensorId& sensor, Extrinsics& place) {
   place.next_chain.clear();
   if (place.chain.size() < 2) return;

@@ -82,8 +82,8 @@ void Coverage::add(const SensorFrame& frame) {
   for (auto& [other, sight] : newest_) {
     if (other == frame.sensor || frame.received - sight.received > kTogether) continue;
     const bool first = frame.sensor < other;
-    // Each view of one sensor counts once with each other sensor, so that the faster of the two
-    // does not count it again.
+    // A view of one sensor counts once for each other sensor: if the other sensor is faster, its
+    // next frames do not count the view again.
     if (!first || !sight.counted.insert(frame.sensor).second) continue;
     Common& common = common_[{frame.sensor, other}];
     ++common.sightings;

@@ -1,7 +1,7 @@
 // What the walk of a session has covered so far: which sensors saw somebody together, and where.
 //
-// Needs no extrinsics: whether two sensors saw somebody together is judged by the time of receipt,
-// and how far the person walked in the space of one of the two.
+// Needs no extrinsics: whether two sensors saw somebody together is judged by the time of receipt;
+// how far the person walked is measured in the space of one of the two.
 #pragma once
 
 #include <map>

@@ -96,8 +96,9 @@ bool FusionCore::count(const SensorFrame& frame, align::PushVerdict verdict) {
   return false;
 }
 
-/// The frame by the common clock, as far as the walk has told it; its sensor's earlier frames are
-/// moved to the same clock.  Sessions collect frames as they came: a walk tells the whole offset.
+/// The frame with its capture time by the common clock, as far as a walk has determined that;
+/// earlier frames of its sensor are moved to the same clock.  Sessions collect frames uncorrected,
+/// because a solve finds the whole offset.
 SensorFrame FusionCore::in_step(SensorFrame frame) {
   const Duration change = clocks_.take(frame, registration());
   histories_[frame.sensor].move_in_time(change);
@@ -254,7 +255,7 @@ Result<void> FusionCore::undo() {
   return done;
 }
 
-/// What is remembered about people belongs to the old world.
+/// Forgets what is remembered about people, because it is in coordinates of the old world.
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays

@@ -68,7 +68,7 @@ class FusionCore {
   Outcome solved(Solution solution, Timestamp now);
 
   [[nodiscard]] const Registration& registration() const { return registrar_.registration(); }
-  /// All of it except storage and commands, which are handled elsewhere.
+  /// The whole progress except storage and commands, which are handled elsewhere.
   [[nodiscard]] RegistrationProgress progress(Timestamp now) const;
 
   [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return reports_; }
@@ -76,7 +76,7 @@ class FusionCore {
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);
   }
-  /// What became of frames whose time was not as it should be.
+  /// How many frames had a time that was not as it should be, and what became of them.
   [[nodiscard]] FrameFates fates(const SensorId& sensor) const;
   /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
@@ -85,13 +85,13 @@ class FusionCore {
   [[nodiscard]] std::optional<SensorAlarm> alarm(const SensorId& sensor) const {
     return guard_.alarm_of(sensor);
   }
-  /// The same as a sentence for people; empty if there is no alarm.
+  /// The alarm as a sentence for people; empty if there is none.
   [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
   /// As SensorStatus::shift.
   [[nodiscard]] std::optional<double> shift(const SensorId& sensor) const {
     return guard_.shift_of(sensor);
   }
-  /// What is added to this sensor's capture times because a walk told that its clock is off.
+  /// What is added to this sensor's capture times because a walk showed that its clock is off.
   [[nodiscard]] std::optional<WalkedClock> walked_clock(const SensorId& sensor) const {
     return clocks_.of(sensor);
   }

@@ -17,7 +17,7 @@ struct SensorAlarm {
   double shift = 0.0;  ///< How far from where the others see them it sees people [m].
   Timestamp since;
   bool drifted = false;  ///< True if it happened gradually, false if at once.
-  /// Either the sensor or this one was moved; two sensors do not show which.
+  /// Set if either the sensor itself or this other one was moved: two sensors do not show which.
   std::optional<SensorId> or_else;
 
   bool operator==(const SensorAlarm&) const = default;
@@ -35,7 +35,7 @@ class Guard {
  public:
   void look(const std::vector<Person>& people, Timestamp instant, const watch::WatchConfig& config);
 
-  /// The sensor that should lose its place now; none if no sensor is known to have been moved.
+  /// The sensor whose place should be removed now; none if no sensor is known to have been moved.
   [[nodiscard]] std::optional<SensorId> moved() const;
   [[nodiscard]] std::optional<SensorAlarm> alarm_of(const SensorId& sensor) const;
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const {

@@ -20,7 +20,7 @@ class LastSeen {
   void add(const SensorFrame& frame);
   void keep(const std::set<SensorId>& sensors);  ///< Forgets all other sensors.
 
-  /// Number of bodies in its newest frame; zero when that is old.
+  /// Number of bodies in the sensor's newest frame; zero when the frame is old.
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] bool delivers(const SensorId& sensor, Timestamp now) const;
   /// Sensors that recently saw a body.

@@ -35,7 +35,7 @@ void keep_configured(Registration& registration, const std::set<SensorId>& senso
                         })->first;
 }
 
-/// Of all that took part in the walk, how well this solve places them.
+/// How well this solve places each sensor that took part in the walk.
 std::vector<SensorAccuracy> accuracy_of(const Registration& candidate) {
   std::vector<SensorAccuracy> all;
   for (const auto& [sensor, verdict] : candidate.verdicts) {
@@ -48,8 +48,8 @@ std::vector<SensorAccuracy> accuracy_of(const Registration& candidate) {
   return all;
 }
 
-/// Whether the walk could end here: a good one in which every sensor that took part has a place,
-/// known to within `target`; zero: never.
+/// Whether the walk could end here: the candidate is good, and every sensor that took part has a
+/// place known to within `target`.  If `target` is zero: never.
 bool accurate_enough(const Registration& candidate, double target) {
   const auto all = accuracy_of(candidate);
   const bool good = target > 0 && all.size() > 1 && candidate.verdict == Verdict::Good;
@@ -198,7 +198,8 @@ Result<void> Registrar::move_origin(const Origin& origin) {
   return {};
 }
 
-/// After forget(), everybody still works in the old world, so a new registration is moved into it.
+/// After forget(), users of the output still rely on the old world, so a new registration is moved
+/// into it.
 Result<Registration> Registrar::successor(const Registration& base, const Registration& candidate,
                                           SolveKind kind) const {
   auto next = adopted(base, candidate, kind, sessions_.front().automatic);
@@ -305,7 +306,8 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
   return Outcome::Adopted;
 }
 
-/// Compares with the registration from before the session: the session's own do not count.
+/// Compares with the registration from before the session; the session's own provisional ones do
+/// not count.
 Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   SessionStatus& current = sessions_.front();
   auto next = successor(before_ ? *before_ : registration_, candidate, SolveKind::Final);

@@ -66,7 +66,7 @@ class Registrar {
   /// Cancels the session and forgets the registration, but not its world.
   void forget();
   /// Goes back to the previous registration; a second call changes nothing.  Conflict while a
-  /// session is running; NotFound when there is none before.
+  /// session is running; NotFound when there is no previous one.
   [[nodiscard]] Result<void> undo();
   /// The registration that undo() goes back to; set at the start from what is stored.
   [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }

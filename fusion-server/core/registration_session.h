@@ -24,8 +24,8 @@ struct SessionConfig {
   Duration solve_every = std::chrono::seconds(2);
   /// A longer pause with nobody in view does not count as walking.
   Duration max_pause = std::chrono::milliseconds(500);
-  /// It ends before `target` once a provisional solve places all that take part this well: radius
-  /// on the floor, relative to the master, in 95 % [m].  Zero: it never does.
+  /// The session ends before `target` once a provisional solve places all sensors that take part
+  /// this well: 95 % radius on the floor, relative to the master [m].  Zero: it never ends early.
   double target_radius = 0.0;
   std::size_t max_frames = 20000;  ///< Per sensor; more are dropped, so that memory stays bounded.
 
@@ -41,7 +41,7 @@ struct SharedTrack {
 };
 using SharedWalk = std::vector<SharedTrack>;
 
-/// The whole walk as solvers want it; copies every frame.
+/// The whole walk in the form that solvers take; copies every frame.
 [[nodiscard]] std::vector<registration::WalkTrack> assembled(const SharedWalk& walk);
 
 class RegistrationSession {
@@ -69,7 +69,7 @@ class RegistrationSession {
   [[nodiscard]] bool collecting() const noexcept { return collecting_; }
   [[nodiscard]] Duration elapsed() const noexcept { return elapsed_; }
   [[nodiscard]] Duration target() const noexcept { return target_; }
-  /// What the walk has covered; kept after its end until the next one starts.
+  /// What the walk has covered; kept after its end until the next walk starts.
   [[nodiscard]] const Coverage& coverage() const noexcept { return coverage_; }
   /// Shares the walk collected so far; once collecting has ended, hands it over.
   [[nodiscard]] SharedWalk walk();

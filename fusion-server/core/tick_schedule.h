@@ -1,6 +1,7 @@
 // When the fused output ticks: instants on the grid k / rate of UTC, each fused once, in order.
 //
-// Pure: the caller passes the time, and whether the pipeline has all frames for the instant.
+// It reads no clock: the caller passes the time, and whether the pipeline has all frames for the
+// instant.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ struct TickConfig {
   /// Shortest time between two snapshots, limited to half an interval: after a stall the late
   /// snapshots come one by one, so that a client polling the latest frame sees each of them.
   Duration min_spacing = std::chrono::milliseconds(13);
-  /// If further behind than this (suspended host), instants are skipped, and this is reported.
+  /// If fusion is further behind than this (suspended host), instants are skipped, and the skipping
+  /// is reported.
   Duration max_lag = std::chrono::seconds(1);
   /// An instant is fused again this long after it, if frames came too late for it.
   Duration late_frames = std::chrono::milliseconds(800);

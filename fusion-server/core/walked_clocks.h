@@ -1,9 +1,10 @@
-// Applies what a walk has told about the sensors' clocks to their frames.
+// Corrects the capture times of frames by the clock offsets that a walk has determined.
 //
-// A walk tells by how much each clock was off then. A host that does not answer with its time may
-// drift by tens of milliseconds an hour, or its clock may be set: then every frame arrives earlier
-// or later after its stamp than during the walk. The least such age is followed (the fastest frames
-// have had no delay but the constant one, which the walk has measured along with the offset).
+// A walk shows by how much each clock was off during the walk. A host that does not answer with its
+// time may drift by tens of milliseconds an hour, or its clock may be set: then every frame arrives
+// earlier or later after its stamp than during the walk. So the least age of recent frames, from
+// stamp to receipt, is followed: the fastest frames have only the constant delay, which the walk
+// has measured along with the offset.
 #pragma once
 
 #include <deque>
@@ -15,8 +16,9 @@
 namespace chorus::core {
 
 /// The least of a sensor's recent ages, from capture by its own stamps to receipt.  A frame that is
-/// younger than all before by more than jitter counts only once three in a row are; a clock that
-/// was set back is believed after three seconds, the end of an old delay after the whole window.
+/// younger than all before it by more than jitter counts only if the next two are, too.  A clock
+/// that was set back is believed after three seconds; that an old delay has ended, only after the
+/// whole window.
 class LeastAge {
  public:
   void add(Timestamp received, Duration age);
@@ -47,8 +49,9 @@ struct WalkedClock {
 
 class WalkedClocks {
  public:
-  /// Takes a frame as the poller gives it; returns how much this sensor's capture times have to be
-  /// moved now beyond what they were before.  Frames that were moved already need the difference.
+  /// Takes a frame as the poller gives it; returns by how much the correction of this sensor's
+  /// capture times has changed.  Frames that were corrected before have to be moved by this
+  /// difference.
   Duration take(const SensorFrame& frame, const Registration& registration);
 
   /// None: nothing is added to this sensor's capture times.

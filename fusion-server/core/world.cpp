@@ -64,8 +64,8 @@ std::vector<Common> agreeing(const std::vector<Common>& all, const Eigen::Isomet
   return out;
 }
 
-/// The largest group of sensors with unchanged relative places; of equally large ones, that with
-/// the master.
+/// The largest group of sensors with unchanged relative places; of equally large groups, the one
+/// with the master.
 std::vector<Common> unmoved(const std::vector<Common>& all, const SensorId& master) {
   std::vector<Common> best;
   bool with_master = false;

@@ -1,4 +1,4 @@
-// Keeps the world, in which the places of a registration are given, the same.
+// Keeps the world the same from one registration to the next.
 //
 // A solve puts the origin of the world below its master, with +z in the master's viewing direction.
 // All users of the output (a VRED scene, marks on the floor) rely on the previous world, so a new
@@ -30,9 +30,9 @@ struct Origin {
 /// The place in another world; its covariance is rotated accordingly.
 [[nodiscard]] Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& new_from_old);
 
-/// The registration, its world moved so that sensors stand as in `before`.  Among the sensors that
-/// both place, the majority decides (within 0.3 m), so a moved sensor moves the world only if there
-/// is no other.  Unchanged if they have no sensor in common.
+/// The registration, moved into the world in which sensors stand as in `before`.  Among the sensors
+/// that both place, the majority decides (within 0.3 m), so a moved sensor moves the world only if
+/// there is no other.  Unchanged if they have no sensor in common.
 [[nodiscard]] Registration in_world_of(const Places& before, Registration candidate);
 
 /// The registration in the world whose origin is `origin`.  Errors: NotFound (no sensor has a

@@ -47,7 +47,7 @@ using ConnectionPtr = std::shared_ptr<Connection>;
 struct CommandServer::Impl {
   explicit Impl(CommandServerOptions settings) : options(std::move(settings)) {}
 
-  /// Starts the asynchronous operations that must always be pending, if they are not.
+  /// Starts each asynchronous operation that must always be pending, unless it is pending.
   void ensure();
   void welcome(net::Socket socket);
   /// Why a further connection from this host is refused; empty if it is accepted.

@@ -16,7 +16,7 @@ namespace chorus::dtrack {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:5000"};
-  /// The port that we send from, to which clients behind firewalls write.  0: any.
+  /// The port that we send from; clients behind firewalls write to it to open them.  0: any.
   int source_port = 50107;
   outlet::Multicast multicast;
   Room room = Room::Normal;

@@ -15,7 +15,7 @@ constexpr double kClear = 2.0;  // Log odds from which on one view alone counts 
 constexpr double kBlind = 1.0;  // Log odds of all views together; with less, they show nothing.
 constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame count as one observation.
 
-/// What the model computes for one person at one instant.
+/// Everything that the model computes for one person at one instant.
 struct Instant {
   Timestamp at;
   double elapsed = 0.0;  ///< Time since the person was last seen [s].

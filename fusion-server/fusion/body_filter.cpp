@@ -85,7 +85,7 @@ class BodyFilter final : public Estimator {
     return std::abs(wrap_angle(yaw_ - before));
   }
 
-  /// The seen body, completed by what is expected, with bones of their lengths.
+  /// The seen body, completed by what is expected, its bones held at the learned lengths.
   [[nodiscard]] PlacedBody held(PlacedBody body, const PlacedBody& expected) const {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       if (!body[j].placed) body[j] = expected[j];
@@ -130,7 +130,8 @@ class BodyFilter final : public Estimator {
             true};
   }
 
-  /// Adds the errors that all views have in common, which are in no view's covariance.
+  /// States the covariance, with the errors that all views have in common, which are in no view's
+  /// covariance.
   void state(FusedJoint& fused, const PlacedJoint& place) const {
     const BodyModel& body = model();
     const double wider = body.agreement > 0 ? agreement_.value / body.agreement : 1.0;

@@ -20,9 +20,9 @@ struct BodyModel {
   /// How constant a bone's length is [m], and the time over which the length is learned.
   double bone = 0.003;
   Duration bone_memory = std::chrono::seconds(60);
-  /// Rate at which a sensor's offset of each joint is followed [1/s], 0: not at all; and the time
-  /// after which it is forgotten, or the angle [rad] by which the person has turned: a sensor errs
-  /// otherwise about somebody whom it sees from another side.
+  /// Rate at which a sensor's offset of each joint is followed [1/s], 0: not at all; and the time,
+  /// or the angle [rad] by which the person has turned, after which it has faded: a sensor errs
+  /// differently about somebody whom it sees from another side.
   double bias_rate = 3.0;
   Duration bias_memory = std::chrono::milliseconds(300);
   double bias_turn = deg(15);
@@ -39,11 +39,12 @@ struct BodyModel {
   double limb = 4.0;
   /// Fraction of one instant's stated standard deviation that is independent at the next instant.
   double white = 0.15;
-  /// Stated errors only, 0: unused.  Sensors that differ in scale also have wrong proportions: this
-  /// fraction of that difference, times a joint's distance from the trunk.
+  /// The next two affect the stated errors only; 0: unused.  Sensors that differ in scale also have
+  /// wrong proportions: the error is this fraction of the difference in scale, times a joint's
+  /// distance from the trunk.
   double proportion = 0.6;
-  /// And the mean squared residual, in variances, of views that disagree no more than usual: the
-  /// stated variances are multiplied by what is found over this.
+  /// Mean squared residual, in variances, of views that disagree no more than usual.  The stated
+  /// variances are multiplied by the ratio of the residual found to this.
   double agreement = 0.4;
   /// How long a joint that nobody sees is predicted.
   Duration carry = std::chrono::seconds(1);

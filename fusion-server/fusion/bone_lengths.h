@@ -1,8 +1,9 @@
 // The lengths of one person's bones, learned while the person is seen.
 //
 // Each instant yields a length, with the variance of both ends.  Errors stay the same for about
-// half a second, so that time counts as one independent measurement; old ones fade.  Both sides of
-// a body are assumed to be of equal size: docs/papers/body.md (8).
+// half a second, so all instants within half a second count as one independent measurement; old
+// measurements fade.  Both sides of a body are assumed to be of equal size: docs/papers/body.md
+// (8).
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNoLength = 1e-3;  // [m] a shorter bone has no direction
 
-/// A joint's part of the normal equations; what is eliminated is kept for back-substitution.
+/// A joint's part of the normal equations; it is kept after its elimination, for back-substitution.
 struct Node {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();

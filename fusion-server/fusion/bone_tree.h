@@ -29,7 +29,8 @@ struct HeldBone {
 using HeldBones = std::array<HeldBone, kBones.size()>;  ///< In the order of kBones.
 
 /// Joints without a position stay without one; their bones, and bones of unknown length, have no
-/// effect.  Two rounds of Gauss-Newton suffice for a body that nearly fits, one as a start.
+/// effect.  Two rounds of Gauss-Newton suffice if the body nearly fits the bones; one is enough if
+/// the result is only a start.
 [[nodiscard]] PlacedBody hold_bones(const PlacedBody& seen, const HeldBones& bones, int rounds = 2);
 
 }  // namespace chorus::fusion

@@ -34,7 +34,8 @@ FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   const auto last = last_.find(person.id);
   const bool known = person.carried && last != last_.end();
   Method method = known ? last->second.method : method_for(person, config_);
-  // Whoever several sources had a moment ago stays with the configured method while one is left.
+  // A person who was fused from several sources a moment ago stays with the configured method while
+  // one source is left.
   const bool had = estimators_.contains({person.id, config_.method});
   if (had && method == Method::InverseVariance) method = config_.method;
   auto& estimator = estimators_[{person.id, method}];

@@ -15,7 +15,7 @@ namespace chorus::fusion {
 struct JointView {
   Joint joint;
   double weight = 0.0;  ///< Weight of the view, Eqs. (1)-(3); >= 0.
-  /// From the error model: of a point's position [m^2], or of a ray's direction [rad^2].
+  /// The error model's covariance of a point's position [m^2], or of a ray's direction [rad^2].
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   /// Variance of its additional pose error, per axis [m^2] (pose_error.h).
   double pose_variance = 0.0;
@@ -36,12 +36,12 @@ struct FusedJoint {
                                                     const std::vector<SensorId>& sensors,
                                                     const ErrorModel& errors);
 
-/// The same, rays included.
+/// joint_views_of(), rays included.
 [[nodiscard]] std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
                                                         const std::vector<SensorId>& sensors,
                                                         const ErrorModel& errors);
 
-/// What one view has of a joint, a point or a ray; none when it has neither.
+/// The point or the ray that one view has for a joint; none when the view has neither.
 [[nodiscard]] std::optional<JointView> point_or_ray_of(const SensorView& view, JointId joint,
                                                        std::uint64_t contributor,
                                                        const ErrorModel& errors);

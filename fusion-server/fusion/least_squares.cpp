@@ -123,7 +123,8 @@ std::vector<double> trusts_at(const Terms& terms, const Eigen::Vector3d& point, 
   return trust;
 }
 
-/// Cauchy's loss of a point: close enough to ours, and its influence fades too.
+/// Cauchy's loss of a point: close enough to the loss of least_squares(), because the influence of
+/// distant measurements fades in both.
 double loss_at(const Terms& terms, const Eigen::Vector3d& point) {
   constexpr double kBehind = 1e3;
   double loss = 0.0;
@@ -171,8 +172,8 @@ bool contradictory(const Terms& terms, const Eigen::Vector3d& point) {
   return false;
 }
 
-/// By how much the typical squared residual exceeds what was stated, at least one: with many views
-/// their median, so that outliers do not matter.
+/// Factor by which the typical squared residual exceeds the stated variance, at least 1.  With many
+/// views it is computed from the median of the residuals, so that outliers do not matter.
 double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
   std::vector<double> ratios;  // residual over its usual value, squared
   double constraints = 0.0;
@@ -188,7 +189,8 @@ double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
   return std::max(1.0, (kScalePrior + count * found) / (kScalePrior + count));
 }
 
-/// For few views, whose residuals say little: the mean, drawn towards the stated scale by a prior.
+/// The factor of scale_of() for few views, whose residuals say little: their mean, drawn towards 1
+/// by a prior.
 double scale_of_few(const Terms& terms, std::span<const double> trust,
                     const Eigen::Vector3d& point) {
   double sum = kScalePrior;

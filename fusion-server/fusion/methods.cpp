@@ -35,9 +35,9 @@ bool nearly_a_ray(const Joint& joint) {
   return along > kElongated * kElongated * (covariance.trace() - along) / 2.0;
 }
 
-/// Whether one view alone has the person, and states the covariance of all its points: a body that
-/// somebody else has fused already.  The covariance has the slow errors in it, which a second
-/// filter would take for noise, and nobody contradicts it.
+/// True if only one view shows the person, and it states the covariance of all its points: such a
+/// body was already fused by somebody else.  Its covariance includes slow errors, which a second
+/// filter would take for noise, and no other view could correct it.
 bool fused_already(const Person& person) {
   if (person.views.size() != 1) return false;
   return std::ranges::all_of(person.views.front().skeleton.joints, [](const Joint& joint) {

@@ -26,9 +26,10 @@ struct MethodRow {
 [[nodiscard]] std::unique_ptr<Estimator> begin(Method method, const FusionConfig& config);
 
 /// The configured method; for a person seen only by rays, the method that can use rays.  The body
-/// filter corrects what depth sensors err by, so two kinds of people are not for it: points whose
-/// stated depth is hardly known count as rays, and a body that one source alone states with its
-/// covariances, as another fusion server or a file of fused frames does, is taken as it is.
+/// filter corrects the typical errors of depth sensors, so two kinds of people get another method.
+/// Points whose depth is hardly known, according to their covariance, count as rays.  A body that
+/// comes with covariances from a single source, such as another fusion server or a file of fused
+/// frames, is taken as it is.
 [[nodiscard]] Method method_for(const Person& person, const FusionConfig& config);
 
 }  // namespace chorus::fusion

@@ -1,11 +1,11 @@
 // The sizes of the misfits of one person's views (view_misfit.h), estimated while the person is
 // seen.
 //
-// If a sensor has every body right, allowing it a misfit would waste what it measures of size and
-// direction.  So the configured sizes are only the start of the estimate.  It is EM over all views,
-// where the expected square of a misfit is its own square plus its variance:
-//   sigma^2 = mean (m^2 + var m),   faded over some seconds                   docs/papers/body.md
-//   (13)
+// If a sensor measures every body correctly, allowing for a misfit would waste what the sensor
+// measures of size and direction.  So the configured sizes are only the start of the estimate.  It
+// is EM over all views, where the expected square of a misfit is its own square plus its variance:
+// sigma^2 = mean (m^2 + var m),   faded over some seconds                   docs/papers/body.md
+// (13)
 #pragma once
 
 #include <span>

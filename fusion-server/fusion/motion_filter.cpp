@@ -96,7 +96,7 @@ void MotionFilter::update(Timestamp instant, const Eigen::Vector3d& position, do
 std::optional<MotionFilter::Motion> MotionFilter::at(Timestamp instant) const {
   if (!updated_) return std::nullopt;
   const double passed = std::max(0.0, seconds(instant - *updated_));
-  // [s] that it would take at full speed.
+  // Time that the predicted distance would take at full speed [s].
   const double way = kSlowing * (1.0 - std::exp(-passed / kSlowing));
   Motion motion;
   for (const Model& model : models_) {

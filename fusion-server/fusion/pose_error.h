@@ -1,5 +1,5 @@
 // Error of a tracked pose beyond its sensor's noise: it changes slowly and grows towards the ends
-// of the limbs.  It does not affect positions, only the stated covariances.
+// of the limbs.  This estimate of its size does not affect positions, only the stated covariances.
 #pragma once
 
 #include "common/body/skeleton.h"

@@ -10,7 +10,8 @@
 
 namespace chorus::fusion {
 
-/// Which bearing Eq. (3) uses; according to the paper's text, that of the centre-axis joints.
+/// Which bearing Eq. (3) uses: that of the neck or, as the paper's text says, that of the
+/// centre-axis joints.
 enum class BearingOf { Neck, CentreAxis };
 
 /// Where each heuristic is 1 and where it reaches zero; the published values by default.

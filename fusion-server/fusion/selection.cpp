@@ -15,7 +15,7 @@ namespace {
 
 using Ranked = std::vector<const SensorView*>;
 
-/// Best first; of equal ones, the smallest sensor id first.
+/// The views, that of the highest score first; of equal ones, that of the smallest sensor id first.
 template <class Score>
 Ranked ranked(const Person& person, const Score& score) {
   Ranked views;

@@ -67,7 +67,8 @@ void SightedBody::take(std::size_t v, std::uint64_t contributor, const ErrorMode
   }
 }
 
-/// Also adds to the view's covariance the pose error that weights have.
+/// The view's weighing.  Also adds to the view's covariance the pose error that goes into the
+/// weights.
 SightedBody::Weighing SightedBody::weighed(JointView& view, JointId joint,
                                            const Offsets* biases) const {
   Weighing weighing;

@@ -1,7 +1,7 @@
 // Combines all views of one person at one instant into one body.
 //
-// The joints, the bones and the error of each view as a whole depend on each other; each in turn is
-// solved for while the others are fixed (docs/papers/body.md (1)-(3)).  No memory.
+// The joints, the bones and the error of each view as a whole depend on each other; so each in turn
+// is solved for while the others are fixed (docs/papers/body.md (1)-(3)).  No memory.
 #pragma once
 
 #include <map>
@@ -25,9 +25,9 @@ class SightedBody {
   SightedBody(const Person& person, const Instant& instant, const ErrorModel& errors,
               const FusionConfig& config, const Biases& biases);
 
-  /// Solves for everything.  `model` contains the sizes of misfits found so far; bones of known
-  /// length keep it.  `expected`: predicted positions, which limit the depth of joints shown by too
-  /// few rays.
+  /// Solves for joints, bones and misfits.  `model` contains the sizes of misfits found so far;
+  /// bones of known length keep it.  `expected`: predicted positions, which limit the depth of
+  /// joints shown by too few rays.
   void settle(const HeldBones& bones, const PlacedBody& expected, const BodyModel& model);
 
   /// The joints according to the corrected views, without the constraint of the bones.
@@ -38,8 +38,8 @@ class SightedBody {
   [[nodiscard]] const std::vector<Misfit>& misfits() const { return misfits_; }
   /// True if the views alone determine the joint's position.
   [[nodiscard]] bool determined(std::size_t joint) const;
-  /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last time
-  /// and with the person `turned` [rad] since.
+  /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last
+  /// call, since when the person has turned by `turned` [rad].
   void learn(Biases& biases, const PlacedBody& body, double passed, double turned) const;
   /// Mean squared residual between the points and `body`, per axis, in the points' variances; none
   /// without a joint that two views have.

@@ -38,13 +38,13 @@ const Hanging& hanging() {
   return kHanging;
 }
 
-/// The centres of scaling and turning.
+/// The points about which a misfit scales and turns the body.
 struct Centres {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   const PlacedBody& body;
   const Hanging& hanging;
 
-  /// About which the joint turns; null: it does not.
+  /// The point about which the joint turns; null: it does not turn.
   [[nodiscard]] const Eigen::Vector3d* axis_of(std::size_t joint) const {
     const PlacedJoint& axis = body[hanging.axis[joint]];
     return hanging.trunk[joint] || !axis.placed ? nullptr : &axis.position;

@@ -1,11 +1,11 @@
 // Xsens MVN network streaming, datagram type 02: position and quaternion of 23 segments.
 //
 // Big-endian, metres, right-handed, +z up, x forward.  760 bytes per body; the character id is the
-// slot.  A segment without a joint of ours is interpolated between those with one: L5, L3 and T8
-// along the spine, the shoulders at its sides; the head is as far beyond our Neck as Neck is from
-// SpineShoulder.  Rotations are relative to humanoid.h's rig, as in MVN: a person in T-pose who
-// looks along +x, our +z, has only identities.  A segment whose joints are not tracked follows its
-// parent.
+// slot.  A segment that corresponds to no joint of ours is interpolated between segments that do:
+// L5, L3 and T8 along the spine, the shoulders at its sides; the head is as far beyond our Neck as
+// Neck is from SpineShoulder.  Rotations are relative to humanoid.h's rig, as in MVN: a person in
+// T-pose who looks along +x, our +z, has only identities.  A segment whose joints are not tracked
+// follows its parent.
 #pragma once
 
 #include <cstdint>

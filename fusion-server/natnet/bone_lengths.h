@@ -38,7 +38,7 @@ class BoneLengths {
   PersonId person_{};
   bool done_ = false;
   std::size_t frames_ = 0;
-  /// From frames in which the bone and its parent are tracked.
+  /// Measured lengths of each bone, from frames in which the bone and its parent are tracked.
   std::array<std::vector<double>, kBoneCount> lengths_;
   BoneOffsets described_ = adult_offsets();
 };

@@ -33,7 +33,7 @@ std::size_t parent_index(std::size_t bone) {
   return static_cast<std::size_t>(kTable[bone].parent - 1);
 }
 
-/// The bone in world space; `done` contains the bones before it.
+/// The bone in world space; `done` contains the bones before it in the table.
 MotiveBone in_world(const outlet::Humanoid& rig, std::size_t bone, const MotiveSkeleton& done) {
   const outlet::BonePose& pose = rig[kRigBones[bone]];
   if (pose.known) return {pose.origin, pose.world_from_bone * outlet::rig_from_ahead_rest(), true};

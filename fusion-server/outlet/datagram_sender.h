@@ -25,7 +25,7 @@ struct Target {
 /// Parses a target; an InvalidArgument says what is wrong with it.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
-/// Reads the key "targets"; each target has the form above.
+/// Reads the key "targets"; each target has the form that parse_target() reads.
 void read_targets(ConfigReader& reader, std::vector<std::string>& out);
 
 /// How datagrams are sent to multicast groups.

@@ -13,7 +13,8 @@
 namespace chorus::pipeline {
 namespace {
 
-// [Hz]; a rate beyond these must be a mistake, and the instants of a slower one overflow.
+// Limits of the rate [Hz].  A rate beyond them must be a mistake, and with a slower one the numbers
+// of the instants would overflow.
 constexpr double kSlowest = 0.001;
 constexpr double kFastest = 1000.0;
 

@@ -33,8 +33,8 @@ struct OfflineInput {
 using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 
 /// Registers the sensors from the first minutes in which one person is seen alone.  If some sensors
-/// have no place then, it uses more such minutes, until all have one or the recordings end.
-/// Conflict, with reasons, when no registration is found.
+/// have no place after that, it uses further such minutes, until all have a place or the recordings
+/// end. Conflict, with reasons, when no registration is found.
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
@@ -43,7 +43,7 @@ using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 
-/// The same for recordings in memory: registers from the whole walk unless `extrinsics` are given.
+/// Fuses recordings in memory; registers from the whole walk unless `extrinsics` are given.
 [[nodiscard]] Result<OfflineResult> fuse_offline(
     const std::vector<registration::WalkTrack>& sensors,
     const std::optional<Registration>& extrinsics, const OfflineConfig& config);

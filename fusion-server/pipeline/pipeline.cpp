@@ -20,7 +20,7 @@ std::vector<SensorId> registered_sensors(const Registration& registration) {
   return sensors;
 }
 
-/// The patience with those sensors for which instants wait: sensors with a place.
+/// The patience with the sensors for which instants wait, which are those with a place.
 align::Patience patience_of(const Histories& histories, const Registration& registration,
                             const PipelineConfig& config) {
   std::map<SensorId, const align::History*> placed;
@@ -56,7 +56,7 @@ SensorView view_of(const AlignedSensor& from, const BodyFrame& body,
   return view;
 }
 
-/// 5.2.3: moves bodies into the world; leaves out those of sensors without a place.
+/// 5.2.3: moves bodies into the world; leaves out bodies of sensors without a place.
 std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned,
                                        const Registration& registration,
                                        const fusion::QualityLimits& limits) {

@@ -15,7 +15,7 @@ constexpr Duration kAhead = std::chrono::seconds(5);
 /// Twice what 64 sensors that see 12 people each deliver in kAhead; needs about 500 MB.
 constexpr std::size_t kMaxWaiting = 64 * 12 * 300;
 
-/// In bodies: a frame without any needs memory, too.
+/// What a frame adds to the memory in use, in bodies; a frame without bodies needs memory, too.
 std::size_t weight_of(const SensorFrame& frame) { return 1 + frame.bodies.size(); }
 constexpr std::size_t kNoLane = std::numeric_limits<std::size_t>::max();
 

@@ -32,7 +32,8 @@ struct FrameAnswer {
 /// Reads the answer of /floor-plane; none when it is not a floor plane.
 [[nodiscard]] std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response);
 
-/// Reads the answer of /clock, in JSON: what the host says of its own clock; none when it is none.
+/// Reads the answer of /clock, in JSON: what the host says of its own clock; none when the answer
+/// is not such a document.
 [[nodiscard]] std::optional<NtpStatus> read_clock_answer(const http::ClientResponse& response);
 
 /// The four time stamps of the exchange; none if the answer has no Chorus-Clock header.

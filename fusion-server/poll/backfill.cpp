@@ -12,7 +12,7 @@ constexpr int kMaxInVain = 8;
 void Backfill::saw(std::uint64_t sequence, Duration now) {
   const bool follows = last_ && sequence > *last_;
   const std::uint64_t gap = follows ? sequence - *last_ - 1 : 0;
-  // Another run, or more frames than sensors keep.
+  // The stream is of another run, or more frames are missing than sensors keep.
   if (!follows || gap > kMaxMissing) missing_.clear();
   if (follows && gap <= kMaxMissing && in_vain_ < kMaxInVain) {
     for (std::uint64_t lost = *last_ + 1; lost < sequence; ++lost) missing_.push_back({lost, now});

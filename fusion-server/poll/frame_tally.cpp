@@ -9,7 +9,7 @@ constexpr Duration kWindow = std::chrono::seconds(2);
 constexpr Duration kMinSpan = std::chrono::milliseconds(500);
 /// After a longer pause, the rate starts over.
 constexpr Duration kPause = std::chrono::seconds(1);
-/// Half a minute; after a longer gap, counting starts over.
+/// Missing frames of half a minute; after a longer gap, counting starts over.
 constexpr std::uint64_t kMaxGap = 900;
 
 constexpr std::size_t kAges = 32;

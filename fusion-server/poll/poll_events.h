@@ -15,7 +15,8 @@
 namespace chorus::poll {
 
 struct PollTimings {
-  /// For Prefer: wait.  A stream without frames for this long is silent.
+  /// Sent as Prefer: wait.  Also how long a stream may be without frames before it counts as
+  /// silent.
   Duration wait = std::chrono::seconds(2);
   /// An answer that comes later than `wait` + this counts as a failure.
   Duration answer_slack = std::chrono::seconds(1);
@@ -76,7 +77,7 @@ struct Failed {
 struct StreamFrame {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  /// True if its time does not fit the clock estimate: request the clock at once.
+  /// True if the frame's time does not fit the clock estimate: request the clock at once.
   bool odd = false;
 };
 struct StreamEnded {

@@ -99,7 +99,8 @@ double floor_misfit(const Station& station) {
          height * height;
 }
 
-/// Tukey's loss of the points, which gives their weights, over the factor; plus that of the floors.
+/// Tukey's loss of the points, from which their weights follow, divided by `factor`, plus the loss
+/// of the floors.
 double cost_of(const Adjustment& adjustment, double factor) {
   const double limit = kTukey * adjustment.scale;
   double cost = 0.0;
@@ -274,7 +275,7 @@ bool iterate(Adjustment& adjustment, double settled) {
   return motion.lpNorm<Eigen::Infinity>() > settled;
 }
 
-/// What the bias of all sights does to the places.
+/// Covariance of the places that the bias of all sights causes.
 Eigen::MatrixXd bias_covariance(Adjustment& adjustment) {
   const std::vector<FusedPoint> all = adjustment.fuse_all();
   const auto ways = ways_of(adjustment.points, all);

@@ -30,7 +30,8 @@ double BlockScores::factor(std::span<const Eigen::Index> parameters, const Prior
   const auto count = static_cast<Eigen::Index>(chosen.size());
   if (blocks_.size() < 2 || count == 0) return prior.factor;
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(count, count);
-  // The rest of the scores, where something else pulls on the estimate.
+  // The sum of the scores, which is not zero where something other than the walk pulls on the
+  // estimate.
   Eigen::VectorXd left = Eigen::VectorXd::Zero(count);
   for (const Block& block : blocks_) {
     whole += block.information(chosen, chosen);

@@ -43,7 +43,7 @@ class EdgeIndex {
     const auto found = edges_.find(std::minmax(a, b));
     return found == edges_.end() ? nullptr : found->second;
   }
-  /// Those after `sensor` that it has edges with, in ascending order.
+  /// The sensors after `sensor` with which it has edges, in ascending order.
   [[nodiscard]] std::vector<SensorId> after(const SensorId& sensor) const {
     std::vector<SensorId> others;
     for (auto at = edges_.lower_bound({sensor, {}}); at != edges_.end(); ++at) {

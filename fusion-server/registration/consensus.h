@@ -2,10 +2,10 @@
 //
 // A sensor that followed somebody else, that is mirrored, or whose clock is wrong can still fit one
 // other sensor by chance.  It cannot fit all of them.  A pair that saw a person at the same
-// instants but does not agree is evidence against both of its sensors, and so are three pairs whose
-// product around a triangle is not the identity.  Sensors with more evidence against than for them
-// are cast out, one at a time, until nothing contradicts the rest.  Derived in
-// docs/papers/registration.md, Section 11.
+// instants but does not agree is evidence against both of its sensors, and so are three edges whose
+// product around a triangle is not the identity, against all three.  Sensors with more evidence
+// against than for them are cast out, one at a time, until nothing contradicts the rest.  Derived
+// in docs/papers/registration.md, Section 11.
 #pragma once
 
 #include <map>

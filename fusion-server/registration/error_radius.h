@@ -10,8 +10,8 @@ namespace chorus::registration {
 /// matrix is not a covariance.
 [[nodiscard]] double radius_of_95(const Eigen::Matrix2d& covariance);
 
-/// The same for the position on the floor (x, z), from a covariance of (rotation vector, position)
-/// in world axes.
+/// radius_of_95() of the position on the floor (x, z), from a covariance of (rotation vector,
+/// position) in world axes.
 [[nodiscard]] double radius_on_floor(const Eigen::Matrix<double, 6, 6>& covariance);
 
 }  // namespace chorus::registration

@@ -15,8 +15,8 @@ struct WalkFloor {
   std::string objection;  ///< "its floor plane is above the feet"; empty if there is none.
 };
 
-/// Median of the reported planes.  It is plausible if its normal points up in sensor space, it lies
-/// below the sensor, and the person's feet are on it.
+/// Median of the reported planes.  The floor is plausible if its normal points up in sensor space,
+/// it lies below the sensor, and the person's feet are on it.
 [[nodiscard]] WalkFloor floor_of(const WalkTrack& walk);
 
 /// For sensors without a floor plane: people walk upright, so the mean direction from hips to neck

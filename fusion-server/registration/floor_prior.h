@@ -33,7 +33,8 @@ inline constexpr FloorPrior kOneFloor{deg(0.4), mm(10)};
 inline constexpr FloorPrior kTwoFloors{kOneFloor.tilt * std::numbers::sqrt2,
                                        kOneFloor.height* std::numbers::sqrt2};
 
-/// Both frames are levelled: a motion must not tilt up, nor lift the floor below the walk.
+/// Adds the prior: because both frames are levelled, a motion must neither tilt the vertical nor
+/// lift the floor below the walk.
 void add_prior(Normal& normal, const FloorPrior& prior, const Eigen::Isometry3d& target_from_source,
                const Eigen::Vector3d& centre_in_source);
 

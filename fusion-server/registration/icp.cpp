@@ -42,7 +42,7 @@ class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
     }
   }
 
-  /// Returns only the nearest one, whatever k is, because ICP needs no more.
+  /// Returns only the nearest point, whatever k is, because ICP needs no more.
   int nearestKSearch(const pcl::PointXYZ& point, int /*k*/, pcl::Indices& indices,
                      std::vector<float>& squares) const override {
     if (points_.rows() == 0) return 0;

@@ -36,7 +36,7 @@ class Profile {
     return near || surely_worse(fits_[i]);
   }
 
-  /// The minimum of the parabola through the best and its neighbours.
+  /// Where the parabola through the best offset and its neighbours has its minimum.
   [[nodiscard]] double vertex() const {
     const double at_best = fits_[best_].offset;
     if (at_rim() || !(bend() > 0.0)) return at_best;
@@ -49,8 +49,8 @@ class Profile {
   [[nodiscard]] double bend() const {
     return costs_[best_ - 1] - 2.0 * costs_[best_] + costs_[best_ + 1];
   }
-  /// How much lower the cost may be between two offsets: half a step from its minimum, a parabola
-  /// has risen by a quarter of what it rises in a whole step.
+  /// How much lower the cost may be between two searched offsets than at the best of them: half a
+  /// step from its minimum, a parabola has risen by a quarter of what it rises in a whole step.
   [[nodiscard]] double between_steps() const { return at_rim() ? 0.0 : 0.125 * bend(); }
 
   /// Differences of the losses over the frames that both offsets have.

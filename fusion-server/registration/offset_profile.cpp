@@ -71,8 +71,8 @@ Trail thinned(const Trail& trail) {
   return out;
 }
 
-/// The frames that no offset up to `range` moves out of the other sensor's time; all of them if
-/// that leaves less than half.
+/// The frames that stay within the time span of the other trail at every offset up to `range`; all
+/// of them if fewer than half do.
 Trail inner_part(const Trail& trail, const Trail& other, Duration range) {
   if (other.frames.empty()) return trail;
   Trail out{trail.sensor, {}};

@@ -32,7 +32,7 @@ struct PairOffset {
 /// Two walks, prepared to be fitted at many offsets.
 class OffsetProfile {
  public:
-  /// Both come from offset_walker().  Searches offsets from -`range` to `range` [s].
+  /// Both walkers come from offset_walker().  Searches offsets from -`range` to `range` [s].
   OffsetProfile(const Walker& target, const Walker& source, const RegistrationConfig& config,
                 double range);
 

@@ -111,7 +111,8 @@ Extent extent_of(const std::vector<Pair>& pairs, const std::vector<double>& weig
   return {std::sqrt(major + minor), major > 0 ? minor / major : 0.0};
 }
 
-/// The neck clouds of the pairs, or those of the first slot that has pairs.
+/// The clouds of the slot of the first pair: the necks, unless the first frame had none or all
+/// joints are paired.
 void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& target,
                std::vector<Eigen::Vector3d>& source) {
   const std::size_t slot = pairs.front().slot;
@@ -122,8 +123,8 @@ void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& tar
   }
 }
 
-/// Otto 5.2: ICP on the neck clouds.  Returns its residual.  Its pose is used only if it does not
-/// contradict the timed pairs, which contain more information.
+/// Otto 5.2: ICP on the clouds of clouds_of().  Returns its residual.  Its pose is used only if it
+/// does not contradict the timed pairs, which contain more information.
 double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double along_ratio) {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;
@@ -179,7 +180,7 @@ Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom fr
                           const std::string& both, double min_spread) {
   const std::vector<Pair> early = half_of(pairs, false);
   const std::vector<Pair> late = half_of(pairs, true);
-  // A half in which the person stayed on one spot cannot be used for this.
+  // A half in which the person stayed on one spot cannot be used for this comparison.
   for (const auto* half : {&early, &late}) {
     if (extent_of(*half, std::vector<double>(half->size(), 1.0)).spread < min_spread) return {};
   }
@@ -200,7 +201,8 @@ Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom fr
                           both, typical));
 }
 
-/// A straight walk leaves the rotation about it open, unless floor or body height determine it.
+/// A straight walk leaves the rotation about its own line open, unless floor or body height
+/// determine that rotation.
 Result<void> determined(const Extent& extent, bool levelled, const std::string& both,
                         JointChoice joints) {
   if (extent.slimness >= kMinSlimness || levelled || joints != JointChoice::Neck) return {};

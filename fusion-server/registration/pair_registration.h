@@ -26,7 +26,7 @@ struct Walker {
 /// Estimates an edge from two walks.
 using PairEstimator = std::function<Result<PairwiseRegistration>(const Walker&, const Walker&)>;
 
-/// Asked now and then during long work; once it says so, the result is of no use to anybody.
+/// Asked now and then during long work; once it returns true, the result is of no use to anybody.
 using Stopped = std::function<bool()>;
 
 /// solve() with another estimator of edges and everything else the same, to compare

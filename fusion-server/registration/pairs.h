@@ -38,7 +38,7 @@ struct Pair {
   Eigen::Vector3d ray_in_source;
   double sigma = 0.0;  ///< Standard deviation of the difference, from the slot [m].
   std::size_t slot = 0;
-  /// Index of the source frame among the paired ones; simultaneous pairs have the same.
+  /// Index of the source frame among the paired frames; simultaneous pairs have the same index.
   std::size_t instant = 0;
   double time = 0.0;  ///< Time of the instant since the first frame of the source [s].
 };

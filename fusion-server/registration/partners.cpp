@@ -22,7 +22,7 @@ Presence presence_of(const Trail& trail) {
   return presence;
 }
 
-/// Frames that both have, bin by bin.
+/// Number of frames that both have, summed second by second.
 std::size_t overlap(const Presence& a, const Presence& b) {
   std::size_t common = 0;
   for (auto first = a.begin(), second = b.begin(); first != a.end() && second != b.end();) {
@@ -52,8 +52,8 @@ Overlaps overlaps_of(const std::map<SensorId, Walker>& walkers) {
 
 using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
 
-/// Those that share most with sensor i; of equals those that follow it, so that not all choose the
-/// same ones.
+/// Adds the pairs of sensor i with the sensors that share most with it; of equal ones it takes
+/// those that follow i, so that not all sensors choose the same partners.
 void add_best(const Overlaps& overlaps, std::size_t i, Pairs& pairs) {
   const std::size_t count = overlaps.size();
   std::vector<std::size_t> others;
@@ -64,7 +64,7 @@ void add_best(const Overlaps& overlaps, std::size_t i, Pairs& pairs) {
     pairs.insert(std::minmax(i, others[k]));
 }
 
-/// For each sensor the number of the group that these pairs connect it with.
+/// For each sensor the number of its group: sensors that `pairs` connect have the same number.
 std::vector<std::size_t> groups_of(const Pairs& pairs, const Overlaps& overlaps) {
   std::vector<std::size_t> group(overlaps.size());
   std::iota(group.begin(), group.end(), std::size_t{0});

@@ -1,10 +1,10 @@
 // Which pairs of sensors are registered directly.
 //
-// Pairs grow with the square of the sensors, and of many sensors that see the same walk most say
-// what others have said.  Up to twelve sensors all pairs are tried.  Of more, each sensor has the
-// eight partners with which it shares the longest part of the walk; groups that these leave apart
-// are joined by all pairs between them.  The last adjustment uses the sights of all sensors either
-// way.
+// The number of pairs grows with the square of the number of sensors, and where many sensors see
+// the same walk, most pairs add nothing new.  Up to twelve sensors all pairs are tried.  With more
+// sensors, each is paired with the eight with which it shares the longest part of the walk; groups
+// that these pairs leave unconnected are joined by all pairs between them.  In either case the
+// final adjustment uses the sights of all sensors.
 #pragma once
 
 #include <map>
@@ -16,8 +16,8 @@
 namespace chorus::registration {
 
 /// Target and source of every pair to try, each once, target before source, in ascending order.
-/// Pairs that never saw the person together are among them: to find that out costs little, and the
-/// reason is told.
+/// Pairs that never saw the person together are included: finding that out costs little, and the
+/// reason is reported.
 [[nodiscard]] std::vector<std::pair<SensorId, SensorId>> partners_of(
     const std::map<SensorId, Walker>& walkers);
 

@@ -110,8 +110,8 @@ Instants instants_of(const std::vector<Pair>& pairs, const std::vector<Residual>
   return instants;
 }
 
-/// Number of pairs per independent pair: from the lag-1 autocorrelation of the instants and the
-/// correlation of the joints within an instant.
+/// Number of pairs per independent pair, computed from the lag-1 autocorrelation of the instants
+/// and the correlation of the joints within an instant.
 double inflation_of(const Instants& instants) {
   double same = 0.0;
   double next = 0.0;

@@ -21,7 +21,7 @@ struct Residuals {
 
   explicit Residuals(std::size_t count) : off(count), weights(count, 1.0) {}
 
-  /// Scale, then weights: one step of expectation-maximisation.
+  /// Updates the scale and then the weights: one step of expectation-maximisation.
   void reweigh() {
     double squares = 0.0;
     for (std::size_t i = 0; i < off.size(); ++i) squares += weights[i] * off[i].squaredNorm();
@@ -37,7 +37,7 @@ struct Residuals {
   }
 };
 
-/// Losses and weighted residuals, each the mean over the points of a frame.
+/// Computes losses and weighted residuals of each frame, as means over its points.
 void summarise(const Residuals& residuals, const std::vector<std::size_t>& frames,
                StudentFit& fit) {
   std::vector<Eigen::Vector3d> series;

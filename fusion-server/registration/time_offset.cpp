@@ -154,7 +154,7 @@ Error cannot_tell(const SensorId& target, const SensorId& source) {
                       both)};
 }
 
-/// Names the pairs whose place depends on what is open of their offset.
+/// Names the pairs whose place depends on the part of their offset that the walk leaves open.
 void mark_open(const Network& network, const RegistrationConfig& config, const PairSearch& search,
                WalkClocks& clocks) {
   std::vector<double> spreads(network.pairs.size(), 0.0);
@@ -170,7 +170,7 @@ void mark_open(const Network& network, const RegistrationConfig& config, const P
   }
 }
 
-/// All offsets against the clock that is known best, of equals the first.
+/// All offsets relative to the clock that is known best; of equally well known ones, the first.
 std::map<SensorId, ClockOffset> against_the_best(const Network& network) {
   const auto least = std::ranges::min_element(network.priors);
   const auto best = static_cast<std::size_t>(least - network.priors.begin());

@@ -29,8 +29,8 @@ struct WalkClocks {
 
 /// How the pairs are searched: they do not depend on one another.
 struct PairSearch {
-  /// Asked before each pair; once it says so, the rest is not searched, and the result is of no
-  /// use.
+  /// Asked before each pair; once it returns true, the other pairs are not searched, and the result
+  /// is of no use.
   std::function<bool()> stopped = [] { return false; };
   /// Calls work(i) for each i below `count`, in any order and on any thread.
   std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)> for_each =
@@ -45,7 +45,7 @@ struct PairSearch {
 /// Moves every stamp to the common clock.
 void bring_in_step(std::vector<WalkTrack>& walk, const WalkClocks& clocks);
 
-/// The same estimator, but it refuses pairs whose clock offset is undetermined.
+/// `estimate`, changed to refuse pairs whose clock offset is undetermined.
 [[nodiscard]] PairEstimator unless_open(PairEstimator estimate, const WalkClocks& clocks);
 
 }  // namespace chorus::registration

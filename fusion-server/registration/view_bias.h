@@ -1,15 +1,13 @@
 // What no length of walk shows about two sensors: joints lie differently in a body that is seen
 // from elsewhere.
 //
-// The error of a sight is, besides noise, a function of the angle phi between the way the person
-// walks and the direction to the sensor,
-//   b(phi) = c_0 + c_1 cos phi + c_2 sin phi + c_3 cos 2 phi + c_4 sin 2 phi,
-// each c of which has a part along the view, aside and upwards, and each sensor its own.  They are
-// not estimated, but considered (Schmidt 1966): with g = G c in the scores of the walk, an estimate
-// P g has the further covariance
-//   P (sum sigma^2 G G^T) P^T.
-// Where the person turns as the place changes, a walk cannot tell b from a turned sensor, and
-// P G is large; the residuals show nothing of it.  docs/papers/registration.md, Section 8.
+// Apart from noise, the error of a sight is a function of the angle phi between the way the person
+// walks and the direction to the sensor, b(phi) = c_0 + c_1 cos phi + c_2 sin phi + c_3 cos 2 phi +
+// c_4 sin 2 phi, where each c has a part along the view, aside and upwards, and each sensor has its
+// own c's.  They are not estimated, but considered (Schmidt 1966): with g = G c in the scores of
+// the walk, an estimate P g has the further covariance P (sum sigma^2 G G^T) P^T. Where the person
+// turns as the place changes, as on a circle, a walk cannot distinguish b from a turned sensor: P G
+// is large, and the residuals do not show it.  docs/papers/registration.md, Section 8.
 #pragma once
 
 #include <optional>
@@ -23,8 +21,8 @@ class ViewBias {
  public:
   explicit ViewBias(std::vector<Eigen::Vector3d> eyes);
 
-  /// One point as the adjustment counts it.  `walking`: which way the person goes there, world;
-  /// None: unknown, then only c_0 is counted.
+  /// One point as the adjustment counts it.  `walking`: the direction in which the person walks at
+  /// this point, world; if none, only c_0 is counted.
   void add(const PointMeasurements& measurements, const FusedPoint& fused, double weight,
            const std::optional<Eigen::Vector3d>& walking);
 

@@ -31,13 +31,13 @@ struct WalkPoint {
   PointMeasurements seen;
 };
 
-/// In order of time.  Thinned out, but of many sensors there are more, so that no overlap is
-/// missed.
+/// The points in order of time.  They are thinned out, but less so with many sensors, so that no
+/// overlap is missed.
 [[nodiscard]] std::vector<WalkPoint> points_of(const std::vector<Station>& stations,
                                                const RegistrationConfig& config);
 
-/// Which way each point goes, horizontally: from its fused places 0.3 s before and after.  None
-/// while it hardly moves.
+/// The horizontal direction in which each point moves, computed from its fused places 0.3 s before
+/// and after.  None while the point hardly moves.
 [[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> ways_of(
     const std::vector<WalkPoint>& points, const std::vector<FusedPoint>& fused);
 

@@ -23,7 +23,8 @@ std::array<std::pair<std::string_view, std::uint64_t>, 6> counted(const FrameFat
            {"clockRestarts", fates.restarts}}};
 }
 
-/// The clock of the sensor's host: by how much it is off, who told so, and what it says of itself.
+/// The clock of the sensor's host: by how much it is off, how that was found, and what the host
+/// says of its own clock.
 void add_clock(resource::Node& node, const SensorStatus& sensor) {
   auto& out = node.properties;
   const auto put = [&](const char* key, Duration value) {

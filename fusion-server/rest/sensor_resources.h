@@ -21,14 +21,15 @@ namespace chorus::rest {
 /// Thread-safe: the pipeline's and the poller's threads publish, the server's thread reads.
 class SensorResources {
  public:
-  /// The frames of these sensors are relayed live (by long polling); those added later only answer
-  /// plain GETs.
+  /// The frames of these sensors are relayed live (by long polling); sensors that are added later
+  /// only answer plain GETs.
   SensorResources(service::Serving serving, const std::vector<SensorId>& sensors);
 
   void publish(const std::vector<SensorStatus>& sensors);
   /// Publishes a frame as the sensor sent it: in its own space, by its own clock.
   void relay(const SensorId& sensor, resource::FramePtr frame);
-  /// Publishes its floor plane, in its own space; none if it has not reported any.
+  /// Publishes a sensor's floor plane, in the sensor's own space; none if the sensor has not
+  /// reported any.
   void floor(const SensorId& sensor, const std::optional<FloorPlane>& floor);
 
   void add_routes(http::Router& router);

@@ -13,7 +13,7 @@ namespace chorus::server {
 namespace {
 
 constexpr std::size_t kMaxFrames = 4096;  // Two seconds of 64 sensors at 30 Hz.
-// Clients send them on people's request, not with every frame.
+// Limit of the waiting commands: clients send commands on people's request, not with every frame.
 constexpr std::size_t kMaxCommands = 256;
 constexpr Duration kMaxIdle = std::chrono::milliseconds(20);
 constexpr Duration kGathering = std::chrono::milliseconds(2);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxBytes = 16u << 20;
-// The largest that JSON readers represent exactly.
+// The largest integer that every JSON reader represents exactly.
 constexpr std::uint64_t kMaxPeople = 1ULL << 53U;
 
 }  // namespace

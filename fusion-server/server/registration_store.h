@@ -20,7 +20,7 @@ class RegistrationStore {
   /// is left as it is.
   [[nodiscard]] Result<std::optional<Registration>> load() const;
 
-  /// The one before it, for an undo; none if there is none that can be read.
+  /// The registration before the stored one, for an undo; none if no earlier one can be read.
   [[nodiscard]] std::optional<Registration> load_earlier() const;
 
   /// Writes a temporary file, syncs it, renames it.  On failure the stored file is unchanged.

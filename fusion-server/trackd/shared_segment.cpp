@@ -42,7 +42,8 @@ int hold(int key) {
   return -1;
 }
 
-/// Why the existing segment cannot be used; empty if it can: then an earlier run of ours left it.
+/// Why the existing segment cannot be used; empty if it can be used, because an earlier run of ours
+/// left it.
 std::string objection(const shmid_ds& there, std::size_t bytes) {
   if (there.shm_perm.uid != ::geteuid()) {
     return "it belongs to the user with id " + std::to_string(there.shm_perm.uid);

@@ -72,7 +72,7 @@ struct Message {
 class MessageReader {
  public:
   void add(std::string_view bytes);
-  /// The next whole message, valid until the next call; none if more bytes are needed.  Malformed:
+  /// The next whole message, valid until add() is called; none if more bytes are needed. Malformed:
   /// the rest of the stream cannot be read.
   [[nodiscard]] Result<std::optional<Message>> next();
 

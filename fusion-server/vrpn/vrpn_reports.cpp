@@ -24,8 +24,8 @@ void add_vectors(Payload& out, const Eigen::Vector3d& v, const Eigen::Quaternion
   for (const double value : {v.x(), v.y(), v.z(), q.x(), q.y(), q.z(), q.w()}) out.real(value);
 }
 
-/// What follows the sensor number in a joint's reports; the same for its body's tracker and for its
-/// own.
+/// What follows the sensor number in a joint's reports; the body's tracker and the joint's own
+/// tracker send the same.
 struct JointNumbers {
   Payload pose;
   Payload velocity;

@@ -1,7 +1,7 @@
 // A tracker frame in VRPN: which trackers there are, and their reports.
 //
 // Body0 has the joints as sensors 0..24 (the numbers of the Kinect v2 SDK).  Body0_Head and so on
-// have only sensor 0, for clients that can read only that one.  World axes, metres, quaternions x y
+// have only sensor 0, for clients that can read only sensor 0.  World axes, metres, quaternions x y
 // z w; each frame has one time stamp, the time of its poses.
 #pragma once
 

@@ -18,7 +18,7 @@ struct Point {
   JointId second;
   double weight;
 };
-/// The trunk comes first.  Limbs err more, but independently of it.
+/// The points of the trunk come first.  Limbs err more, but independently of the trunk.
 constexpr std::size_t kTrunkPoints = 5;
 constexpr std::array<Point, 10> kPoints{{
     {JointId::Neck, JointId::Neck, 1.0},

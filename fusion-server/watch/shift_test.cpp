@@ -22,7 +22,7 @@ constexpr double kLasting = 0.5;
 
 struct Mean {
   Eigen::Vector3d news = Eigen::Vector3d::Zero();
-  /// The same, with each block limited to kMostNews.
+  /// The mean of the blocks, with each block limited to kMostNews.
   Eigen::Vector3d limited = Eigen::Vector3d::Zero();
   Rows rows = Rows::Zero();
   std::set<SensorId> others;

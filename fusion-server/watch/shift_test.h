@@ -27,7 +27,8 @@ class ShiftTest {
  public:
   ShiftTest();
 
-  /// Compares the last blocks.  Means of less than `learn_below` sigmas are learned from.
+  /// Compares the last blocks.  Learns the usual scatter from means of less than `learn_below`
+  /// sigmas.
   [[nodiscard]] Shift test(const std::deque<Block>& recent, const StandingError& usual,
                            double learn_below);
 

@@ -1,5 +1,5 @@
-// The constant error of one sensor: that of its registered place, and the errors of tracking that
-// depend on a person's orientation towards it.
+// The constant error of one sensor: the error of its registered place, and the errors of tracking
+// that depend on a person's orientation towards the sensor.
 //
 // A Kalman filter over ten numbers that change slowly (docs/papers/watch.md (1)):
 //   away   = x sin d + z cos d + a0 + a1 cos f + a2 cos 2f

@@ -16,8 +16,8 @@ constexpr std::size_t kLeast = 3;                // residuals in a block
 constexpr Duration kBreak = milliseconds(400);   // after a longer gap, a person starts over
 constexpr double kSmoothing = 0.5;               // [s]
 constexpr double kWalking = 0.25;                // [m/s]
-/// The largest shift must exceed the others by this factor, because a moved sensor also shifts what
-/// the others are compared with.
+/// The largest shift must exceed the others by this factor, because a moved sensor also shifts the
+/// mean with which the other sensors are compared.
 constexpr double kClearly = 1.3;
 
 Block block_of(const std::vector<Residual>& residuals, Timestamp began) {

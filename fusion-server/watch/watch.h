@@ -18,7 +18,8 @@ namespace chorus::watch {
 
 struct Finding {
   SensorId sensor;
-  /// Only these two saw people together: one of them was moved, and it cannot be told which.
+  /// Set if only the sensor and this other one saw people together: one of them was moved, but it
+  /// is unknown which.
   std::optional<SensorId> or_else;
   double shift = 0.0;    ///< Distance between where it and where the others see people [m].
   bool drifted = false;  ///< True if it has lasted for minutes, false if it began recently.
@@ -36,15 +37,15 @@ class Watch {
   /// for this sensor [m]; none until somebody has walked for a while.
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const;
 
-  /// Forgets what is usual for each sensor.  Call this when a sensor has a new place, because it
-  /// was learned relative to that sensor, too.
+  /// Forgets what is usual for each sensor.  Call this when a sensor has a new place, because what
+  /// is usual for the others was learned relative to that sensor, too.
   void forget();
 
  private:
   struct Watched {
     std::vector<Residual> open;  ///< Residuals of the block that is being filled.
     Timestamp began;
-    /// Not yet learned from, so that a shift is compared with the time before it.
+    /// Recent blocks, not yet learned from, so that a shift is compared with the time before it.
     std::deque<Block> recent;
     StandingError usual;
     ShiftTest test;

@@ -33,7 +33,8 @@ using calibration::PictureSize;
 constexpr std::size_t kMostViews = 40;  // more take longer and hardly improve the lens
 constexpr std::uintmax_t kMaxPhoto = 1u << 28;
 constexpr double kMarkerShare = 0.75;  // of a square
-// Relative; Exif rounds to millimetres, and videos are cropped.
+// Relative standard deviation of a focal length from a photo: Exif rounds to millimetres, and
+// videos are cropped.
 constexpr double kPhotoSigma = 0.04;
 
 struct CalibrateArguments {

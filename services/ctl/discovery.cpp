@@ -78,12 +78,14 @@ int rank_of(const std::string& address) {
   return address.find(':') == std::string::npos ? 0 : 1;
 }
 
-/// Loopback, and what needs the name of an interface: nobody can be led astray by these.
+/// True for loopback addresses, and for addresses that are useless without the name of an
+/// interface: announcing these misleads nobody.
 bool leads_nowhere(const std::string& address) { return rank_of(address) >= 3; }
 
-/// Whether it is the same sensor, perhaps at another of its addresses.  The id alone does not tell:
-/// anybody may announce it, and must not take the place of whom it belongs to.  With TLS the name
-/// is asked, and the certificate tells; without it an address is all that tells two hosts apart.
+/// Whether both are the same sensor, perhaps at different addresses.  The id alone does not decide:
+/// anybody may announce an id, and must not take the place of the sensor to which it belongs.  With
+/// TLS, sensors are asked by name, and the certificate proves the name; without TLS, only the
+/// address distinguishes two hosts.
 bool same_sensor(const FoundSensor& a, const FoundSensor& b) {
   const bool same_place =
       a.tls || a.address == b.address || leads_nowhere(a.address) || leads_nowhere(b.address);

@@ -22,7 +22,8 @@ struct FoundSensor {
   std::uint16_t port = 0;
   bool tls = false;
 
-  /// With TLS by name, because certificates are issued for names; otherwise by address.
+  /// The URL of the sensor: with TLS by name, because certificates are issued for names; otherwise
+  /// by address.
   [[nodiscard]] std::string url() const;
   bool operator==(const FoundSensor&) const = default;
 };
@@ -30,11 +31,11 @@ struct FoundSensor {
 /// The file for kAvahiFolder that announces a sensor.  It contains no secret.
 [[nodiscard]] std::string announcement(const std::string& id, std::uint16_t port, bool tls);
 
-/// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id, host, port
-/// and TLS; of its addresses IPv4 before IPv6, loopback and link-local ones last.  An id that two
-/// announce is there twice; so is a sensor without TLS at two addresses, because one of them may
-/// be a stranger's.  Anybody in the network may announce anything, so lines without a valid id,
-/// name, address and port are left out.
+/// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id, host, port and
+/// TLS; of its addresses IPv4 before IPv6, loopback and link-local ones last.  An id that two
+/// sensors announce is listed twice; so is a sensor without TLS at two addresses, because one of
+/// the addresses may be a stranger's.  Anybody in the network may announce anything, so lines
+/// without a valid id, name, address and port are left out.
 [[nodiscard]] std::vector<FoundSensor> read_browsed(std::string_view text);
 
 /// Asks Avahi; takes a second or two.  Unsupported: avahi-browse is not installed; Unavailable: no

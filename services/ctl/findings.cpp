@@ -30,7 +30,7 @@ constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sens
 constexpr double kBytesPerMb = 1e6;
 constexpr double kNsPerMs = 1e6;
 
-/// `trust` is for https:// services; if it is none, client::authorities() is used.
+/// `trust` is for https:// services; without it, client::authorities() is used.
 Result<http::ClientResponse> ask(const std::string& base, const std::string& path,
                                  const std::string& token,
                                  const std::optional<tls::Trust>& trust = {}) {

@@ -30,7 +30,7 @@ struct ExaminedService {
   /// The address to reach it from this host: "http://127.0.0.1:8081/", or https:// with a name from
   /// its certificate.
   [[nodiscard]] std::string url() const;
-  /// The file of its certificate; empty: it uses no TLS.
+  /// The file of the service's certificate; empty: the service uses no TLS.
   [[nodiscard]] std::string certificate() const;
   /// A token that may read; empty when there is none.
   [[nodiscard]] std::string read_token() const;
@@ -45,9 +45,10 @@ struct ExaminedService {
 [[nodiscard]] Finding health_finding(const ExaminedService& service);
 /// Whether the service accepts a token of its own configuration.
 [[nodiscard]] Finding token_finding(const ExaminedService& service);
-/// Whether its certificate, if it has one, can be read and is valid for at least another month.
+/// Whether the service's certificate, if it has one, can be read and is valid for at least another
+/// month.
 [[nodiscard]] Findings certificate_findings(const ExaminedService& service);
-/// Whether its folders exist and have room.
+/// Whether the service's folders exist and have room.
 [[nodiscard]] Findings disk_findings(const ExaminedService& service);
 /// One per sensor of a fusion server: reachable, token accepted, same version, clock within 20 ms.
 [[nodiscard]] Findings sensor_findings(const ExaminedService& service);

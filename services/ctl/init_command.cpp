@@ -203,7 +203,8 @@ Result<void> add_discovered(std::vector<PolledWish>& sensors) {
   for (const FoundSensor& sensor : *found) {
     const auto of_this = [&](const auto& each) { return each.id == sensor.id; };
     if (std::ranges::any_of(named, of_this)) continue;
-    // One of them may be an impostor that wants the token, so a person has to choose.
+    // If two services announce one id, either may be an impostor that wants the token, so a person
+    // has to choose.
     if (std::ranges::count_if(*found, of_this) > 1)
       return fail(ErrorCode::Conflict, sensor.id,
                   "is announced more than once (chorus discover): name it with --sensor");

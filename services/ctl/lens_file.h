@@ -12,7 +12,7 @@ namespace chorus::ctl {
 /// other settings have their defaults.
 [[nodiscard]] Result<camera::CameraSettings> read_lens_file(const std::string& file);
 
-/// The same as a lens, for pictures of the size that the file states.
+/// Reads such a file as a Lens, for pictures of the size that it states.
 [[nodiscard]] Result<camera::Lens> lens_in(const std::string& file);
 
 /// InvalidArgument unless there are no lenses, one for all inputs, or one for each.

@@ -24,8 +24,8 @@ class RecordedCell {
   /// Reads from the beginning.
   [[nodiscard]] pipeline::OfflineInput input();
 
-  /// Known once the newest input has been read to its end: what was left out, one line each, and
-  /// the number of sensors.
+  /// What is known once the newest input has been read to its end: the parts that were left out,
+  /// one line each, and the number of sensors.
   struct Told {
     std::vector<std::string> notes;
     std::size_t sensors = 0;

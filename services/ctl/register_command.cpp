@@ -60,7 +60,7 @@ Result<std::string> start(const ServiceClient& server, const RegisterArguments& 
   if (started.error().code != ErrorCode::Conflict) return pass(started);
   const auto registration = server.get("/registration");
   if (!registration) return pass(registration);
-  // Refused for another reason, or the session has just ended.
+  // The request was refused for another reason, or the session has just ended.
   if (idle(*registration)) return pass(started);
   std::cerr << "a session is running already; this is its progress "
                "(chorus register --cancel ends it)\n";

@@ -56,7 +56,8 @@ std::string worst_loop_shown(const nlohmann::json& registration) {
   return text;
 }
 
-/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock that the walk told apart.
+/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock whose offset was found from the
+/// walk.
 std::string clocks_shown(const nlohmann::json& registration) {
   std::vector<std::pair<std::string, double>> clocks;
   std::map<std::string, double> sigmas;

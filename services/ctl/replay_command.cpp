@@ -1,8 +1,8 @@
 // chorus replay: starts one chorus-sensor process for each recorded sensor, so that the same
 // programs run as with hardware.
 //
-// All of them start at the same instant, about a second ahead, so that the recordings of one set
-// stay in step.
+// All processes begin to play at the same instant, about a second after the start, so that the
+// recordings of one set stay synchronised.
 #include <algorithm>
 #include <iostream>
 #include <memory>

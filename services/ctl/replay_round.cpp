@@ -37,7 +37,7 @@ std::string noted(const record::SensorStay& stay, const char* key) {
   return note == stay.about.notes.end() ? std::string{} : note->second;
 }
 
-/// True when all were imported together, which shows in equal notes.
+/// True when all streams were imported together, which their equal notes show.
 bool one_import(const Stays& stays) {
   return std::ranges::all_of(stays, [&](const auto& stay) {
     return std::ranges::all_of(

@@ -23,7 +23,7 @@ struct StatusArguments {
   bool json = false;
 };
 
-/// What tells how far the sensor's clock is off: the host's answers, a walk, or nothing.
+/// Where the sensor's clock offset is known from: the host's answers, a walk, or nothing.
 std::string clock_source(const nlohmann::json& sensor) {
   if (sensor.contains("clockFromWalkMilliseconds")) return "walk";
   return sensor.contains("clockOffsetMilliseconds") ? "host" : "-";

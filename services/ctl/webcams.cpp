@@ -94,7 +94,8 @@ void add_modes(const Device& device, std::uint32_t format, std::vector<WebcamMod
   }
 }
 
-/// None when it is not a camera: an encoder, or a webcam's second device, which carries metadata.
+/// None when the device is not a camera but, for example, an encoder, or a webcam's second device,
+/// which carries metadata.
 std::optional<Webcam> webcam_at(const std::string& path) {
   const Device device(path);
   if (!device.opened()) {

@@ -27,7 +27,7 @@ constexpr double kWaveRate = 1.2;    // [Hz]
 constexpr double kWaveReach = 0.15;  // [m]
 constexpr std::uint64_t kPurpose = 761;
 
-/// The start of the walk that follows the beginning.
+/// The place and heading at which the walk starts, after the opening.
 struct Start {
   Eigen::Vector2d place;
   double heading = 0.0;  ///< [rad]
@@ -40,7 +40,8 @@ Start start_of(const Walker& walker) {
   return {point.place, point.heading};
 }
 
-/// The pose at some time before the end of the beginning.
+/// A pose during the opening (standing, waving, walking backwards or coming in), relative to where
+/// the walk will start.
 struct Pose {
   double ahead = 0.0;  ///< In front of the start, along its heading [m]
   double phase = 0.0;  ///< Phase of the gait; runs backwards like the feet.
@@ -88,7 +89,7 @@ Skeleton<WorldSpace> body_in(const Pose& pose, const Start& start, const Gait& g
   return body;
 }
 
-/// Distance from the start at which a straight way in begins [m].
+/// Distance from `start` at which the straight path of a person who comes in begins [m].
 double way_in(const Start& start) {
   const double along = start.place.dot(start.forward());
   const double aside = start.place.squaredNorm() - along * along;

@@ -1,8 +1,8 @@
 // A person whom the tracker first sees standing, waving, walking backwards or coming in: nothing
 // learned about them earlier helps to distinguish front from rear.
 //
-// The beginning lasts three to six seconds and ends standing; then they walk at random like
-// everybody else.  World: the workspace centre is the origin, metres.
+// This opening lasts three to six seconds, and at its end the person stands; then they walk at
+// random like everybody else.  World: the workspace centre is the origin, metres.
 #pragma once
 
 #include <array>

@@ -250,8 +250,9 @@ std::vector<Eigen::Isometry3d> places_behind_screen() {
 }
 
 synthetic::Occluder screen() {
-  // The box stands a third of the way to the sensors: its shadow at the crossing is half as wide
-  // again as the box, less half the distance between the sensors.
+  // The box stands a third of the way from the crossing to the sensors.  So the part of the
+  // crossing that neither sensor sees is 1.5 times as wide as the box, less half the distance
+  // between the sensors.
   synthetic::Occluder box;
   box.half = {0.05, 1.25, 0.3};
   box.world_from_box.translation() = Eigen::Vector3d(-1.0, box.half.y(), 0.0);

@@ -1,8 +1,8 @@
-// How well the answered people keep their identities, compared with the truth.
+// How well the people that a method reports keep their identities, compared with the truth.
 //
-// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach; the other
-// people get the other answers one-to-one, with the least total distance.  Horizontal distances
-// [m].
+// CLEAR-MOT matching: a true person keeps the reported person it was matched with as long as that
+// one is within reach; all others are matched one-to-one, with the least total distance.
+// Horizontal distances [m].
 #pragma once
 
 #include <cstdint>
@@ -43,9 +43,10 @@ struct Identity {
   /// 2 IDTP / (people's instants + reported bodies), with ids assigned once for all instants.
   double idf1 = 0.0;
   double minutes = 0.0;
-  /// Mean time from a person's appearance until they are reported, over those who are [s].
+  /// Mean time from a person's appearance until they are first reported [s]; people who never are
+  /// do not count.
   double first_answer = 0.0;
-  /// How often an id, after one person, followed another for a second or longer.
+  /// How often an id that had followed one person followed another one for a second or longer.
   std::size_t inherited = 0;
   std::size_t spare_ids = 0;  ///< Additional ids of people who already had one.
 };

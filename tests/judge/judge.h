@@ -16,8 +16,8 @@
 namespace chorus::bench {
 
 struct Setting {
-  /// A profile of sensor_choice.h, where the seed draws every parameter from its interval; or
-  /// "gauss": white noise only, exact clocks.
+  /// A profile of sensor_choice.h, each parameter of which is drawn from its interval by the seed;
+  /// or "gauss": white noise only, exact clocks.
   std::string profile = "A";
   std::uint64_t seed = 1;
   std::vector<synthetic::Stress> stress = {};  ///< Not for "gauss".

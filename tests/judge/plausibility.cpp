@@ -64,7 +64,8 @@ void add_stances(const Answers& answers, JointId ankle, Mean& squares) {
   for (std::size_t at = 1; at <= answers.size(); ++at) {
     if (at < answers.size() && stands(answers, at, ankle)) {
       const Joint& joint = answers[at].body[ankle];
-      // The true ankle may move slowly, so places are relative to it.
+      // The true ankle may move slowly, so the reported places are taken relative to the true
+      // ankle.
       const Eigen::Vector3d off = joint.position - answers[at].exact[ankle].position;
       if (joint.seen()) places.emplace_back(off.x(), off.z());
       continue;

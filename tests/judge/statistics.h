@@ -8,8 +8,8 @@
 
 namespace chorus::bench {
 
-/// Percentile by linear interpolation, `share` in [0, 1]; NaN for no values.  Values that are not a
-/// number count as infinitely bad: a failed run must not improve a result.
+/// Percentile by linear interpolation, `share` in [0, 1]; NaN for no values.  NaN counts as
+/// infinitely bad, because a failed run must not improve a result.
 [[nodiscard]] inline double percentile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   for (double& value : values) {

@@ -1,5 +1,5 @@
 // Ports for processes of tests and benchmarks, below those that the kernel uses for outgoing
-// connections; tests in Python (ports.py) take those after them.
+// connections; tests in Python (ports.py) take the ports after these.
 #pragma once
 
 #include <arpa/inet.h>

@@ -200,10 +200,10 @@ const SurfacePoint* nearest_seen(const Evidence& evidence, const Eigen::Vector3d
   return found;
 }
 
-/// A node must lie behind the surface that its pixel shows.  If the sensor sees a little beyond a
-/// node of the trunk, the node is moved back along the ray (not so for limbs, which are thinner
-/// than the error of a pixel).  If it sees far beyond a limb, the limb is moved to the person's
-/// nearest point.
+/// A node must lie behind the surface that its pixel shows.  If that surface is a little behind a
+/// node of the trunk, the node is moved back along the ray (nodes of limbs are not, because limbs
+/// are thinner than the error of a pixel).  If the surface is far behind a node of a limb, the node
+/// is moved to the nearest point of the person.
 void leave_free_space(NormalEquations& equations, const Nodes& nodes, const Evidence& evidence) {
   for (int i = 0; i < kNodeCount; ++i) {
     const Eigen::Vector3d node = nodes.col(i);

@@ -45,7 +45,7 @@ struct DepthProfile {
 [[nodiscard]] DepthProfile with_source(DepthProfile profile, kinect::Source source, double factor);
 
 /// First 12 hex digits of the SHA-256 of the code of this folder, without comments and white space
-/// (../code_hash.cmake): errors emerge from all of it.
+/// (../code_hash.cmake): all of that code affects the errors.
 [[nodiscard]] std::string frozen_depth_hash();
 
 }  // namespace chorus::synthetic::depth

@@ -122,7 +122,7 @@ struct Stance {
 /// The 25 joints of Kinect v2, all tracked; orientations are not given.
 [[nodiscard]] Skeleton<SensorSpace> joints_of(const Nodes& nodes, double height);
 
-/// The node whose support a joint's state comes from.
+/// The node whose support determines whether the joint is tracked or inferred.
 [[nodiscard]] Node node_of(JointId joint);
 
 }  // namespace chorus::synthetic::depth

@@ -17,10 +17,11 @@ class NormalEquations {
  public:
   NormalEquations();
 
-  /// Adds the wish that the combination of nodes moves by `way` along the unit vector `direction`.
+  /// Adds an equation by which the combination of nodes should move by `way` along the unit vector
+  /// `direction`.
   void move_along(std::span<const Term> combination, const Eigen::Vector3d& direction, double way,
                   double weight);
-  /// Adds the wish that the combination of nodes moves by `way`.
+  /// Adds the equations by which the combination of nodes should move by `way`.
   void move(std::span<const Term> combination, const Eigen::Vector3d& way, double weight);
 
   /// The step of every node; zero if the equations have no finite solution.

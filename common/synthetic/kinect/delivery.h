@@ -15,8 +15,8 @@ namespace chorus::synthetic::kinect {
 [[nodiscard]] HostClock draw_clock(const ClockError& clock, Timestamp origin,
                                    const ErrorKeys& keys);
 
-/// The true time at which frame `number` is exposed; frames are numbered in periods since the
-/// epoch.
+/// The true time at which frame `number` is exposed; a frame's number is that of its period since
+/// the epoch.
 [[nodiscard]] Timestamp exposure(const Delivery& delivery, std::uint64_t number,
                                  const ErrorKeys& keys);
 /// The first frame exposed at or after the instant.

@@ -1,9 +1,9 @@
 // The true mean square error of each simulated joint, given the body's pose, which joints are
 // hidden and which are called inferred, but not the errors that were actually drawn.
 //
-// This is what a perfect error model would state about one sensor's view.  No real sensor knows it
-// and no algorithm may use it; it serves to compute a bound on what fusion can achieve.  For a
-// fitted body (fitted_body.h) it is correct to first order.
+// A perfect error model would state this error about one sensor's view.  No real sensor knows it
+// and no algorithm may use it; the error serves to compute a bound on what fusion can achieve.  For
+// a fitted body (fitted_body.h) it is correct to first order.
 #pragma once
 
 #include "common/synthetic/kinect/joint_bias.h"

@@ -13,8 +13,8 @@ enum class Source { Visibility, Yaw, Bias, Coloured, White, Gross, Delivery, Clo
 /// up to 3).  What is multiplied:
 ///
 /// - Visibility: the error of hidden joints, and how often visible joints are called inferred.
-///   (Which joints are hidden is geometry, and does not change; nor does the share of them that is
-///   called inferred.)
+///   (Which joints are hidden is geometry, and does not change, except that at 0 none is; nor does
+///   the share of hidden joints that is called inferred.)
 /// - Yaw: the slopes beyond the reliable angle are raised to this power, so that the body shown
 ///   turns less and less but never backwards.  Above 1 left and right are exchanged at a smaller
 ///   angle, closer to the reliable one; below 1 at a larger one, closer to half a turn.
@@ -25,7 +25,8 @@ enum class Source { Visibility, Yaw, Bias, Coloured, White, Gross, Delivery, Clo
 ///   Latency is not an error and does not change.
 /// - Clock: offset, drift, and the size and probability of a step.
 ///
-/// Probabilities and shares are limited to 1.
+/// Probabilities and shares are limited to 1, that of lost frames to 0.9, so that some still
+/// arrive.
 [[nodiscard]] Profile with_source(Profile profile, Source source, double factor);
 
 }  // namespace chorus::synthetic::kinect

@@ -21,7 +21,7 @@ struct FitState {
 using Proportions = std::array<double, kBones.size()>;
 [[nodiscard]] Proportions proportions_of(const BodyFit& fit, const ErrorKeys& keys);
 
-/// Goes on by one frame; the scale changes faster while the trunk moves.
+/// Advances by one frame; the scale changes faster while the trunk moves.
 void advance(FitState& state, const Stand& stand, const Moment& moment, const Profile& profile,
              const ErrorKeys& keys);
 

@@ -158,7 +158,7 @@ Eigen::Vector3d own_unit(std::size_t i, const ColouredState& state, const Colour
          std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i].value();
 }
 
-/// The same including the part that follows the joint's leader.
+/// own_unit() together with the part that follows the joint's leader.
 Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
                               const ColouredError& coloured) {
   const auto led_by = leader(static_cast<JointId>(i));
@@ -167,7 +167,7 @@ Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
          std::sqrt(1.0 - coloured.follow_share) * own_unit(i, state, coloured);
 }
 
-/// A unit error stretched along the ray to the joint.
+/// An error of unit variance, stretched along the ray to the joint.
 Eigen::Vector3d stretched(const Eigen::Vector3d& unit, const Eigen::Vector3d& ray, double factor) {
   return unit + (factor - 1.0) * ray.dot(unit) * ray;
 }

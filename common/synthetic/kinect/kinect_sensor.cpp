@@ -30,7 +30,7 @@ void limit(Skeleton<SensorSpace>& body, const ViewLimits& view) {
   }
 }
 
-/// How far each joint is hidden, by the labels that the SDK gives.
+/// How far each joint is hidden, indexed by the labels that the SDK gives to the joints.
 std::array<double, kJointCount> as_labelled(const std::array<double, kJointCount>& hidden,
                                             const FlipState& flip) {
   std::array<double, kJointCount> labelled{};

@@ -73,7 +73,7 @@ struct ColouredError {
   double tail_time = 0, most_tail = 0;  ///< How long a bad period lasts [s]; limit of its factor.
 };
 
-/// A tracker that fits a body of fixed proportions.
+/// The errors of a sensor's SDK that fits a body of fixed proportions.
 struct BodyFit {
   double bones = 0;        ///< 1: all bones have one common scale; 0: joints err independently.
   double scale = 0;        ///< Standard deviation of the scale.

@@ -31,7 +31,8 @@ struct SharedKeys {
 
 class SharedError {
  public:
-  /// Goes on to the next frame.  A pure function of its arguments; the state only saves time.
+  /// Prepares of() for this view.  Afterwards the results of of() depend only on these arguments
+  /// and its own; what is kept between calls is a cache.
   void look(const View& view, const ColouredError& coloured, const SharedKeys& keys);
   /// The error of one joint in sensor space, of unit variance per axis.  Joints of the core have a
   /// part of it in common.

@@ -35,8 +35,8 @@ struct Obstacles {
                                                             const Obstacles& obstacles,
                                                             const Visibility& visibility);
 
-/// Goes on by one frame.  The SDK notices only after a while that a joint is hidden, so that it
-/// goes on tracking a leg that is hidden for a moment.
+/// Advances by one frame.  The SDK notices only after a while that a joint is hidden, so it
+/// continues to track a leg that is hidden for a moment.
 void notice(std::array<double, kJointCount>& hidden, const std::array<double, kJointCount>& visible,
             double dt, const Visibility& visibility);
 

@@ -24,13 +24,14 @@ struct FlipState {
 /// the reliable angle.  Odd and continuous; for a person in the front state.
 [[nodiscard]] double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour);
 
-/// The angles of one sensor: the profile's with a deviation of up to flip_own, and of up to
-/// flip_back_own for the way back.
+/// One sensor's own angles of exchange: flip_to_rear and flip_to_front of the profile, both moved
+/// by the same deviation of up to flip_own, and flip_to_front by a further one of up to
+/// flip_back_own; it never exceeds flip_to_rear.
 [[nodiscard]] YawBehaviour own_behaviour(YawBehaviour behaviour, std::uint64_t seed,
                                          std::uint64_t sensor);
 
-/// Goes on by one frame: decides the state from the true facing angle (0: directly facing the
-/// sensor).
+/// Advances by one frame: decides between the front and the rear state from the true facing angle
+/// (0: directly facing the sensor).
 void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour);
 
 /// The error of the yaw that the SDK shows for the shoulders, not counting exchanged labels [rad,

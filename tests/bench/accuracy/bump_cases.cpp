@@ -28,7 +28,7 @@ constexpr double kTurn = deg(2);
 constexpr double kEight = 8.0 * 3600.0;  // [s]
 constexpr const char* kProfiles[] = {"A", "B", "D"};
 
-/// What happens to one sensor, in a room with this many.
+/// What happens to one sensor, in a room with `sensors` sensors.
 struct BumpCase {
   const char* name;
   std::size_t sensors;
@@ -67,7 +67,7 @@ double detected_after(const RoomLog& log, const Push& push) {
   return kNoRatio;
 }
 
-/// Number of alarms before the push, and of those after it that name another sensor.
+/// Number of false alarms: all before the push, and after it those that name another sensor.
 std::size_t wrong_alarms(const RoomLog& log, const Push& push) {
   return static_cast<std::size_t>(
       std::ranges::count_if(log.alarms, [&](const RoomLog::Alarm& alarm) {

@@ -196,7 +196,7 @@ void Room::score(const Snapshot& snapshot) {
   errors_ = std::move(errors);
 }
 
-/// Does the jobs that are due at once; in a server the worker does them.
+/// Carries out solve jobs as soon as they are due; in a server the worker does this.
 void Room::work(Timestamp now) {
   const auto job = core_->due_job(now);
   if (!job) return;

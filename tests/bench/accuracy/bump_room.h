@@ -39,8 +39,8 @@ struct RoomLog {
   std::vector<Alarm> alarms;                  ///< One entry for each alarm that is raised.
   std::optional<Duration> placed_again = {};  ///< When the pushed sensor was registered again.
   double place_again_error = 0.0;             ///< Error of its pose at the end [m].
-  /// Largest step of a person's trunk from one instant to the next beyond the true one [m], before
-  /// the push and from then on.
+  /// By how much the step of a person's trunk from one instant to the next exceeds the true step,
+  /// at most [m]: before the push, and from then on.
   double step_before = 0.0;
   double step_after = 0.0;
   double body_error_before = 0.0;  ///< Mean error of the trunk, 10 s before the push [m].

@@ -198,7 +198,7 @@ void show(Report& report, const std::string& name, const std::vector<Outcome>& o
          each(outcomes, [](const Outcome& o) { return static_cast<double>(o.ids); }), "");
 }
 
-/// Statistics of real logs that no parameter of profile C was fitted to.
+/// Compares with statistics of real logs; no parameter of profile C was fitted to these.
 void show_log(Report& report, const std::string& name, const std::vector<Outcome>& outcomes) {
   using enum JointId;
   const auto bone = [&](JointId child) {

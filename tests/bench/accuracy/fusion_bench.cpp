@@ -45,7 +45,7 @@ Draws draw_all(const Report& report, const FusionCase& each,
   });
 }
 
-/// True if the method has this figure; not every method has all of them.
+/// True if the method has this figure; not every method has every figure.
 bool has_any(const Draws& draws, std::size_t method, std::size_t metric) {
   return std::ranges::any_of(draws, [&](const std::vector<Scored>& draw) {
     return !std::isnan(draw[method].values[metric]);
@@ -60,7 +60,7 @@ Comparison compare(const std::string& name, const Draws& draws, std::size_t metr
     for (std::size_t draw = 0; draw < draws.size(); ++draw) {
       const Scored& scored = draws[draw][method];
       const double value = scored.values[metric];
-      // NaN here means that there were no such joints, which is not a failure.
+      // NaN here means that there were no joints of this kind, which is not a failure.
       if (shown.kind == Kind::Stated && std::isnan(value)) continue;
       comparison.add(scored.method, draw, value);
     }
@@ -68,7 +68,8 @@ Comparison compare(const std::string& name, const Draws& draws, std::size_t metr
   return comparison;
 }
 
-/// Figures of covariances, where lower is not better: every method that states one.
+/// Reports the figures of stated covariances, of which lower is not better, for every method that
+/// states covariances.
 void report_stated(Report& report, const std::string& name, const Draws& draws,
                    std::size_t metric) {
   const Comparison found = compare(name, draws, metric);
@@ -81,7 +82,7 @@ void report_stated(Report& report, const std::string& name, const Draws& draws,
   }
 }
 
-/// Errors over the joints that every method reports.
+/// Reports errors over the joints that every method reports.
 void report_common(Report& report, const std::string& name, const Draws& draws) {
   Comparison comparison(name, "mpjpe_common_mm", "mm");
   for (std::size_t draw = 0; draw < draws.size(); ++draw) {
@@ -92,7 +93,7 @@ void report_common(Report& report, const std::string& name, const Draws& draws) 
   comparison.report(report);
 }
 
-/// One row for each way to begin.
+/// Reports one row for each way in which the person begins.
 void report_cold_starts(Report& report, const std::string& name, const Draws& draws) {
   for (std::size_t kind = 0; kind < kColdStarts.size(); ++kind) {
     Draws own;
@@ -136,7 +137,8 @@ Contender without(const char* part, void (*leave_out)(fusion::FusionConfig&)) {
   return ours(config, std::string("without-") + part);
 }
 
-/// What each part of the body filter contributes: `ours` has all, every other row leaves one out.
+/// What each part of the body filter, and the consensus about sides, contributes: `ours` has all,
+/// every other row leaves one out.
 void ablate(Report& report) {
   using fusion::FusionConfig;
   FusionConfig whole;

@@ -18,7 +18,8 @@ constexpr Duration kLength = std::chrono::seconds(30);
 constexpr Duration kRenderedLength = std::chrono::seconds(10);  // profile C renders images
 constexpr Duration kColdLength = std::chrono::seconds(12);
 
-/// A ring of six and one person: walking, standing, turning, at work, or with a cold start.
+/// The scenes with a ring of six sensors and one person: walking, standing, turning, at work, and
+/// cold starts.
 std::vector<FusionCase> scenes_of(const std::string& profile) {
   const std::string name = "workshop6-" + profile;
   FusionCase cold{name + "-cold", contest_of(profile, 6, PathKind::Random), true};

@@ -28,7 +28,8 @@ struct FusionCase {
 /// Walking, standing, turning, at work, cold starts, on every profile; few and many sensors.
 [[nodiscard]] std::vector<FusionCase> main_cases();
 
-/// Various yaws at which left and right are swapped; everything else as in profile A.
+/// Cases that vary the yaws at which left and right are swapped; everything else is as in profile
+/// A.
 [[nodiscard]] std::vector<FusionCase> flip_cases();
 
 /// Makes the person begin in the way that the draw's number selects.

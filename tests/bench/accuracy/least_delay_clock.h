@@ -11,7 +11,7 @@ namespace chorus::bench {
 class LeastDelayClock {
  public:
   void add(const ClockExchange& exchange);
-  /// What is added to their stamps.
+  /// What is added to the stamps of the other host.
   [[nodiscard]] Duration correction(Timestamp now) const;
 
  private:

@@ -58,8 +58,8 @@ double no_switch_percent(const Draws& draws, const std::string& method) {
   return kPercent * static_cast<double>(faultless) / static_cast<double>(draws.size());
 }
 
-/// Ours unchanged, and variants that leave one part out.  The parts that cannot be switched off
-/// (prediction, one-to-one assignment) are those that nearest-neighbour lacks.
+/// Ours unchanged, and variants that leave one part out.  Prediction and one-to-one assignment
+/// cannot be switched off; nearest-neighbour, which lacks them, shows what they contribute.
 std::vector<Association> ablations() {
   const associate::AssociationConfig whole;
   std::vector<Association> all{{kOurs, whole}};
@@ -120,7 +120,7 @@ void report_figure(Report& report, const std::string& name, const Draws& draws,
   if (figure.better == Better::Higher) comparison.report_wins(report);
 }
 
-/// Reports the mean over the draws, which still differs where the median is zero.
+/// Reports the mean over the draws, in which methods still differ where their medians are zero.
 void report_mean_ghosts(Report& report, const std::string& name, const Draws& draws) {
   double sum = 0.0;
   for (const Identities& found : draws)
@@ -191,7 +191,7 @@ constexpr std::array kParts{
     Part{"yaw", [](Profile& p, double f) { p = with_source(std::move(p), Yaw, f); }}};
 
 /// Varies one source after the other in the scene that separates methods best; the unchanged
-/// profile is the same for all sources and is measured once.
+/// profile is common to all sources and is measured once.
 void sweep(Report& report) {
   PersonsCase usual = case_named("crossing-2-hidden");
   usual.length = kSweepLength;

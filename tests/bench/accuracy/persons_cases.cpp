@@ -147,7 +147,7 @@ std::vector<Contestant> contestants_in(const Workshop& workshop,
   return all;
 }
 
-/// The roll of an instant: everybody's true position, without a method's output yet.
+/// The roll of an instant with everybody's true position; a method's output is added later.
 Roll roll_at(const Workshop& workshop, Timestamp instant) {
   Roll roll{instant, {}, {}};
   const SensorId& master = workshop.tracks.front().sensor;
@@ -227,7 +227,7 @@ Identities identities_in(const PersonsCase& each, std::uint64_t seed,
   for (const Contestant& contestant : contestants) {
     const Identity found = identity_of(contestant.rolls);
     const auto [known, fresh] = identities.emplace(contestant.name, found);
-    // Every sensor is a contestant of the same name: the best one is kept.
+    // Each sensor's ids are a contestant, all of one name: only the best one is kept.
     if (!fresh && found.idf1 > known->second.idf1) known->second = found;
   }
   return identities;

@@ -39,13 +39,15 @@ struct Association {
 /// The scores of each method, by its name.
 using Identities = std::map<std::string, Identity>;
 
-/// One draw: each of `ours`, and in addition `nearest-neighbour` (greedy, without prediction) and
-/// `best-sensor-ids` (the ids of one sensor as they are, the best sensor chosen by the truth).
+/// The scores in one draw of each of `ours`, and in addition of `nearest-neighbour` (greedy,
+/// without prediction) and `best-sensor-ids` (the ids of one sensor as they are; the truth decides
+/// which sensor is best).
 [[nodiscard]] Identities identities_in(const PersonsCase& each, std::uint64_t seed,
                                        const std::vector<Association>& ours);
 
-/// The product's whole perception: fraction of the instants at which a person's views together fit
-/// better with left and right swapped; people who are not reported are left out.
+/// Runs the product's whole perception; returns the fraction of the instants at which a person's
+/// views together fit better with left and right swapped.  People who are not reported are left
+/// out.
 [[nodiscard]] double sides_wrong_in(const PersonsCase& each, std::uint64_t seed);
 
 }  // namespace chorus::bench

@@ -27,7 +27,8 @@ using importers::Lateral;
 
 constexpr const char* kFolder = "tests/data/pose2sim_mediapipe";  // run from the repository root
 constexpr double kRateHz = 60.0;                                  // of the recording
-// Errors measured outside this project: of the plain mean of the four cameras, and of the best one.
+// Errors measured outside this project: of the plain mean of the four cameras, and of the best
+// camera.
 constexpr double kPlainMeanMm = 104;
 constexpr double kBestCameraMm = 140;
 
@@ -146,7 +147,7 @@ pipeline::OfflineConfig config_for(const Case& each) {
   // Views of one person differ by up to half a metre in depth; there is only one person.
   config.pipeline.association.gate = 1.5;
   config.pipeline.association.cluster = 1.5;
-  // As in tests/data/pose2sim_mediapipe/fusion.json, which gives the reason.
+  // This setting is also in tests/data/pose2sim_mediapipe/fusion.json, which gives the reason.
   config.registration.joints = registration::JointChoice::All;
   config.registration.along_ratio = 8.0;
   config.registration.use_floor = false;
@@ -210,7 +211,7 @@ struct Run {
   std::optional<Registration> extrinsics;  ///< None: register from the person.
 };
 
-/// Runs all methods with one kind of extrinsics; returns the last one's error.
+/// Runs all methods with one kind of extrinsics; returns the error of the last method.
 Result<double> add_methods(Report& report, const Run& run, const ImportedSet& set, double mean_mm) {
   const Registration published = published_registration(set);
   double last = std::numeric_limits<double>::quiet_NaN();

@@ -1,7 +1,8 @@
 // chorus-bench recordings: real Kinect recordings that may not be distributed with the project,
 // read from ../shared/data (or $CHORUS_SHARED/data); skipped, with a note, where that is absent.
 //
-// The posture weights were learned from two of them; nothing else is tuned on any.
+// The posture weights were learned from two of these recordings; nothing else is tuned on any of
+// them.
 #include <array>
 #include <cstdlib>
 

@@ -30,7 +30,8 @@ double rms(const std::vector<double>& errors) {
   return errors.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
-/// An optical target sits on the skin of a limb: it is compared with the midpoint of two joints.
+/// An optical target, which sits on the skin of a limb.  It is compared with the midpoint of the
+/// limb's two joints.
 struct Target {
   const char* name;
   JointId from;

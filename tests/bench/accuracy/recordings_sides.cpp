@@ -1,7 +1,8 @@
 // Left and right in single-sensor recordings after the whole pipeline.
 //
-// In most collections people face the sensor: its labels are the truth.  In NW-UCLA they walk
-// about, and the direction of walking is the truth; seen from behind, their labels are swapped.
+// In most collections people face the sensor, so the sensor's labels are taken for the truth.  In
+// NW-UCLA they walk about, and the direction of walking is the truth; seen from behind, their
+// labels are swapped.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -37,7 +37,7 @@ std::vector<std::vector<MethodScores>> measure(Report& report, const Registratio
   return scores;
 }
 
-/// A ceiling that only a broken estimator exceeds; how good the result is stands in the table.
+/// Checks a ceiling that only a broken estimator exceeds; the table shows how good the result is.
 void watch(Report& report, const RegistrationCase& each, const std::vector<Score>& ours) {
   constexpr double kCeiling = 60.0;  // [mm]
   std::vector<double> position;
@@ -47,8 +47,8 @@ void watch(Report& report, const RegistrationCase& each, const std::vector<Score
                    median(position) < kCeiling);
 }
 
-/// The claim for white noise, which is older than the sensor model; kept so that it can be
-/// repeated.
+/// Measures the claim for white noise, which is older than the sensor model and is kept so that it
+/// can be repeated.
 void measure_gauss(Report& report) {
   Setting setting;
   setting.profile = synthetic::kGaussProfile;
@@ -65,7 +65,8 @@ void measure_gauss(Report& report) {
                    holds);
 }
 
-/// One row per baseline: a ring of three, 10 s, with one source of error scaled up or down.
+/// Reports one row per baseline for a ring of three sensors and a walk of 10 s, with one source of
+/// error scaled up or down.
 void measure_stress(Report& report, const std::string& name,
                     const std::vector<synthetic::Stress>& stress) {
   RegistrationCase each{name, {}, {kStressWalk}, timed_baselines()};
@@ -123,7 +124,8 @@ void score_offset(ShortWalk& walk, const Workshop& workshop, const Registration&
       kMillisecond * std::hypot(seconds(first->second.sigma), seconds(second->second.sigma));
 }
 
-/// Any walk, any angle, 10 s, hosts' clocks off by up to half a second, either profile.
+/// A walk of 10 s: its kind and the angle between the two sensors are drawn, clocks are off by up
+/// to half a second, and the profiles A and B alternate.
 ShortWalk short_walk(std::uint64_t seed, bool synced) {
   using synthetic::PathKind;
   constexpr PathKind kWalks[] = {PathKind::Random, PathKind::Circle, PathKind::Line};
@@ -149,7 +151,7 @@ double percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? kNoRatio : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// How accurate the clock offsets were where the pair was accepted.
+/// Reports how accurate the clock offsets were where the pair was accepted.
 void report_offsets(Report& report, const std::string& name, const std::vector<ShortWalk>& walks) {
   constexpr double kP95 = 0.95;
   constexpr double kSigmas95 = 1.96;
@@ -193,7 +195,7 @@ void measure_short_walks(Report& report, const std::string& name, std::size_t co
                    percent(unmarked_refused, unmarked) <= kMaxRefused);
 }
 
-/// A thousand short walks, or fewer; 200 of them show nearly as much.
+/// Measures `count` short walks: a thousand, or fewer, because 200 show nearly as much.
 void measure_all_short_walks(Report& report, std::size_t count) {
   measure_short_walks(report, "walks-1000-synced", count, true);
   measure_short_walks(report, "walks-1000", count, false);
@@ -280,7 +282,7 @@ void measure_all_bystanders(Report& report, std::size_t count) {
       "else all the time.  honest-250: the same without.");
 }
 
-/// The case as it is asked for: that of its first walk.
+/// The name by which the case is asked for: with the length of its first walk.
 std::string full_name(const RegistrationCase& each) {
   return fmt::format(fmt::runtime(each.name), each.lengths.front());
 }

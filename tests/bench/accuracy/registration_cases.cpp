@@ -95,7 +95,7 @@ double percent_of_placed(const std::vector<Score>& draws, Count count) {
                      : 100.0 * static_cast<double>(counted) / static_cast<double>(placed);
 }
 
-/// The errors on the floor that our method states, and whether they are right.
+/// Reports the errors on the floor that our method states, and whether they are right.
 void report_stated(Report& report, const std::string& name, const std::vector<Score>& draws) {
   std::vector<double> stated;
   std::vector<double> off;
@@ -133,7 +133,7 @@ std::vector<RegistrationCase> pairs(const std::string& profile) {
   return cases;
 }
 
-/// Other walks, an occluder, clocks that are off.
+/// Rings with other walks, an occluder, or clocks that are off.
 std::vector<RegistrationCase> disturbed_rings(const std::string& profile) {
   std::vector<RegistrationCase> cases;
   for (const auto& [name, path] :

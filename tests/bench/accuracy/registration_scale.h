@@ -7,7 +7,8 @@ namespace chorus::bench {
 
 inline constexpr const char* kScale = "scale-64";
 
-/// 64 sensors around one walk of 30 s, solved as the server does: processor time, accuracy.
+/// Reports processor time and accuracy for 64 sensors around one walk of 30 s, solved as the server
+/// does.
 void measure_scale(Report& report);
 
 }  // namespace chorus::bench

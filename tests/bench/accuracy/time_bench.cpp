@@ -79,7 +79,8 @@ constexpr std::array kClockSources{
     ClockSource{"offset", [](ClockCase& c, double f) { c.offset *= f; }},
     ClockSource{"drift", [](ClockCase& c, double f) { c.drift *= f; }}};
 
-/// The wired office network, whose requests take half a millisecond longer than the answers.
+/// Varies each source in the wired office network, where requests take half a millisecond longer
+/// than answers.
 void sweep(Report& report) {
   const auto methods = clock_methods();
   for (const ClockSource& source : kClockSources) {

@@ -15,7 +15,7 @@ inline constexpr const char* kFourViews = "tests/data/pose2sim_mediapipe";
 inline constexpr const char* kFourVideos = "tests/data/pose2sim_videos/four";
 inline constexpr double kTruthHz = 60.0;
 
-/// The runner that comes with Chorus.
+/// The command line of the runner that comes with Chorus.
 [[nodiscard]] std::vector<std::string> runner_of(const std::string& model);
 
 [[nodiscard]] Registration published_places(const importers::ImportedSet& set);

@@ -6,7 +6,7 @@
 
 namespace chorus::bench {
 
-/// A folder for the answers of runners; gone with the object.
+/// A folder for the answers of runners; it is removed together with this object.
 class Answers {
  public:
   Answers();
@@ -14,8 +14,8 @@ class Answers {
   Answers(const Answers&) = delete;
   Answers& operator=(const Answers&) = delete;
 
-  /// The same runner, which keeps its answers to the pictures of this camera and gives them at once
-  /// when they come again (recalling_runner.mjs).
+  /// The runner that comes with Chorus, except that it stores its answers to the pictures of this
+  /// camera and gives a stored answer at once when a picture comes again (recalling_runner.mjs).
   [[nodiscard]] std::vector<std::string> runner_of(const std::string& model,
                                                    const std::string& camera) const;
 
@@ -31,7 +31,7 @@ class Answers {
 [[nodiscard]] Result<Agreement> fused(const std::vector<registration::WalkTrack>& tracks,
                                       const importers::ImportedSet& set);
 
-/// Measures how far away a camera places people whose shape is told.
+/// Measures how accurately one camera places people if their shape is given.
 [[nodiscard]] Result<void> placed_people(Report& report);
 
 }  // namespace chorus::bench

@@ -1,4 +1,5 @@
-// Lenses from simulated pictures of a board: chorus calibrate camera without its files.
+// Calibrates lenses from simulated pictures of a board, as `chorus calibrate camera` does, but
+// without files.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 using Json = nlohmann::json;
 
 constexpr double kTakeSeconds = 100.0 / kTruthHz;
-// Left out around the end of the take, where bodies jump to its beginning [s].
+// Time that is left out around the end of the take, where bodies jump to the take's beginning [s].
 constexpr double kJoin = 0.3;
 constexpr auto kPatience = std::chrono::seconds(120);
 constexpr auto kSettling = std::chrono::seconds(6);
@@ -33,7 +33,7 @@ struct Cell {
   std::uint16_t port = 0;
 };
 
-/// What a sensor is told of its runner.
+/// The runner that a sensor is configured to use.
 struct Looking {
   std::string model;
   const Answers* answers = nullptr;  ///< Null: the runner as shipped.

@@ -24,7 +24,7 @@ struct Told {
   Skeleton<SensorSpace> shape;
 };
 
-/// What a runner would tell of these landmarks.
+/// What a runner would report for these landmarks.
 Told told_by(const importers::DetectedLandmarks& detected, const Intrinsics& camera) {
   const Eigen::Matrix3d turn = importers::sensor_from_opencv();
   Landmarks rays = importers::landmark_rays(detected, camera);
@@ -76,7 +76,8 @@ void Depths::report(Report& report, const std::string& name) const {
   report.row(name, "along_nees", nees / std::max(1.0, static_cast<double>(off.size())), "1");
 }
 
-/// The camera's frames with points; of each image on its own, or with bones learned over images.
+/// The camera's frames, their rays turned into points.  `learned`: with bone lengths learned over
+/// all pictures; otherwise each picture is placed on its own.
 Result<std::vector<SensorFrame>> placed_frames(const record::FrameRecording& recording,
                                                bool learned) {
   const auto view =

@@ -92,8 +92,8 @@ Result<void> Cell::take_ports() {
   return {};
 }
 
-/// Connects server and sensor through two pumps that only forward, one at each end of the lossy
-/// path.
+/// Connects server and sensor through two pumps, one at each end of the lossy path; these pumps add
+/// no delay.
 Result<void> Cell::lead_through_path(int index) {
   std::uint16_t port = 0;
   Result<void> listens;

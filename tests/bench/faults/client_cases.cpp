@@ -124,7 +124,8 @@ struct Memory {
   double mb = 0.0;
 };
 
-/// Rise of the straight line fitted through the samples, from the first to the last [MB].
+/// By how much the straight line fitted to the samples rises from the first sample to the last
+/// [MB].
 double rise_of(const std::vector<Memory>& samples) {
   const auto count = static_cast<double>(samples.size());
   double time = 0.0;

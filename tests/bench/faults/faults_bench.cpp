@@ -1,5 +1,5 @@
-// Causes in a small tracker of real processes what goes wrong in a workshop: case after case, with
-// what must hold in each.
+// Causes in a small tracker of real processes what goes wrong in a workshop: case after case, and
+// checks what must hold in each.
 #include <algorithm>
 #include <chrono>
 #include <iostream>

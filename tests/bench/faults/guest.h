@@ -28,7 +28,7 @@ class Guest {
   struct Said {
     Timestamp captured;
     std::vector<BodyFrame> bodies = {};
-    /// More Turtle after the frame; if not empty, no other format is served.
+    /// Additional Turtle, sent after the frame; if it is not empty, only Turtle is served.
     std::string behind = {};
   };
   using Script = std::function<Said(Timestamp now)>;

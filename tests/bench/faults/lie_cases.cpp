@@ -108,8 +108,8 @@ Result<Lied> lie_to(Trial& trial, Liars& liars, double duration) {
   return out;
 }
 
-/// In at most 1 % of the frames there is a second person; the first one stays in its place and
-/// keeps its id.
+/// Checks that at most 1 % of the frames have a second person, and that the first person stays in
+/// place and keeps the id.
 Result<void> no_second_person(Trial& trial, const Lie& lie) {
   Liars liars(1, lie);
   const auto lied = lie_to(trial, liars, 6.0);

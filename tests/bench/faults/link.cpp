@@ -203,7 +203,8 @@ struct Pump::Impl {
       connections.push_back(connection);
       connection->server.async_connect(ends.target, [connection](const error_code& refused) {
         if (refused) return connection->cut();
-        // Stands in for the connections of the services, which set the same on theirs.
+        // Services call make_prompt() for their connections; the pump, which is in between, must do
+        // so for its own.
         for (net::Socket* each : {&connection->client, &connection->server})
           net::make_prompt(*each);
         connection->requests.start(connection);

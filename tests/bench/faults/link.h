@@ -15,7 +15,7 @@
 
 namespace chorus::bench {
 
-/// Delay of one direction; both directions are alike [s].
+/// Delay of one direction; both directions have the same model [s].
 struct LinkModel {
   double delay = 0.0;
   double jitter = 0.0;  ///< Additional delay: uniform from 0 to this.
@@ -40,7 +40,7 @@ class Pump {
   Pump& operator=(const Pump&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Takes effect with the next message.
+  /// Changes the delays, from the next message on.
   void become(const LinkModel& model);
   /// While frozen nothing passes, and neither end is notified, as with an unplugged cable.
   void freeze(bool frozen);

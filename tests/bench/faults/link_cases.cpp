@@ -23,7 +23,7 @@ CellPlan with_links(const LinkModel& link, int from, int to) {
   return plan;
 }
 
-/// The same link in front of all sensors; each must be in nearly all frames.
+/// Puts the same link in front of all sensors; each sensor must contribute to nearly all frames.
 Result<void> all_alike(Trial& trial, const LinkModel& link) {
   auto cell = Cell::start(with_links(link, 0, kSensors));
   if (!cell) return pass(cell);
@@ -35,7 +35,7 @@ Result<void> all_alike(Trial& trial, const LinkModel& link) {
   return {};
 }
 
-/// Packets are lost in all directions, and each sensor must still be in nearly all frames.
+/// Packets are lost in all directions, and each sensor must still contribute to nearly all frames.
 Result<void> lossy(Trial& trial) {
   CellPlan plan;
   plan.sensors = kSensors;

@@ -71,8 +71,8 @@ Result<void> server_killed(Trial& trial) {
   return kill_and_return(trial, *cell);
 }
 
-/// The shipped configuration keeps its state in a folder of the user; here that user has an empty
-/// home.  The server is killed after a walk and must come back registered.
+/// The shipped configuration keeps its state in a folder of the user who runs the server; here this
+/// user's home is empty.  The server is killed after a walk and must come back registered.
 Result<void> default_folders(Trial& trial) {
   auto home = ScratchFolder::make();
   if (!home) return pass(home);
@@ -133,7 +133,7 @@ struct UnreadPipe {
   UnreadPipe(const UnreadPipe&) = delete;
   UnreadPipe& operator=(const UnreadPipe&) = delete;
   /// Fills the pipe through another descriptor, because O_NONBLOCK must not apply to the program's
-  /// own.
+  /// own descriptor.
   void fill() const {
     const int end = ::open(fmt::format("/proc/self/fd/{}", ends[1]).c_str(), O_WRONLY | O_NONBLOCK);
     while (::write(end, "x", 1) == 1) {

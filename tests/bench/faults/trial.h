@@ -26,7 +26,7 @@ class Trial {
   };
 
   void check(bool holds, std::string sentence) { checks.push_back({std::move(sentence), holds}); }
-  /// Skips the case: this machine cannot run it.
+  /// Skips the case because this machine cannot run it.
   void leave_out(std::string reason) { left_out = std::move(reason); }
 
   /// Checks that everything but the faulty part keeps working: the server runs, fused frames with a

@@ -18,7 +18,7 @@ constexpr int kTrusting = 3;
 constexpr double kTrustedAgain = 1.5;  // until a repaired sensor contributes again, at most [s]
 constexpr double kTrustPatience = 8.0;
 
-/// An authority, and files of sensors that it vouches for.
+/// A certificate authority that issues certificates for sensors, as files.
 class Authority {
  public:
   Authority() { write("ca.crt", authority_.certificate); }

@@ -75,7 +75,8 @@ struct Watch::Impl {
     if (seen.empty() || follows(seen.back(), instant)) seen.push_back(std::move(instant));
   }
 
-  /// Fetches a frame that the watcher missed; counts as received together with its successor.
+  /// Fetches a frame that the watcher missed; the frame counts as received together with its
+  /// successor.
   void fetch(std::int64_t sequence, Timestamp received, std::vector<FusedInstant>& out) const {
     const std::string path = "/frames/" + std::to_string(sequence);
     const auto answer =

@@ -33,7 +33,8 @@ void limit(int resource, std::size_t soft) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
-/// In a mount namespace of its own: visible to this process alone, and gone when it ends.
+/// Mounts the disk in a mount namespace of this process: only this process sees it, and it is gone
+/// when the process ends.
 bool mount_small_disk(const std::string& folder) {
   return ::unshare(CLONE_NEWNS) == 0 &&
          ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&

@@ -26,9 +26,9 @@ class ExactSensors {
   /// The value of the fusion server's setting "sensors".
   [[nodiscard]] std::string settings() const;
   [[nodiscard]] std::string places() const;
-  /// When the last capture that the instant needs was published; it needs each sensor's first
-  /// capture at or after the instant.  None: some sensor has not captured that frame yet, or no
-  /// longer remembers it.
+  /// When the last capture that the instant needs was published; the instant needs each sensor's
+  /// first capture at or after it.  None: some sensor has not captured that frame yet, or no longer
+  /// remembers it.
   [[nodiscard]] std::optional<Timestamp> last_needed_capture(Timestamp instant) const;
 
  private:

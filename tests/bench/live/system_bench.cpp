@@ -29,8 +29,8 @@ constexpr double kQuickRun = 6.0;     // [s]
 constexpr double kMaxToWire = 0.050;  // [s] the claim
 constexpr double kMaxCores = 0.5;     // the claim, without the simulation
 
-/// The latest among the sensors' first frames at or after an instant.  Until it is delivered the
-/// instant cannot be fused, whatever the software does.
+/// The latest among the sensors' first frames at or after an instant.  Until this frame is
+/// delivered, the instant cannot be fused, whatever the software does.
 struct Needed {
   Timestamp captured{};
   Timestamp delivered{};  ///< When a watcher of the sensor received that frame.

@@ -1,8 +1,8 @@
 // Other ways to fuse the views of one person: the methods that our fusion is compared with.
 //
-// All of them get the same views as ours: the same alignment, registration, facing and association
-// (pipeline::perceive), so left and right are corrected for all of them, which is why the mean is
-// called flip-fixed-mean.  Only what the product lacks is implemented here.
+// All these methods get the same views as ours: the same alignment, registration, facing and
+// association (pipeline::perceive), so left and right are corrected for all of them, which is why
+// the mean is called flip-fixed-mean.  Only what the product lacks is implemented here.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ struct Baseline {
   Method (*begin)();  ///< Makes the method with an empty memory.
 };
 
-/// All of them, in the order of the tables.
+/// All baselines, in the order of the tables.
 [[nodiscard]] std::span<const Baseline> all();
 
 }  // namespace chorus::bench::baselines

@@ -26,7 +26,8 @@ class Comparison {
   void add(const std::string& method, std::size_t draw, double value);
 
   [[nodiscard]] Spread spread_of(const std::string& method) const;
-  /// Fraction of the common draws in which ours is strictly better [%]; it is not if both failed.
+  /// Fraction of the common draws in which ours is strictly better [%]; in a draw in which both
+  /// failed it is not.
   [[nodiscard]] double won_percent(const std::string& baseline) const;
 
   /// One row per baseline, in the order of their addition; without any, one row of ours.

@@ -67,7 +67,8 @@ struct NamedSighted {
   Sighted which;
 };
 
-/// All joints, then grouped by how many views saw them and by whether they are at rest.
+/// The groups of joints: all of them, then by how many views saw them, then by whether they are at
+/// rest.
 std::vector<NamedSighted> sighted_apart() {
   using enum Sighted::Motion;
   std::vector<NamedSighted> all{{"", {}}};
@@ -254,7 +255,7 @@ Answers answers_of_best_sensor(const Stage& stage) {
   return best;
 }
 
-/// At each instant the newest result, compared with the truth at the time that it states.
+/// The newest result at each instant, compared with the truth at the time that the result states.
 Answers answers_at_arrival(const Stage& stage) {
   const auto stated = baselines::arrival_kalman(stage.workshop.tracks, stage.registration);
   Answers answers;

@@ -45,7 +45,7 @@ struct Contender {
 /// The product's default method; the first column of the tables.
 [[nodiscard]] Contender ours(const fusion::FusionConfig& config = {}, std::string name = "ours");
 
-/// The same, but with views whose left and right are corrected by the truth; named
+/// The contender with views whose left and right are corrected by the truth; named
 /// "NAME-true-labels".
 [[nodiscard]] Contender labelled(Contender contender);
 

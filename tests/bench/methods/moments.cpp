@@ -19,7 +19,7 @@ const pipeline::Histories& Arriving::until(Timestamp instant) {
 
 namespace {
 
-/// Visits the instants in order, each once all its data has arrived.
+/// Visits the instants in order, and each of them only after all its data has arrived.
 template <class Take>
 void each_instant(const std::vector<registration::WalkTrack>& tracks, const Period& period,
                   const align::AlignConfig& config, const Take& take) {

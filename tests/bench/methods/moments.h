@@ -37,7 +37,7 @@ class Arriving {
   pipeline::Histories histories_;
 };
 
-/// Runs the pipeline up to fusion, at each instant of the period in order.
+/// Runs the pipeline, without fusion, at each instant of the time span, in order.
 void visit_moments(const std::vector<registration::WalkTrack>& tracks,
                    const Registration& registration, const Period& period,
                    const std::function<void(Moment)>& visit,

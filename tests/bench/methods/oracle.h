@@ -2,14 +2,14 @@
 //
 // `bound`: for each joint, the linear combination of its views with the smallest mean square error,
 // given the true mean square of each view's error at that instant and how the sensors' errors
-// correlate (Gauss and Markov; for Gaussian errors the Cramer-Rao bound).  Reachable: it knows how
-// large errors are on average, as a perfect error model would, but not the actual errors.  No
-// method that combines one instant's views linearly is better on average; others can be: they can
-// remember earlier instants, know the bones or remove a bias.
+// correlate (Gauss and Markov; for Gaussian errors the Cramer-Rao bound).  A method could reach
+// this bound: it uses only how large errors are on average, as a perfect error model would, not the
+// actual errors.  No method that combines one instant's views linearly is better on average; other
+// methods can be, because they can remember earlier instants, know the bones or remove a bias.
 //
 // `oracle-weights`: the weighted mean with weights 1 / e^2, where e is the actual distance of each
 // view from the truth: the result of a method that predicts the size of every error perfectly, but
-// not its direction.  Not reachable.
+// not its direction.  No method can reach it.
 #pragma once
 
 #include "tests/bench/methods/baseline.h"

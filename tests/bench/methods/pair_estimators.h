@@ -8,7 +8,7 @@
 namespace chorus::bench {
 
 /// ICP on the neck trails while both saw a body, with time as a fourth coordinate, 1 s counting as
-/// 1 m: the nearest neighbour is near in space and time.  Otherwise like the untimed baseline:
+/// 1 m: so the nearest neighbour is near in space and time.  Otherwise like the untimed baseline:
 /// levelled, from 24 yaws, the best 90 % of correspondences, height from the floor.
 [[nodiscard]] registration::PairEstimator trajectory_icp(
     const registration::RegistrationConfig& config);

@@ -21,12 +21,13 @@ struct RegistrationMethod {
 [[nodiscard]] RegistrationMethod our_registration();
 /// "trajectory-icp": time as a coordinate; "closed-form": time-interpolated pairs, least squares.
 [[nodiscard]] std::vector<RegistrationMethod> timed_baselines();
-/// The same after "icp": PCL ICP on neck clouds without time (Otto).
+/// "icp", which is PCL ICP on neck clouds without time (Otto), followed by the timed_baselines().
 [[nodiscard]] std::vector<RegistrationMethod> all_baselines();
-/// Ours with one part left out in each.
+/// Variants of our method, each with one part left out.
 [[nodiscard]] std::vector<RegistrationMethod> registration_ablations();
 
-/// One registration against the truth; means over the placed sensors other than the master.
+/// One registration compared with the truth; errors are means over the placed sensors other than
+/// the master.
 struct Score {
   double position = 0.0;        ///< NaN where a sensor was refused [m]
   double position_worst = 0.0;  ///< As above [m]

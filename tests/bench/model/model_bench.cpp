@@ -85,7 +85,8 @@ void compare_with_logs(Report& report, std::span<const LogClaim> claims, const L
   }
 }
 
-/// Compares the depth camera's field of view with the one fitted to real joints and their pixels.
+/// Compares the simulated field of view with that of a real depth camera, fitted to real joints and
+/// their pixels.
 void compare_view(Report& report) {
   const kinect::ViewLimits view = kinect::nominal_profile("A").view;
   check(report, {"log-view", "width_deg", "deg", {69.9, 69.9}, 0.01},
@@ -233,7 +234,8 @@ std::vector<TableOneBar> compare_with_table1(Report& report) {
   return bars;
 }
 
-/// (d) One sensor's joint error against the truth; swapped labels are swapped back.
+/// (d) The joint error of one sensor compared with the truth; swapped labels are swapped back
+/// first.
 double joint_error_mm(std::uint64_t seed) {
   const Scene scene = one_sensor_scene(seed + 7);
   const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[0].inverse();

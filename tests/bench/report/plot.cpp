@@ -150,7 +150,7 @@ std::string bar(const Eigen::Vector2d& top, double bottom, double width, std::st
 
 bool is_line(Mark kind) { return kind == Mark::Line || kind == Mark::Dashes; }
 
-/// The line is interrupted at points that are not finite or outside.
+/// The series as a line, interrupted at points that are not finite or lie outside the axes.
 std::string drawn_line(const Series& series, const Scale& scale, std::string_view colour) {
   std::string path;
   bool down = false;

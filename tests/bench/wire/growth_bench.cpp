@@ -1,4 +1,4 @@
-// chorus-bench growth: what many clients and many sensors cost the fusion server.
+// chorus-bench growth: measures what many clients and many sensors cost the fusion server.
 #include <chrono>
 #include <thread>
 
@@ -55,7 +55,7 @@ void report_reading(Report& report, const std::string& name, const Reading& read
                    reading.hz > kMinShare * kRate && reading.lost == 0);
 }
 
-/// Measures the cost of the readers: the server's use without them is subtracted.
+/// Measures the cost of the readers [cores]: what the server uses without them is subtracted.
 Result<void> readers_300(Report& report, double run_seconds) {
   const auto cell = start_cell(3, 6);
   if (!cell) return pass(cell);

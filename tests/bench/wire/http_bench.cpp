@@ -1,4 +1,5 @@
-// chorus-bench http: /frame compared with nginx serving the same bytes; age of long-polled frames.
+// chorus-bench http: compares serving /frame with nginx serving the same bytes, and measures the
+// age of long-polled frames.
 #include <chrono>
 #include <cstdio>
 #include <thread>

@@ -41,8 +41,8 @@ class ServingProcess {
 };
 
 enum class Side { Server, Load };
-/// Pins this process, and those it starts, to one core: servers to one, load generators to another.
-/// Does nothing on a machine with one core.
+/// Pins this process, and the processes it starts, to one core: servers to one core, load
+/// generators to another. Does nothing on a machine with one core.
 void keep_to_side(Side side);
 
 struct WrkResult {
@@ -59,9 +59,10 @@ struct LongPollLoad {
   double run_seconds = 5.0;
 };
 
-/// Age [s] of the document at its receipt, one per answer.  Every body begins with "# <steady
-/// ns>".
+/// What long polls measured.  The server under test must begin every document with "# <steady ns>",
+/// when it was made.
 struct LongPollAges {
+  /// Age of the document when received [s], one per answer after the warm-up.
   std::vector<double> ages;
   std::uint64_t answers = 0;             ///< All answers, including the warm-up.
   std::uint64_t repeated_or_missed = 0;  ///< Versions that did not follow the previous one.

@@ -45,7 +45,7 @@ class TlsRawClient {
     }
     return all;
   }
-  /// Reads to the end that the server announces; see said_end().
+  /// Reads until the server ends the connection; said_end() tells whether it was a proper end.
   std::string hear_all() { return hear_until("\xff nothing says this \xff"); }
   /// True if the last hear_all() ended with a proper TLS close, not with a broken connection.
   [[nodiscard]] bool said_end() const { return last_ == tls::Seal::Step::Ended; }

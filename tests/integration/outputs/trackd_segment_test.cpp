@@ -109,7 +109,7 @@ TEST(TrackdSegment, OneThatIsInUseIsRefusedAndLeftAlone) {
   EXPECT_TRUE(there(settings.tracker_key));
 }
 
-/// Creates a segment in another program, which then ends.
+/// Lets another process create a segment and end without removing it.
 void leave_behind(int key, std::size_t bytes) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(::shmget(key, bytes, IPC_CREAT | IPC_EXCL | 0666) < 0 ? 1 : 0);

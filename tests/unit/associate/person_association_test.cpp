@@ -103,8 +103,8 @@ TEST(Group, ATrackOutlivesAShortGapAndIdsAreNeverReused) {
 TEST(Group, AViewThatIsTooFarOffDoesNotPushAnotherOneAside) {
   Room room;
   room.see_often({view(1, 0, 0, 1), view(1, 0.55, 0, 2), view(2, 0, 0), view(2, 0.55, 0, 2)}, 5);
-  // One of the two goes and the other steps aside: two pairs would cost more than one pair and a
-  // newcomer.
+  // One of the two people leaves and the other steps aside; to match both views would cost more
+  // than to match one and take the other for a newcomer.
   const auto people = room.see({view(1, 0.56, 0, 2), view(1, 1.12, 0, 3), view(2, 0.56, 0, 2)});
   const auto second = std::ranges::find(people, PersonId{2}, &Person::id);
   ASSERT_NE(second, people.end());

@@ -134,7 +134,7 @@ TEST(NearestNeighbour, DoesNotPredictSoWhoPassesCloserIsTakenForTheOther) {
   NearestNeighbour neighbour;
   for (int i = 0; i < 3; ++i)
     (void)neighbour.group({at_place(1, 0, 0), at_place(1, 1, 0)}, at_frame(i));
-  // One sensor sees one body, just beyond the middle between the two people.
+  // One sensor sees one body, which stands just beyond the midpoint between the two people.
   const auto people = neighbour.group({at_place(1, 0.55, 0)}, at_frame(3));
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, PersonId{2});

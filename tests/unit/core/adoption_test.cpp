@@ -72,8 +72,9 @@ TEST(Replacing, ProvisionalOnesFollowEachOtherDuringAWalk) {
       should_replace(provisional, adopted_ring(Verdict::Good, {1, 2}), SolveKind::Provisional));
 }
 
-/// The candidate's clocks are by another common clock: 30 ms off ours, as the held s2 shows, whose
-/// clock has drifted by 5 ms since.
+/// The candidate's offsets refer to another common clock, which is 30 ms off ours.  The held s2
+/// shows this: its offset is 75 instead of 100 ms, and its least age shows that its clock has
+/// drifted by 5 ms.
 TEST(Extending, TakesTheNewcomersClockByOurCommonClock) {
   using std::chrono::milliseconds;
   Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
@@ -90,7 +91,8 @@ TEST(Extending, TakesTheNewcomersClockByOurCommonClock) {
   EXPECT_EQ(wider->clocks.at(named("s4")).added, milliseconds(-20));
   EXPECT_NEAR(chorus::seconds(wider->clocks.at(named("s4")).sigma), 0.005, 1e-6);
 
-  // Where all held clocks are known by exchange, theirs is the common one.
+  // Where the clocks of all held sensors are known by exchange, our common clock is the one they
+  // were compared with.
   current.clocks.clear();
   candidate.clocks[named("s2")] = {milliseconds(1), milliseconds(4), milliseconds(1), {}};
   const auto known = adopted(current, candidate, SolveKind::Provisional, true);
@@ -187,7 +189,7 @@ TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
   EXPECT_EQ(verdict_of(current, named("s1")), Verdict::Good);
   EXPECT_EQ(verdict_of(current, named("s5")), Verdict::None);
   EXPECT_EQ(current.verdicts.at(named("s5")).verdict, Verdict::Refused);
-  // Once s5 is placed, its old refusal is gone.
+  // Once s5 is placed, the refusal noted for it earlier is gone.
   const auto wider =
       adopted(current, adopted_ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);

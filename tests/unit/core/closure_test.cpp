@@ -22,7 +22,8 @@ PairwiseRegistration edge(const Registration& ring, int target, int source, doub
   return pair;
 }
 
-/// s1 is the master; s2 hangs on it, s3 on s1 as well, but s2-s3 would do, too.
+/// s1 is the master; the chains of s2 and s3 are direct edges to s1, and there is also an edge
+/// s2-s3.
 Registration triangle() {
   Registration r = ring();
   r.sensors.at(sensor_id("s1")).chain = {sensor_id("s1")};

@@ -69,7 +69,8 @@ TEST(FusionCore, FusesEveryInstantOnceAndKnowsWhoContributed) {
 TEST(FusionCore, AnswersWithoutWaitingForTheDelayWhenAllSensorsHavePassed) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, std::chrono::seconds(1));
-  // The longest delay is one frame interval and the phases, not the 200 ms of the alignment delay.
+  // The longest delay is one frame interval plus the sensors' phases, not the alignment delay of
+  // 200 ms.
   EXPECT_LT(run(core, std::chrono::seconds(1), std::chrono::seconds(1)).worst, milliseconds(50));
 }
 
@@ -129,7 +130,7 @@ TEST(FusionCore, StartsASessionByItselfWhenSensorsHaveNoPlace) {
   EXPECT_LT(t, std::chrono::seconds(8));
   EXPECT_EQ(job->walk.size(), 3u);
   EXPECT_TRUE(collecting(core));
-  // Only one job is out at a time.
+  // There is only one unfinished job at a time.
   (void)run(core, t, std::chrono::seconds(4));
   EXPECT_FALSE(core.due_job(kStart + t + std::chrono::seconds(4)));
   EXPECT_EQ(core.solved({job->session, job->kind, ring(3, Verdict::Provisional)}, kStart + t),

@@ -26,8 +26,8 @@ Registration refused(const std::string& reason = "sensors s1 and s2 disagree") {
   return r;
 }
 
-/// A registration like that with a coat stand: all sensors stand well except the last, which cannot
-/// be placed.
+/// A registration as with a sensor that sees only a coat stand: all sensors are placed well except
+/// the last, which cannot be placed.
 Registration all_but_the_last() {
   Registration r = ring(kSensors - 1);
   const std::string reason = "sensor s3 saw nobody walk";

@@ -33,8 +33,8 @@ template <class Config>
       {testing::body_seen_from(testing::ring_sensor(sensor, kSensors), person, captured)});
 }
 
-/// Registration version 4, in which the first `count` sensors have a place; its verdict and theirs
-/// is `verdict`.
+/// Registration version 4, in which the first `count` sensors have a place; `verdict` is the
+/// verdict on the whole and on each of these sensors.
 [[nodiscard]] inline Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
   Registration r;
   r.verdict = verdict;

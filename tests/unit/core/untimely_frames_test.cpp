@@ -15,8 +15,8 @@ using testing::sensor_id;
 
 CoreConfig untimely_config() { return of_three<CoreConfig>(); }
 
-/// What a walk told of a clock is added to the frames, those that came before included, and taken
-/// back with the registration.
+/// The clock offset that a walk found is added to a sensor's frames, including those that came
+/// before the solve, and is taken back when the registration is.
 TEST(UntimelyFrames, AClockThatAWalkToldIsAddedAndUndoneWithIt) {
   const Duration off = milliseconds(400);
   FusionCore core(untimely_config(), ring());

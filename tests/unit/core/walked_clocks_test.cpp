@@ -1,4 +1,5 @@
-// What a walk told about clocks is added to capture times, and followed while clocks drift.
+// The clock offsets that a walk found are added to capture times, and are followed while clocks
+// drift.
 #include "fusion-server/core/walked_clocks.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +39,7 @@ Duration added(const WalkedClocks& clocks) {
   return own ? own->added : Duration{0};
 }
 
-/// Takes frames from `from` on for `length`; returns by how much all of them were to be moved.
+/// Takes frames from `from` on for `length`; returns the sum of the moves that take() asked for.
 template <class Behind>
 Duration run(WalkedClocks& clocks, const Registration& registration, Duration from, Duration length,
              const Behind& behind) {

@@ -50,7 +50,8 @@ inline std::vector<Skeleton<WorldSpace>> walk() {
   return frames;
 }
 
-/// walk() with 20 mm of noise on every joint, like that of fused joints; the same noise every time.
+/// walk() with noise on every joint (20 mm rms), about as large as that of fused joints; the same
+/// every time.
 inline std::vector<Skeleton<WorldSpace>> breathing_walk() {
   auto frames = walk();
   std::uint32_t state = 1;

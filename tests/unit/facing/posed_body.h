@@ -24,7 +24,7 @@ struct Posture {
 inline constexpr Posture kPlank{};
 inline constexpr Posture kAtWork{0.02, 0.25, -0.02, 0.05};
 
-/// A person at `place` who faces yaw `heading` (0: +z); left is +x then.
+/// A person at `place` who faces yaw `heading`; at 0 they face +z, with their left at +x.
 [[nodiscard]] inline Skeleton<WorldSpace> body_at(const Eigen::Vector3d& place, double heading,
                                                   const Posture& posture = kPlank) {
   using enum JointId;

@@ -138,7 +138,7 @@ TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
   Room room;
   FusedBody body;
   for (int i = 0; i < 30; ++i) {
-    // One joint has a known depth; without it, points-and-rays would fuse this person.
+    // One joint has a known depth; without this joint, points-and-rays would fuse the person.
     std::vector<SensorView> views{guessed(1), guessed(2), guessed(3), guessed(4)};
     views[0].skeleton[SpineMid].covariance = {};
     body = room.at(i, views);
@@ -290,7 +290,7 @@ TEST(BodyFilter, SensorsThatDifferInSizeAreSaidToErrByMoreFarFromTheTrunk) {
   EXPECT_NEAR(variance(0.0, 0.7).first, variance(0.0, 0.0).first, 1e-9);
 }
 
-/// What another fusion server has fused is not fused again.
+/// A body that another fusion server has already fused is not filtered again.
 TEST(BodyFilter, ABodyThatOneSourceStatesWithItsCovariancesIsTakenAsItIs) {
   const auto stated = [](Skeleton<WorldSpace> body) {
     for (Joint& joint : body.joints) {
@@ -305,7 +305,8 @@ TEST(BodyFilter, ABodyThatOneSourceStatesWithItsCovariancesIsTakenAsItIs) {
     moving[WristLeft].position.x() += i % 2 == 0 ? 0.03 : -0.03;  // no bone keeps its length
     EXPECT_LT(wrist_off(room.at(i, {stated(moving)}), moving), 1e-12) << i;
   }
-  // Once others see the person too, one body is made of all, also while one is left.
+  // Once another sensor sees the person too, the body is fused from both, and stays with the body
+  // filter when only one is left.
   for (int i = 0; i < kFilterSteps; ++i)
     (void)room.at(kFilterSteps + i, {stated(standing()), view_of(2, standing())});
   moving[WristLeft].position.x() += 0.1;

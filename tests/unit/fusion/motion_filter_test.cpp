@@ -18,7 +18,7 @@ constexpr double kMotionStep = 1.0 / 30;  // [s]
 
 Timestamp at_motion_step(int i) { return kMotionStart + from_seconds(kMotionStep * i); }
 
-/// At rest for a second; then away at a constant speed [m/s].
+/// Place of a point at step i: at rest for a second, then moving away at a constant speed [m/s].
 double place(int i, double speed) { return i < 30 ? 0.0 : speed * kMotionStep * (i - 30); }
 
 /// Errors at each of 60 steps, over many draws.

@@ -25,7 +25,7 @@ struct Wanderer {
     std::normal_distribution<double> one;
     return {one(random), one(random), one(random)};
   }
-  /// One period in a hundred small steps.
+  /// Advances by one period in a hundred small steps.
   void go() {
     constexpr int kParts = 100;
     constexpr double kDt = kStep / kParts;

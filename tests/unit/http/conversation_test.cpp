@@ -23,8 +23,8 @@ constexpr std::string_view kStream =
 constexpr std::string_view kPost =
     "POST /do HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n";
 
-/// Plays the shell: immediately carries out what the conversation orders, as far as the test
-/// permits.
+/// Plays the shell: carries out at once the reactions that the conversation returns, as far as the
+/// test permits.
 class ConversationTest : public ::testing::Test {
  protected:
   ConversationTest() {

@@ -30,7 +30,8 @@ inline Joint inferred(const Eigen::Vector3d& position) {
   return joint;
 }
 
-/// Tracks `count` joints from SpineBase on, all at `place`; faces its sensor at `facing`.
+/// A view that tracks `count` joints from SpineBase on, all at `place`; its body is turned by
+/// `facing` from facing the sensor.
 inline SensorView view_of(int number, std::size_t count, double facing,
                           const Eigen::Vector3d& place = Eigen::Vector3d::Zero()) {
   SensorView view;

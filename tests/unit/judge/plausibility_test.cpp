@@ -62,7 +62,8 @@ TEST(LimbLabels, DoNotCountLimbsThatTouch) {
 TEST(BoneLength, IsTheMeanErrorOverTheTrueLength) {
   Answers answers = exact_walk(20, 0.5);
   for (Answer& answer : answers) {
-    // Changes only the length of the left thigh, 0.1 m: the ankle moves with the knee.
+    // Only the left thigh becomes longer, 0.12 instead of 0.1 m; the ankle moves with the knee, so
+    // the shin keeps its length.
     for (const JointId id : {KneeLeft, AnkleLeft}) answer.body[id].position.y() += 0.02;
   }
   const double thigh =

@@ -12,7 +12,8 @@ namespace {
 
 using enum JointId;
 
-/// Reported bodies with errors of `sigma` per axis that state `stated`; two views see every joint.
+/// Reported bodies whose joints have errors of `sigma` per axis and state the standard deviation
+/// `stated`; two views see every joint.
 Answers erring(double sigma, double stated, double speed = 0.5) {
   std::mt19937 dice(1);
   std::normal_distribution<double> noise(0.0, sigma);

@@ -200,7 +200,8 @@ TEST(NatNetCommands, ClientsAreForgottenUnlessSomethingIsHeardOfThem) {
   EXPECT_EQ(desk.clients(at(10s).steady).size(), 2u);
   EXPECT_EQ(desk.clients(at(11s).steady), std::vector{kSomebody});
   EXPECT_EQ(desk.clients(at(20s).steady), std::vector<Address>{});
-  // For a client that outlived the server, or its own entry, two keep-alives are enough.
+  // If the server was restarted or has forgotten a client, two keep-alives of that client are
+  // enough.
   (void)desk.answer(request(10), other, at(21s));
   (void)desk.answer(request(10), other, at(22s));
   EXPECT_EQ(desk.clients(at(22s).steady), std::vector{other});

@@ -136,7 +136,8 @@ TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
   EXPECT_LT(error(*fused), error(*right) + mm(10));
 }
 
-/// Frames without bodies need memory, too: a recording that never gets on is given up.
+/// Frames without bodies need memory, too, so a recording whose capture times stand still is given
+/// up.
 TEST(FuseOffline, ARecordingOfEmptyFramesThatStandsStillIsRefused) {
   OfflineInput input;
   SensorFrame empty;

@@ -43,7 +43,8 @@ TEST(Step, PerfectViewsOfOneWalkerGiveTheWalkerBack) {
   const Step last = run(ring_histories({}), ring_registration(6), 20);
   ASSERT_EQ(last.snapshot.bodies.size(), 1u);
   const double t = seconds(last.snapshot.instant - kStart);
-  // 0.8 m circle at 0.7 rad/s, linear between frames: sagitta 0.4 m/s^2 (1/30 s)^2 / 8 = 0.05 mm.
+  // Linear interpolation on a circle of 0.8 m at 0.7 rad/s is off by the sagitta: 0.4 m/s^2 (1/30
+  // s)^2 / 8 = 0.05 mm.
   EXPECT_LT(worst_error(last.snapshot.bodies[0], walker(0, t)), mm(0.1));
   EXPECT_EQ(last.snapshot.bodies[0].contributors[0], 0b111111u);
   EXPECT_EQ(last.snapshot.sensors.size(), 6u);

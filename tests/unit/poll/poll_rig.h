@@ -28,8 +28,8 @@ inline constexpr double kFull = 0.999999999;  ///< Jitter that keeps the whole b
   return std::get<Sleep>(*step.action).duration;
 }
 
-/// A follower that has the floor plane; its first request for a frame has been under way since
-/// `now`.
+/// A follower that has already received the floor plane; its first request for a frame has been
+/// under way since `now`.
 [[nodiscard]] inline PollFsm at_first_frame(Duration now) {
   PollFsm fsm;
   (void)fsm.resume(Started{}, now, kFull);

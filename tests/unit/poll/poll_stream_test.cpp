@@ -129,7 +129,7 @@ TEST(PollFsmStream, ARequestThatFailsBesideItCostsTheSensorNothing) {
   EXPECT_EQ(fsm.state(), SensorState::Live);
   EXPECT_EQ(failed.stream, StreamOrder::None);
   EXPECT_TRUE(fsm.streaming());
-  // But when the stream falls silent the sensor is lost, and so is the stream.
+  // But when the stream falls silent, the sensor counts as lost and the stream is closed.
   (void)fsm.resume(Woke{}, milliseconds(700), kFull);
   const Step lost = fsm.resume(reset(), milliseconds(1700), kFull);
   EXPECT_EQ(fsm.state(), SensorState::Lost);

@@ -142,7 +142,7 @@ TEST(AdjustTogether, FloorsHoldTiltAndHeightWhereTheWalkIsCountedForLittle) {
       scene.add(watch(i, at, spec), at);
     }
     const Places found = scene.adjust(displaced(scene.truth, 0.002));
-    // Against another sensor: the world itself leans with the mean of all floors.
+    // Compares with another sensor, because the world itself leans with the mean of all floors.
     return difference(found.at(sensor(0)).inverse() * found.at(sensor(1)),
                       scene.truth.at(sensor(0)).inverse() * scene.truth.at(sensor(1)))
         .angle;
@@ -185,7 +185,8 @@ TEST(AdjustTogether, AnExactWalkStillLeavesYawAndPlaceUncertain) {
   EXPECT_LT(to_deg(std::sqrt(at_walk(1, 1))), 1.0);
 }
 
-/// On a circle the bias of a view turns with the place, as if the sensor were turned.
+/// On a circle the bias of a view rotates as the person's place changes, just as if the sensor were
+/// turned.
 TEST(AdjustTogether, ACircleLeavesTheYawLessCertainThanAWalkAllOver) {
   const auto yaw_sigma = [](const Path& path) {
     const Scene scene = scene_of({.path = path, .noise = 0.0});

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::array<Eigen::Index, 1> kOnly{0};
 
-/// The mean of a coloured signal of unit variance, 30 samples a second: each sample has information
-/// 1, and its score is its distance from the mean.
+/// The factor for the estimated mean of a coloured signal of unit variance with 30 samples a
+/// second: each sample has information 1, and its score is its distance from the mean.
 double factor_of(double correlation_s, double length_s, const BlockScores::Prior& prior = {}) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;

@@ -31,7 +31,7 @@ Evidence evidence_of(std::vector<PairwiseRegistration> edges,
   return evidence;
 }
 
-/// As if one sensor had seen another person, 2 m away.
+/// The displacement that results if one sensor has seen another person, 2 m away.
 Eigen::Isometry3d elsewhere() { return Eigen::Isometry3d(Eigen::Translation3d(2.0, 0.0, 0.5)); }
 
 std::vector<SensorId> names(const std::vector<Outcast>& outcasts) {

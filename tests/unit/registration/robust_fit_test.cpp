@@ -77,7 +77,7 @@ TEST(RobustFit, PairsThatAreWrongInTheirOwnWaysHaveNoSay) {
   }
 }
 
-/// Starting from the plain mean, the fit would be so far off that it would keep no pair.
+/// A fit that started from the plain mean would be so far off that it would keep no pair.
 TEST(RobustFit, AThirdThatIsFarOffTheSameWayHasNoSay) {
   std::vector<Pair> pairs = pairs_of(some_motion(), {.instants = 100, .noise = mm(8)});
   for (std::size_t i = 0; i < pairs.size(); i += 3) pairs[i].x_in_target.x() += 5.0;

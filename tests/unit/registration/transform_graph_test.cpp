@@ -92,7 +92,8 @@ TEST(EdgeError, IsTheStandardErrorAtTheSensorPlusAFloor) {
 }
 
 TEST(BestChains, ALaterBetterWayReplacesAnEarlierOne) {
-  // 0-3 is found first and is poor; 0-1-2-3 is longer and better, which also helps all beyond 3.
+  // The edge 0-3 is found first and is poor; the chain 0-1-2-3 is longer and better, also for all
+  // sensors that are reached through 3.
   const std::vector edges{edge(0, 3, kGraphPlaces, 0.9), edge(0, 1, kGraphPlaces, 0.01),
                           edge(1, 2, kGraphPlaces, 0.01), edge(2, 3, kGraphPlaces, 0.01)};
   const auto chains = best_chains(sensor(0), edges);

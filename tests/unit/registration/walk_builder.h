@@ -34,7 +34,7 @@ inline Eigen::Isometry3d ring_place(double angle, double radius = 3.0) {
 /// Position of the person on the floor after t seconds.
 using Path = std::function<Eigen::Vector2d(double)>;
 
-/// Wanders over about +-1 m with changing speed, below 1 m/s.
+/// A path that wanders over about +-1 m with changing speed, below 1 m/s.
 inline Eigen::Vector2d wander(double t) {
   return {0.8 * std::sin(0.61 * t) + 0.3 * std::sin(1.33 * t + 1.0),
           0.7 * std::cos(0.47 * t + 0.5) + 0.3 * std::sin(1.07 * t)};

@@ -148,7 +148,8 @@ TEST(FrameReader, RefusesMoreBodiesThanThereMayBe) {
   EXPECT_EQ(refused.error().code, ErrorCode::TooLarge);
 }
 
-/// One sensor that speaks of very much would keep the reader from the others.
+/// A sensor whose document describes very many things would keep the reader from serving the other
+/// sensors.
 TEST(FrameReader, RefusesADocumentThatSpeaksOfTooManyThings) {
   const auto frame = read(good());
   ASSERT_TRUE(frame);

@@ -1,4 +1,4 @@
-// Frames for the tests of this room: random but valid, and the graph each one stands for.
+// Frames for the tests in this folder: random but valid, and the graph that each one stands for.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Perspective-n-point on a simulated body: it comes back where it was, and as surely as it says.
+// Perspective-n-point on a simulated body: it is placed where it was, and the stated uncertainty is
+// right.
 #include "common/sensor/body_placing.h"
 
 #include <cmath>

@@ -166,7 +166,7 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
   for (int i = 0; i < 30; ++i) recordings_.recorder(Stream::Raw)->offer(raw(i));
   const auto recorder = recordings_.recorder(Stream::Any);
   const auto ended = ask("DELETE", "/recordings/walk");
-  // The writer may or may not be done by now; the answer says which.
+  // The writer may or may not be done by now; the answer says whether it is.
   EXPECT_THAT(
       (std::pair(ended.status, nlohmann::json::parse(ended.body).at("state").get<std::string>())),
       AnyOf(Pair(202, "stopping"), Pair(200, "finished")));

@@ -95,7 +95,7 @@ TEST(Gait, TheSeamIsAsSmoothAsTheRest) {
   for (const std::size_t take : {0u, 1u}) {
     const Gait& gait = Gait::built_in(take);
     constexpr int kSteps = 200;
-    // Second differences over one cycle and across the seam, in arbitrary units of phase.
+    // Second differences inside one cycle and across the seam, in arbitrary units.
     double inside = 0, seam = 0;
     for (int i = 0; i < kSteps; ++i) {
       const auto body = [&](int step) {

@@ -29,7 +29,8 @@ std::shared_ptr<const Trackers> trackers() {
   return std::make_shared<const Trackers>(kSlots, true);
 }
 
-/// Two people; the first one's head has an asymmetric pose, its left foot is not tracked.
+/// Two people; the head of the first has an asymmetric pose, and the first person's left foot is
+/// not tracked.
 outlet::TrackerFrame two_persons() {
   outlet::TrackerFrame frame;
   frame.instant = from_unix_ns(1'700'000'000'123'456'000);

@@ -61,7 +61,7 @@ constexpr std::array kModelFiles{
     Shared{"blazepose-full.bin", "blazepose-full.bin"},
 };
 
-/// Serves only the listed files of a folder, because it also contains other, large ones.
+/// Serves only the listed files of a folder, because the folder also contains other, large files.
 void add_listed(http::Router& router, const std::string& prefix, const std::string& folder,
                 std::span<const Shared> listed) {
   const std::string pattern = prefix + "{file}";

@@ -100,7 +100,8 @@ std::uint64_t PushDesk::step_of(const PushedFrame& frame) const {
   return std::min(*frame.sequence - *holder_->last_count, kWidestGap);
 }
 
-/// The same rule as in SensorService, but here the program gets an error.
+/// True if a frame captured at this time may follow the last one.  SensorService has the same rule,
+/// but here the pushing program gets an error.
 bool PushDesk::advances(Timestamp captured) const {
   if (!last_captured_ || captured > *last_captured_) return true;
   if (*last_captured_ - captured > kMaxRepeat) return true;

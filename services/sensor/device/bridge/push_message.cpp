@@ -25,7 +25,7 @@ constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 /// An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
 Eigen::Matrix3d sensor_from_image() { return Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal(); }
 
-/// What an element says besides the landmark's place.
+/// What an element states in addition to the landmark's place.
 struct Sureness {
   double confidence = 1.0;
   std::optional<JointState> state;
@@ -146,7 +146,7 @@ Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at)
   return landmark;
 }
 
-/// Reads a landmark of `world`; how sure it is, its pixel says.
+/// Reads a landmark of `world`; its uncertainty is that of its pixel.
 Result<Landmark> read_shape_point(const Json& value, const Hello& /*hello*/, const At& at) {
   if (value.is_null()) return Landmark{};
   const auto element = read_element<3>(value, {-kMaxShape, kMaxShape}, at);
@@ -198,7 +198,7 @@ struct PushedBody {
   Skeleton<SensorSpace> shape;
 };
 
-/// What a body says of where its landmarks are.
+/// The members of a body that state where its landmarks are.
 struct Places {
   const Json* points = nullptr;
   const Json* pixels = nullptr;
@@ -241,7 +241,8 @@ Result<PushedBody> read_body(const Json& value, const Hello& hello, const At& at
   const auto shape = read_joints(places->world, &read_shape_point, hello, at["world"]);
   if (!shape) return pass(shape);
   PushedBody out{{BodyId{*number}, {}, *joints}, *shape};
-  // Common to all landmarks: added to joints, so that the mean of two landmarks is no surer of it.
+  // The error of the focal length is common to all landmarks, so it is added to joints: the mean of
+  // two landmarks must not make it smaller.
   for (Joint& joint : out.body.skeleton.joints) widen_ray(joint, hello.focal_sigma);
   return out;
 }

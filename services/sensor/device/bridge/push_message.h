@@ -23,7 +23,8 @@ struct PushedFrame {
   Timestamp captured;                     ///< By the pusher's clock; common to all bodies.
   /// In sensor space; bodies without joints are left out.
   std::vector<BodyFrame> bodies;
-  /// The shape of each body as `world` tells it (body_placing.h); without joints where it does not.
+  /// The shape of each body according to the message's `world` (body_placing.h); without joints
+  /// where there is none.
   std::vector<Skeleton<SensorSpace>> shapes;
   std::optional<FloorPlane> floor;
 };

@@ -13,7 +13,7 @@
 
 namespace chorus::bridge {
 
-/// What a message was and what was done with it.
+/// The kind of a message, and what was done with it.
 enum class Heard {
   Hello,
   Clock,

@@ -141,7 +141,8 @@ Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   return {};
 }
 
-/// Refuses a missing file, which will not appear later.  A missing camera may.
+/// Refuses a missing file, which will not appear later.  A missing camera is accepted, because it
+/// may appear later.
 Result<void> check_source(const CameraSettings& settings) {
   std::error_code failed;
   if (kind_of(settings.source) == SourceKind::Stream ||

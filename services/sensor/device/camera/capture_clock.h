@@ -22,7 +22,8 @@ class StreamClock {
  public:
   explicit StreamClock(Duration latency) : latency_(latency) {}
 
-  /// `position`: of the picture in the stream; if none, or if it does not advance, arrival counts.
+  /// `position`: the picture's time in the stream; without it, or if it does not advance, the time
+  /// of arrival is used.
   [[nodiscard]] Timestamp captured(Timestamp arrived, std::optional<Duration> position);
 
  private:

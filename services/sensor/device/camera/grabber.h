@@ -1,5 +1,6 @@
-// Takes pictures from the source while there are any; when there are none, tries again.  Only the
-// newest picture waits: a consumer slower than the camera misses pictures, but never falls behind.
+// Takes pictures from the source while it delivers any; when it delivers none, opens it again.
+// Only the newest picture waits: a consumer slower than the camera misses pictures, but never falls
+// behind.
 #pragma once
 
 #include <optional>

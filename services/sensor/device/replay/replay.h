@@ -28,7 +28,7 @@ struct ReplayOptions {
   ReplayEpoch epoch = ReplayEpoch::Now;
   /// If set, replaces `epoch`; for several processes that play in step.
   std::optional<Timestamp> epoch_at = {};
-  /// First capture time of the set; none: as the recording notes it.
+  /// First capture time of the set; none: the one that the recording notes.
   std::optional<Timestamp> origin = {};
   std::optional<Duration> period = {};  ///< Length of the set; none: as the recording notes it.
 };

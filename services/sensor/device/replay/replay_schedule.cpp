@@ -8,7 +8,7 @@ namespace chorus::sensor_service {
 namespace {
 
 constexpr double kMaxSpeed = 1000.0;
-// Tolerance for an origin that was a double.
+// Tolerance for an origin that was rounded to a double.
 constexpr Duration kRounding = std::chrono::microseconds(1);
 // Keeps every product within 64 bits.
 constexpr Duration kMaxPeriod = std::chrono::hours(24 * 366);

@@ -233,7 +233,7 @@ TEST(KinectSensor, OfProfileDHasOneScaleForAllBonesOfAFrameAndNeverExchangesLabe
 
 TEST(KinectSensor, WhomItFindsAgainFromBehindItTakesToFaceIt) {
   Scene scene = room();
-  // Turned by 100 deg: between the angles of exchange, where only the past decides.
+  // Turned by 100 deg, which is between the angles of exchange, so that only the past decides.
   scene.people = {[](Duration) {
     return testing::standing_person({0, 0, 2.0}, deg(180) + deg(100));
   }};
