@@ -27,7 +27,7 @@ done
 command -v mmdebstrap >/dev/null || fail "mmdebstrap is missing: deploy/install-packages.sh workshop"
 [[ -e "$packages/Packages" ]] || fail "there are no packages in $packages: deploy/make-packages.sh makes them"
 mkdir -p "$out"
-scratch=$(mktemp -d)
+scratch=$(mktemp -d -p /tmp)  # without spaces: it becomes a file: URL
 trap 'rm -rf "$scratch"' EXIT
 
 # Only ours: everything else comes from Debian, with its security updates.
@@ -50,7 +50,8 @@ mmdebstrap --quiet --variant=essential --include="$service,passwd,ca-certificate
   "deb [trusted=yes] file://$scratch/ours ./"
 
 step "image"
-version=$(dpkg-deb -f "$(ls "$packages/$service"_*.deb | tail -1)" Version)
+version=$(tar -xOf "$scratch/layer.tar" ./var/lib/dpkg/status \
+  | awk -v name="$service" '$1 == "Package:" { mine = $2 == name } mine && $1 == "Version:" { print $2; exit }')
 python3 deploy/package/oci_archive.py "$scratch/layer.tar" "$out/$service.tar" --service "$service" --version "$version" \
   --architecture "$(dpkg --print-architecture)"
 du -h "$out/$service.tar"

@@ -5,8 +5,17 @@
 namespace chorus {
 namespace {
 
-constexpr std::uint64_t kRemembered = 1800;  // Frames without the person: a minute at 30 Hz.
+// Frames without the person: 5 s at 30 Hz.  Who counts people anew gives the id to somebody else.
+constexpr std::uint64_t kRemembered = 150;
 constexpr std::size_t kMostPeople = 256;
+
+/// The joints of the shape that the camera sees; a model invents the others.
+Skeleton<SensorSpace> in_view(Skeleton<SensorSpace> shape, const Skeleton<SensorSpace>& rays) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (!rays.joints[j].bears()) shape.joints[j] = {};
+  }
+  return shape;
+}
 
 }  // namespace
 
@@ -17,7 +26,7 @@ void BodyPlacer::place(std::span<BodyFrame> bodies, std::span<const Skeleton<Sen
     if (std::ranges::none_of(shapes[i].joints, &Joint::seen)) continue;
     Person& person = people_[bodies[i].id];
     person.last = frame_;
-    person.bones.learn(shapes[i]);
+    person.bones.learn(in_view(shapes[i], bodies[i].skeleton));
     if (auto placed = place_body(bodies[i].skeleton, person.bones.applied(shapes[i]), errors))
       bodies[i].skeleton = *placed;
   }

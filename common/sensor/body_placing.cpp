@@ -10,6 +10,8 @@
 namespace chorus {
 namespace {
 
+constexpr double kMaxPointVariance = 1e4;  // [m^2]
+
 using Across = Eigen::Matrix<double, 3, 2>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -225,10 +227,13 @@ void place(Joint& joint, const Sighting& one, const Fit& fit, const PlacingError
       joint.covariance.known()
           ? joint.covariance.matrix()
           : Eigen::Matrix3d(one.ray_variance * one.across * one.across.transpose());
+  const Eigen::Matrix3d covariance =
+      distance * distance * across + along * one.ray * one.ray.transpose();
+  // A wider one cannot be written, and without one the point would look precise.
+  if (!(covariance.diagonal().maxCoeff() < kMaxPointVariance)) return;
   joint.measurement = Measurement::Point;
   joint.position = distance * one.ray;
-  joint.covariance = Covariance(
-      Eigen::Matrix3d(distance * distance * across + along * one.ray * one.ray.transpose()));
+  joint.covariance = Covariance(covariance);
 }
 
 }  // namespace

@@ -9,6 +9,8 @@ namespace {
 constexpr double kMemory = 300.0;  // Lengths; older ones fade.
 constexpr double kStep = 3.0;      // Largest step, relative to the mean absolute deviation.
 constexpr double kLeast = 1e-3;    // A shorter bone has no direction [m].
+// Relative to the length: a model that states the same lengths for long can still change its mind.
+constexpr double kLeastDeviation = 0.005;
 
 }  // namespace
 
@@ -19,10 +21,11 @@ void LearnedBones::learn(const Skeleton<SensorSpace>& shape) {
     if (!inner.seen() || !outer.seen()) continue;
     Learned& learned = bones_[index_of(bone.child)];
     const double length = (outer.position - inner.position).norm();
+    if (!(length > kLeast)) continue;
     learned.count = std::min(learned.count + 1.0, kMemory);
     const double off = learned.count > 1.0 ? length - learned.length : 0.0;
     if (learned.count == 1.0) learned = {length, 0.1 * length, 1.0};
-    const double most = kStep * learned.spread;
+    const double most = kStep * std::max(learned.spread, kLeastDeviation * learned.length);
     const double step = std::clamp(off, -most, most);
     learned.length += step / learned.count;
     learned.spread += (std::abs(step) - learned.spread) / learned.count;

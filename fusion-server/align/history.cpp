@@ -104,7 +104,11 @@ PushVerdict History::push(SensorFrame frame) {
   PushVerdict verdict = verdict_on(frame);
   if (verdict == PushVerdict::Future || verdict == PushVerdict::Duplicate) return verdict;
   const bool refused = verdict == PushVerdict::Backwards || verdict == PushVerdict::Stale;
-  steps_back_ = refused ? steps_back_ + 1 : 0;
+  // A queue that drains delivers many old frames at once: what is received together counts once.
+  const bool same_burst =
+      steps_back_ > 0 && frame.received != Timestamp{} && frame.received == last_step_;
+  if (refused) last_step_ = frame.received;
+  steps_back_ = refused ? steps_back_ + (same_burst ? 0 : 1) : 0;
   if (refused && steps_back_ < limits_.steps_to_restart) return verdict;
   if (refused) {
     verdict = PushVerdict::Restarted;

@@ -74,7 +74,8 @@ class History {
 
   HistoryLimits limits_;
   std::deque<SensorFrame> frames_;
-  int steps_back_ = 0;  ///< Refused in a row as captured before the newest one.
+  int steps_back_ = 0;   ///< Refused in a row as captured before the newest one.
+  Timestamp last_step_;  ///< When the last of these was received.
   std::optional<Habit> habit_;
   std::optional<Duration> period_;
   bool rays_only_ = false;

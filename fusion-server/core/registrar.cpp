@@ -48,9 +48,13 @@ std::vector<SensorAccuracy> accuracy_of(const Registration& candidate) {
   return all;
 }
 
-/// Whether the walk could end here: the candidate is good, and every sensor that took part has a
-/// place known to within `target`.  If `target` is zero: never.
-bool accurate_enough(const Registration& candidate, double target) {
+/// Whether the walk could end here: the candidate is good, it places all sensors that are placed
+/// now, and every sensor that took part has a place known to within `target`.  If `target` is zero:
+/// never.
+bool accurate_enough(const Registration& candidate, const Registration& current, double target) {
+  if (!std::ranges::all_of(current.sensors,
+                           [&](const auto& one) { return candidate.sensors.contains(one.first); }))
+    return false;
   const auto all = accuracy_of(candidate);
   const bool good = target > 0 && all.size() > 1 && candidate.verdict == Verdict::Good;
   return good && std::ranges::all_of(all, [&](const SensorAccuracy& own) {
@@ -293,7 +297,8 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
 
 Outcome Registrar::settle_provisional(const Registration& candidate) {
   SessionStatus& current = sessions_.front();
-  if (!current.reached && accurate_enough(candidate, config_.session.target_radius)) {
+  if (!current.reached && accurate_enough(candidate, before_ ? *before_ : registration_,
+                                          config_.session.target_radius)) {
     current.reached = true;
     current.target = seconds(session_.target());
     session_.finish();

@@ -19,6 +19,7 @@ namespace {
 constexpr double kHabit = 5.0;        // [s] over which the views' habits are learned
 constexpr double kUsualScale = 0.01;  // relative differences in size that noise alone causes
 constexpr double kFirstAgreement = 0.25;
+constexpr double kNarrowShoulders = 0.1;  // [m] seen from above
 
 /// A mean that follows slowly.
 struct Habit {
@@ -81,6 +82,7 @@ class BodyFilter final : public Estimator {
     const PlacedJoint& right = body[index_of(JointId::ShoulderRight)];
     if (!left.placed || !right.placed) return 0.0;
     const Eigen::Vector3d across = left.position - right.position;
+    if (std::hypot(across.x(), across.z()) < kNarrowShoulders) return 0.0;  // has no direction
     const double before = std::exchange(yaw_, std::atan2(across.z(), across.x()));
     return std::abs(wrap_angle(yaw_ - before));
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 namespace chorus::fusion {
 namespace {
 
@@ -26,6 +28,18 @@ Eigen::Matrix3d ray_covariance(const Joint& joint, const NoiseModel& noise) {
   return sigma * sigma * Eigen::Matrix3d::Identity();
 }
 
+/// A stated covariance, widened so that it can be inverted.  Rounding on the wire leaves
+/// eigenvalues slightly below 0 where a sensor says that one direction is hardly known.
+Eigen::Matrix3d invertible(const Eigen::Matrix3d& stated) {
+  constexpr double kLeastRatio = 1e-7;  // of the smallest to the largest eigenvalue
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(stated, Eigen::EigenvaluesOnly);
+  const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();
+  const double lack = std::max(0.0, -solver.eigenvalues().minCoeff());
+  return stated +
+         (lack + kMinSigma * kMinSigma + kLeastRatio * largest) * Eigen::Matrix3d::Identity();
+}
+
 class LineOfSightErrors final : public ErrorModel {
  public:
   LineOfSightErrors(const NoiseModel& noise, const std::map<SensorId, NoiseModel>& of_sensors)
@@ -33,9 +47,7 @@ class LineOfSightErrors final : public ErrorModel {
 
   [[nodiscard]] Eigen::Matrix3d covariance(const SensorView& view, JointId id) const override {
     const Joint& joint = view.skeleton[id];
-    if (joint.covariance.known()) {
-      return joint.covariance.matrix() + kMinSigma * kMinSigma * Eigen::Matrix3d::Identity();
-    }
+    if (joint.covariance.known()) return invertible(joint.covariance.matrix());
     const auto own = of_sensors_.find(view.sensor);
     const NoiseModel& noise = own == of_sensors_.end() ? noise_ : own->second;
     if (joint.bears()) return ray_covariance(joint, noise);

@@ -7,7 +7,8 @@
 
 namespace chorus::fusion {
 
-Memory::Memory(const Memory& other) : config_(other.config_), last_(other.last_) {
+Memory::Memory(const Memory& other)
+    : config_(other.config_), last_(other.last_), several_(other.several_) {
   for (const auto& [key, estimator] : other.estimators_) {
     estimators_.emplace(key, estimator->clone());
   }
@@ -36,8 +37,11 @@ FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   Method method = known ? last->second.method : method_for(person, config_);
   // A person who was fused from several sources a moment ago stays with the configured method while
   // one source is left.
-  const bool had = estimators_.contains({person.id, config_.method});
-  if (had && method == Method::InverseVariance) method = config_.method;
+  if (!person.carried && method == config_.method) several_[person.id] = instant.at;
+  const auto several = several_.find(person.id);
+  const bool recently =
+      several != several_.end() && instant.at - several->second <= config_.body.carry;
+  if (recently && method == Method::InverseVariance) method = config_.method;
   auto& estimator = estimators_[{person.id, method}];
   if (!estimator) estimator = begin(method, config_);
   FusedBody body = estimator->fuse(person, instant);
@@ -54,6 +58,7 @@ void Memory::keep_only(const std::set<PersonId>& tracked) {
   std::erase_if(estimators_,
                 [&](const auto& entry) { return !tracked.contains(entry.first.first); });
   std::erase_if(last_, [&](const auto& entry) { return !tracked.contains(entry.first); });
+  std::erase_if(several_, [&](const auto& entry) { return !tracked.contains(entry.first); });
 }
 
 FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,

@@ -44,6 +44,7 @@ class Memory {
 
   FusionConfig config_;
   std::map<PersonId, Last> last_;
+  std::map<PersonId, Timestamp> several_;  ///< When the configured method last was the right one.
   std::map<std::pair<PersonId, Method>, std::unique_ptr<Estimator>> estimators_;
 };
 

@@ -31,7 +31,8 @@ bool nearly_a_ray(const Joint& joint) {
   constexpr double kElongated = 3.0;  // ratio of the standard deviations along and across
   if (!joint.covariance.known()) return false;
   const Eigen::Matrix3d covariance = joint.covariance.matrix();
-  const double along = largest_sigma(covariance) * largest_sigma(covariance);
+  const double sigma = largest_sigma(covariance);
+  const double along = sigma * sigma;
   return along > kElongated * kElongated * (covariance.trace() - along) / 2.0;
 }
 

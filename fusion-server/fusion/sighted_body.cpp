@@ -131,7 +131,13 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
 
 PlacedJoint SightedBody::robust_squares(Sights& sights, const PlacedJoint& expected) const {
   auto found = least_squares(sights.views, config_.huber);
-  const bool open = !found || largest_sigma(found->covariance) > config_.max_sigma;
+  // A point says itself how little it knows; only what rays leave open is no place.
+  const bool point =
+      std::ranges::any_of(sights.views, [](const JointView& view) { return view.joint.seen(); });
+  const auto is_open = [&](const auto& solved) {
+    return !solved || (!point && largest_sigma(solved->covariance) > config_.max_sigma);
+  };
+  const bool open = is_open(found);
   sights.bounded = open;
   if (open && expected.placed) {
     std::vector<JointView> views = sights.views;
@@ -140,7 +146,7 @@ PlacedJoint SightedBody::robust_squares(Sights& sights, const PlacedJoint& expec
     views.back().covariance = expected.covariance;
     found = least_squares(views, config_.huber);
   }
-  if (!found || largest_sigma(found->covariance) > config_.max_sigma) return {};
+  if (is_open(found)) return {};
   for (std::size_t v = 0; v < sights.views.size(); ++v) sights.weighings[v].trust = found->trust[v];
   return {found->position, found->covariance, true};
 }

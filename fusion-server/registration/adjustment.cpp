@@ -285,7 +285,8 @@ Eigen::MatrixXd bias_covariance(Adjustment& adjustment) {
   ViewBias bias(std::move(eyes));
   std::size_t terms = 0;
   for (const WalkPoint& point : adjustment.points) terms += point.seen.size() * point.seen.size();
-  const std::size_t step = 1 + terms / kBiasTerms;
+  std::size_t step = 1 + terms / kBiasTerms;
+  if (step > 1) step |= 1U;  // odd, so that the joints of an instant take turns
   for (std::size_t k = 0; k < all.size(); k += step) {
     const double weight = adjustment.weight(all[k]) * static_cast<double>(step);
     if (weight > 0) bias.add(adjustment.points[k].seen, all[k], weight, ways[k]);

@@ -99,14 +99,37 @@ Pairs all_of(std::size_t count) {
 
 }  // namespace
 
-std::vector<std::pair<SensorId, SensorId>> partners_of(const std::map<SensorId, Walker>& walkers) {
+std::vector<SensorPair> partners_of(const std::map<SensorId, Walker>& walkers) {
   std::vector<SensorId> sensors;
   for (const auto& [sensor, walker] : walkers) sensors.push_back(sensor);
   const bool few = sensors.size() <= kAllPairs;
-  std::vector<std::pair<SensorId, SensorId>> partners;
+  std::vector<SensorPair> partners;
   for (const auto& [a, b] : few ? all_of(sensors.size()) : chosen_among(overlaps_of(walkers)))
     partners.emplace_back(sensors[a], sensors[b]);
   return partners;
+}
+
+std::vector<SensorPair> untried_links(const std::map<SensorId, Walker>& walkers,
+                                      const std::vector<SensorPair>& tried,
+                                      const std::vector<PairwiseRegistration>& edges) {
+  std::map<SensorId, std::size_t> group;
+  for (const auto& [sensor, walker] : walkers) group.emplace(sensor, group.size());
+  for (const PairwiseRegistration& edge : edges) {
+    const std::size_t from = group.at(edge.target);
+    const std::size_t to = group.at(edge.source);
+    for (auto& [sensor, number] : group) {
+      if (number == from) number = to;
+    }
+  }
+  const std::set<SensorPair> known(tried.begin(), tried.end());
+  std::vector<SensorPair> links;
+  for (auto target = group.begin(); target != group.end(); ++target) {
+    for (auto source = std::next(target); source != group.end(); ++source) {
+      const SensorPair pair{target->first, source->first};
+      if (target->second != source->second && !known.contains(pair)) links.push_back(pair);
+    }
+  }
+  return links;
 }
 
 }  // namespace chorus::registration

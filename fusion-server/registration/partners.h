@@ -15,10 +15,17 @@
 
 namespace chorus::registration {
 
+using SensorPair = std::pair<SensorId, SensorId>;  ///< Target and source.
+
 /// Target and source of every pair to try, each once, target before source, in ascending order.
 /// Pairs that never saw the person together are included: finding that out costs little, and the
 /// reason is reported.
-[[nodiscard]] std::vector<std::pair<SensorId, SensorId>> partners_of(
-    const std::map<SensorId, Walker>& walkers);
+[[nodiscard]] std::vector<SensorPair> partners_of(const std::map<SensorId, Walker>& walkers);
+
+/// The pairs that are not among the `tried` ones and lie between groups of sensors that `edges`
+/// leave unconnected: a pair that was chosen can still be refused.  Same order as partners_of().
+[[nodiscard]] std::vector<SensorPair> untried_links(const std::map<SensorId, Walker>& walkers,
+                                                    const std::vector<SensorPair>& tried,
+                                                    const std::vector<PairwiseRegistration>& edges);
 
 }  // namespace chorus::registration

@@ -56,9 +56,8 @@ struct Work {
 
  private:
   void note(std::string reason) {
-    if (std::find(result.reasons.begin(), result.reasons.end(), reason) == result.reasons.end()) {
+    if (std::ranges::find(result.reasons, reason) == result.reasons.end())
       result.reasons.push_back(std::move(reason));
-    }
   }
 };
 
@@ -70,14 +69,14 @@ void reduce_tracks(Work& work) {
 }
 
 void register_pairs(Work& work, const PairEstimator& estimate) {
-  for (const auto& [target, source] : partners_of(work.walkers)) {
-    auto edge = estimate(work.walkers.at(target), work.walkers.at(source));
-    if (edge) {
-      work.result.edges.push_back(std::move(*edge));
-    } else {
-      work.refusals.push_back({target, source, edge.error()});
-    }
-  }
+  const auto attempt = [&](const SensorPair& pair) {
+    auto edge = estimate(work.walkers.at(pair.first), work.walkers.at(pair.second));
+    if (!edge) return work.refusals.push_back({pair.first, pair.second, edge.error()});
+    work.result.edges.push_back(std::move(*edge));
+  };
+  const auto partners = partners_of(work.walkers);
+  std::ranges::for_each(partners, attempt);
+  std::ranges::for_each(untried_links(work.walkers, partners, work.result.edges), attempt);
 }
 
 /// Leaves out the sensors that contradict the others, by name.
@@ -238,8 +237,7 @@ bool linked(const Work& work, const SensorId& sensor) {
   return work.result.sensors.contains(sensor);
 }
 
-/// Notes why this sensor is left out: the reasons of its pairs with linked sensors; several "never
-/// together" are combined.
+/// Notes why this sensor is left out: what refused its pairs with linked sensors.
 void explain_unlinked(Work& work, const SensorId& sensor) {
   if (!work.result.verdicts[sensor].reasons.empty()) return;
   std::vector<std::string> strangers;
@@ -259,6 +257,8 @@ void explain_unlinked(Work& work, const SensorId& sensor) {
   } else if (strangers.size() == 1 && reasons.empty()) {
     const auto [first, second] = std::minmax(sensor.str(), strangers.front());
     reasons = {fmt::format("sensors {} and {} never saw the person together", first, second)};
+  } else if (reasons.empty() && strangers.empty()) {
+    reasons = {fmt::format("sensor {}'s pairs are all with sensors without a place", sensor.str())};
   } else if (reasons.empty()) {
     reasons = {fmt::format("sensor {} never saw the person together with any of {}", sensor.str(),
                            fmt::join(strangers, ", "))};

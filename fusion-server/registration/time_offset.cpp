@@ -62,15 +62,18 @@ double prior_of(const WalkTrack& track) {
   return std::max(kExact, median(std::move(stated)));
 }
 
-/// The shortest time from a frame's capture, by its stamp, to its receipt.
+/// The shortest time from a frame's capture, by its stamp, to its receipt.  One or two frames that
+/// are younger than all others by more than the usual jitter are odd stamps, and do not count.
 std::optional<Duration> least_age_of(const WalkTrack& track) {
-  std::optional<Duration> least;
+  constexpr std::size_t kOdd = 2;
+  constexpr Duration kJitter = std::chrono::milliseconds(20);
+  std::vector<Duration> ages;
   for (const SensorFrame& frame : track.frames) {
-    if (frame.received == Timestamp{}) continue;
-    const Duration age = frame.received - frame.captured;
-    least = std::min(least.value_or(age), age);
+    if (frame.received != Timestamp{}) ages.push_back(frame.received - frame.captured);
   }
-  return least;
+  if (ages.empty()) return std::nullopt;
+  std::ranges::sort(ages);
+  return *std::ranges::lower_bound(ages, ages[std::min(kOdd, ages.size() - 1)] - kJitter);
 }
 
 /// The pairs that are worth a search, each searched.
@@ -170,10 +173,23 @@ void mark_open(const Network& network, const RegistrationConfig& config, const P
   }
 }
 
-/// All offsets relative to the clock that is known best; of equally well known ones, the first.
+/// The clock that is known best.  Of three or more that are equally well known, the one in the
+/// middle: a single clock that is far off must not move all the others.
+std::size_t best_clock(const Network& network) {
+  const double least = *std::ranges::min_element(network.priors);
+  std::vector<std::size_t> best;
+  for (std::size_t i = 0; i < network.priors.size(); ++i) {
+    if (network.priors[i] <= least) best.push_back(i);
+  }
+  if (best.size() < 3) return best.front();
+  std::ranges::stable_sort(best, {},
+                           [&](std::size_t i) { return network.offsets[Network::at(i)]; });
+  return best[best.size() / 2];
+}
+
+/// All offsets relative to the clock that is known best.
 std::map<SensorId, ClockOffset> against_the_best(const Network& network) {
-  const auto least = std::ranges::min_element(network.priors);
-  const auto best = static_cast<std::size_t>(least - network.priors.begin());
+  const std::size_t best = best_clock(network);
   std::map<SensorId, ClockOffset> offsets;
   for (std::size_t i = 0; i < network.sensors.size(); ++i) {
     const double added = network.offsets[Network::at(i)] - network.offsets[Network::at(best)];

@@ -98,6 +98,8 @@ Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
   const registration::PairEstimator look_up = [&](const Walker& target, const Walker& source) {
     const auto found = solved.find({target.trail.sensor, source.trail.sensor});
     if (found != solved.end() && found->second->edge) return *found->second->edge;
+    if (found == solved.end() && !stopped())
+      return registration::register_walkers(target, source, job.config);
     return Result<PairwiseRegistration>(fail(ErrorCode::Unavailable, "registration", "given up"));
   };
   Registration found = registration::solve_with(registration::unless_open(look_up, clocks), walk,

@@ -115,6 +115,7 @@ std::string host_words(const http::ClientResponse& clock) {
   const std::string text = text_in(document, "maxErrorNanoseconds");
   const double most = text.empty() ? client::number_at(document, "maxErrorNanoseconds")
                                    : std::strtod(text.c_str(), nullptr);
+  if (!std::isfinite(most)) return " (synchronised)";
   return fmt::format(" (synchronised, by its own account at most {:.1f} ms off)", most / kNsPerMs);
 }
 

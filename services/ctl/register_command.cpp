@@ -171,7 +171,11 @@ Result<int> history(const ServiceClient& server, bool json) {
   if (!registration) return pass(registration);
   nlohmann::json sessions = nlohmann::json::array();
   for (const std::string& path : lines_at(*registration, "sessions")) {
-    if (auto session = server.get(path)) sessions.push_back(std::move(*session));
+    auto session = server.get(path);
+    if (session)
+      sessions.push_back(std::move(*session));
+    else if (session.error().code != ErrorCode::NotFound)
+      return pass(session);  // made room
   }
   if (json) return print_json(sessions);
   std::vector<std::vector<std::string>> rows{

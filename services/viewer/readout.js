@@ -8,7 +8,7 @@ const STILL_PX = 4; // a click that moved further has turned the view
 export function jointAt(bodies, toScreen, x, y) {
   let best = null;
   for (const body of bodies) {
-    for (const [name, joint] of Object.entries(body.joints)) {
+    for (const [name, joint] of Object.entries(body.joints ?? {})) {
       if (joint.state === 'NotTracked' || !Number.isFinite(joint.x)) continue;
       const on = toScreen(joint);
       const distance = on ? Math.hypot(on.x - x, on.y - y) : Infinity;
@@ -47,7 +47,7 @@ export class Readout {
     const toScreen = (joint) => this.toScreen(joint);
     const at = this.chosen ?? (this.pointer && jointAt(bodies, toScreen, ...this.pointer));
     const body = at && bodies.find(({ bodyId }) => bodyId === at.bodyId);
-    const place = body && Number.isFinite(body.joints[at.name]?.x) ? toScreen(body.joints[at.name]) : null;
+    const place = body && Number.isFinite(body.joints?.[at.name]?.x) ? toScreen(body.joints[at.name]) : null;
     this.box.hidden = !place;
     if (!place) return;
     this.box.textContent = this.linesOf(body, at.name).join('\n');

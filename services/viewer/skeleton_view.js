@@ -152,7 +152,7 @@ export class EllipsoidView {
     const matrix = new THREE.Matrix4();
     let drawn = 0;
     for (const body of bodies) {
-      for (const joint of Object.values(body.joints)) {
+      for (const joint of Object.values(body.joints ?? {})) {
         const covariance = seen(joint) && covarianceOf(joint);
         if (!covariance || drawn >= MOST_ELLIPSOIDS) continue;
         const [a, b, c, d, e, f] = rootOf(covariance).map((term) => REACH * term);

@@ -177,7 +177,10 @@ const readout = new Readout(canvas, camera, document.getElementById('joint'),
   (body, name) => jointLines(body, name, known.sensors, ageOf(known.frame)));
 
 /// Where a joint of the first person is on the screen [px].
-shown.where = (name) => known.frame?.bodies?.[0] && readout.toScreen(known.frame.bodies[0].joints[name]);
+shown.where = (name) => {
+  const joint = known.frame?.bodies?.[0]?.joints?.[name];
+  return joint && readout.toScreen(joint);
+};
 
 /// Ellipsoids and read-out of the newest frame, while somebody wants them.
 function showUncertainty() {

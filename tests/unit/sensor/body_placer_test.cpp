@@ -108,6 +108,37 @@ TEST(BodyPlacer, PeopleAreLearnedApart) {
   }
 }
 
+TEST(LearnedBones, AShapeWithoutExtentTeachesNothing) {
+  LearnedBones bones;
+  bones.learn(person(0.0));
+  bones.learn(person(1.0));
+  EXPECT_NEAR(length_of(bones.applied(person(1.0)), JointId::HipLeft, JointId::KneeLeft),
+              length_of(person(1.0), JointId::HipLeft, JointId::KneeLeft), 1e-9);
+}
+
+TEST(LearnedBones, AModelThatStatedTheSameForLongCanChangeItsMind) {
+  LearnedBones bones;
+  for (int i = 0; i < 20'000; ++i) bones.learn(person(1.0));
+  for (int i = 0; i < 3'000; ++i) bones.learn(person(1.1));
+  EXPECT_NEAR(length_of(bones.applied(person(1.0)), JointId::HipLeft, JointId::KneeLeft),
+              length_of(person(1.1), JointId::HipLeft, JointId::KneeLeft), 0.01);
+}
+
+TEST(BodyPlacer, LearnsNothingOfWhatTheCameraDoesNotSee) {
+  BodyPlacer placer;
+  Body invented = person(1.0);
+  invented[JointId::KneeLeft].position *= 2.0;
+  Body hidden = rays_at({0, 0, 3});
+  hidden[JointId::KneeLeft] = {};
+  for (int i = 0; i < 100; ++i) {
+    std::vector<BodyFrame> bodies{{BodyId{1}, {}, hidden}};
+    placer.place(bodies, std::vector<Body>{invented}, {});
+  }
+  std::vector<BodyFrame> bodies{{BodyId{1}, {}, rays_at({0, 0, 3})}};
+  placer.place(bodies, std::vector<Body>{person(1.0)}, {});
+  EXPECT_NEAR(bodies[0].skeleton[JointId::KneeLeft].position.z(), 3.0 - 0.1, 0.02);
+}
+
 TEST(BodyPlacer, WithoutAShapeThereAreRays) {
   BodyPlacer placer;
   std::vector<BodyFrame> bodies{{BodyId{1}, {}, rays_at({0, 0, 3})}};

@@ -32,11 +32,12 @@ class Tls {
     ::SSL_CTX_set_verify(context_, SSL_VERIFY_PEER, nullptr);
     const bool believed = ca.empty() ? ::SSL_CTX_set_default_verify_paths(context_) == 1
                                      : ::SSL_CTX_load_verify_locations(context_, ca.c_str(), nullptr) == 1;
+    if (host.empty()) return "there is no host name to check the certificate against";
     if (!believed) return "no certificate can be read from " + ca;
     ssl_ = ::SSL_new(context_);
     X509_VERIFY_PARAM* const wanted = ::SSL_get0_param(ssl_);
     if (::X509_VERIFY_PARAM_set1_ip_asc(wanted, host.c_str()) != 1) {  // it is a name
-      ::X509_VERIFY_PARAM_set1_host(wanted, host.c_str(), 0);
+      if (::X509_VERIFY_PARAM_set1_host(wanted, host.c_str(), 0) != 1) return "this is no host name: " + host;
       ::SSL_set_tlsext_host_name(ssl_, host.c_str());
     }
     ::SSL_set_connect_state(ssl_);
@@ -49,16 +50,20 @@ class Tls {
   }
   /// As Stream::receive.
   bool receive(Stream& stream, std::string& bytes, int patience_ms) {
-    std::string sealed;
-    const bool open = stream.receive(sealed, patience_ms);
-    ::BIO_write(::SSL_get_rbio(ssl_), sealed.data(), static_cast<int>(sealed.size()));
     const std::size_t before = bytes.size();
-    char chunk[4096];
-    int n = 0;
-    ::ERR_clear_error();
-    while ((n = ::SSL_read(ssl_, chunk, sizeof chunk)) > 0) bytes.append(chunk, static_cast<std::size_t>(n));
-    const bool goes_on = ::SSL_get_error(ssl_, n) == SSL_ERROR_WANT_READ && flush(stream) && open;
-    return goes_on || bytes.size() > before;  // the last words are heard before the end is told
+    while (true) {
+      std::string sealed;
+      const bool open = stream.receive(sealed, patience_ms);
+      ::BIO_write(::SSL_get_rbio(ssl_), sealed.data(), static_cast<int>(sealed.size()));
+      char chunk[4096];
+      int n = 0;
+      ::ERR_clear_error();
+      while ((n = ::SSL_read(ssl_, chunk, sizeof chunk)) > 0) bytes.append(chunk, static_cast<std::size_t>(n));
+      const bool goes_on = ::SSL_get_error(ssl_, n) == SSL_ERROR_WANT_READ && flush(stream) && open;
+      if (bytes.size() > before) return true;  // the last words are heard before the end is told
+      // A session ticket, or a part of a record, is no answer yet.
+      if (!goes_on || sealed.empty()) return goes_on;
+    }
   }
 
  private:
