@@ -173,23 +173,10 @@ void mark_open(const Network& network, const RegistrationConfig& config, const P
   }
 }
 
-/// The clock that is known best.  Of three or more that are equally well known, the one in the
-/// middle: a single clock that is far off must not move all the others.
-std::size_t best_clock(const Network& network) {
-  const double least = *std::ranges::min_element(network.priors);
-  std::vector<std::size_t> best;
-  for (std::size_t i = 0; i < network.priors.size(); ++i) {
-    if (network.priors[i] <= least) best.push_back(i);
-  }
-  if (best.size() < 3) return best.front();
-  std::ranges::stable_sort(best, {},
-                           [&](std::size_t i) { return network.offsets[Network::at(i)]; });
-  return best[best.size() / 2];
-}
-
-/// All offsets relative to the clock that is known best.
+/// All offsets relative to the clock that is known best; of equally well known ones, the first.
 std::map<SensorId, ClockOffset> against_the_best(const Network& network) {
-  const std::size_t best = best_clock(network);
+  const auto least = std::ranges::min_element(network.priors);
+  const auto best = static_cast<std::size_t>(least - network.priors.begin());
   std::map<SensorId, ClockOffset> offsets;
   for (std::size_t i = 0; i < network.sensors.size(); ++i) {
     const double added = network.offsets[Network::at(i)] - network.offsets[Network::at(best)];
