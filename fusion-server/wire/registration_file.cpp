@@ -27,7 +27,7 @@ constexpr const char* kClockStated = "clockStatedMilliseconds";
 constexpr const char* kClockLeastAge = "clockLeastAgeMilliseconds";
 constexpr double kMillisecond = 1e3;
 constexpr double kMaxClockOffset = 60e3;  // [ms]
-constexpr double kMaxClockAge = 60e3;    // [ms]
+constexpr double kMaxClockAge = 60e3;     // [ms]
 
 Error wrong(std::string where, std::string what) {
   return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
