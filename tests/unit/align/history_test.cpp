@@ -97,6 +97,18 @@ TEST(HistoryPush, FramesThatOvertakeEachOtherAreAllKeptInOrder) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(history.frames()[i].sequence, i + 1);
 }
 
+/// A connection that was held up delivers its queue at once.
+TEST(HistoryPush, ABurstOfOldFramesIsNoClockThatWasSetBack) {
+  History history;
+  history.push(numbered(50, std::chrono::seconds(3)));
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    SensorFrame old = numbered(1 + i, milliseconds(500 + 33 * static_cast<int>(i)));
+    old.received = kHistoryStart + std::chrono::seconds(4);
+    EXPECT_EQ(history.push(old), PushVerdict::Stale);
+  }
+  EXPECT_EQ(history.newest(), kHistoryStart + std::chrono::seconds(3));
+}
+
 TEST(HistoryPush, WhatComesFarTooLateIsRefusedAndLosesNothing) {
   History history;
   history.push(numbered(1, std::chrono::seconds(1)));

@@ -73,7 +73,7 @@ TEST(UntimelyFrames, AreCountedByWhatBecameOfThem) {
             std::string::npos);
   for (const std::uint64_t sequence : {14U, 15U, 16U})
     send(milliseconds(2600 + 33 * static_cast<int>(sequence - 14)), sequence,
-         std::chrono::seconds(3));
+         milliseconds(3000 + 33 * static_cast<int>(sequence - 13)));
   EXPECT_EQ(core.fates(s1).restarts, 1U);
   EXPECT_EQ(core.fates(s1).backwards, 1U) << "the stale one was the first of three";
 }

@@ -315,24 +315,6 @@ TEST(BodyFilter, ABodyThatOneSourceStatesWithItsCovariancesIsTakenAsItIs) {
   EXPECT_LT(wrist_off(room.at(2 * kFilterSteps + 40, {stated(moving)}), moving), 1e-12);
 }
 
-/// Wide as it is, what a point states is a place; only rays can leave a joint open.
-TEST(BodyFilter, AJointOfWhichASinglePointHardlyKnowsTheDepthStaysSeen) {
-  auto guessed = standing();
-  for (Joint& joint : guessed.joints) {
-    const Eigen::Vector3d sigma(0.02, 0.02, 0.4);
-    if (joint.seen())
-      joint.covariance = Covariance(Eigen::Matrix3d(sigma.cwiseProduct(sigma).asDiagonal()));
-  }
-  Skeleton<WorldSpace> head;
-  head[Head] = standing()[Head];
-  Room room;
-  for (int i = 0; i < 3; ++i) {
-    const FusedBody body = room.at(i, {view_of(1, guessed), view_of(2, head)});
-    EXPECT_TRUE(body.skeleton[AnkleLeft].seen()) << i;
-    EXPECT_LT(wrist_off(body, standing()), 0.05) << i;
-  }
-}
-
 TEST(BodyFilter, WhatASensorErrsByIsForgottenAsThePersonTurns) {
   const auto after_a_turn = [](double bias_turn) {
     Room room;

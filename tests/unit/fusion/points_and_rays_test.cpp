@@ -71,6 +71,20 @@ TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
   EXPECT_EQ(method_for(person(0.25, 0.025), config), Method::Mean);
 }
 
+/// Wide as it is, what a point states is a place; only rays can leave a joint open.
+TEST(PointsAndRays, APointOfGuessedDepthStaysSeenInTheBodyFilter) {
+  SensorView guessed = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 3});
+  guessed.skeleton[JointId::Neck].covariance =
+      Covariance(Eigen::Matrix3d(Eigen::Vector3d(4e-4, 4e-4, 0.16).asDiagonal()));
+  SensorView precise = neck_view(2, {0, 1.2, 0}, 0.5, {3, 1, 0});
+  std::swap(precise.skeleton[JointId::Head], precise.skeleton[JointId::Neck]);
+  Cell cell;
+  cell.config.method = Method::BodyFilter;
+  const FusedBody body = cell.at(milliseconds(0), {guessed, precise});
+  EXPECT_TRUE(body.skeleton[JointId::Head].seen());
+  EXPECT_TRUE(body.skeleton[JointId::Neck].seen());
+}
+
 TEST(PointsAndRays, AnswersForPeopleOfWhomThereAreRaysAloneWhateverTheMethod) {
   const Eigen::Vector3d neck(0.2, 1.4, 0.1);
   Cell cell;
