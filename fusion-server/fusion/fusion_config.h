@@ -32,7 +32,7 @@ struct FusionConfig {
   double zero_weight_floor = 0.02;
   NoiseModel noise;  ///< For sensors without an entry of their own.
   std::map<SensorId, NoiseModel> sensor_noise;
-  PoseError pose_error;         ///< InverseVariance: part of the covariance that it states.
+  PoseError pose_error;  ///< InverseVariance, BodyFilter: part of the covariance that they state.
   double common_sigma = 0.004;  ///< Error common to all sensors [m]; added to stated variances.
   double huber = 1.5;  ///< [standard deviations]; robust loss: InverseVariance, PointsAndRays.
   /// BestSkeleton, Substitution: how long another view must be better before it takes over.
