@@ -70,5 +70,20 @@ TEST(PartnersOf, WhoNeverSawThePersonTogetherIsTriedSoThatItIsTold) {
   EXPECT_EQ(partners_with(partners_of(walkers), 300), 14u);
 }
 
+/// A pair that was chosen can be refused: only edges link sensors.
+TEST(UntriedLinks, AreThePairsBetweenGroupsThatNoEdgeConnects) {
+  const auto walkers = crowd(4);  // 100 to 103
+  const std::vector<SensorPair> tried{{sensor(100), sensor(101)}, {sensor(101), sensor(102)}};
+  PairwiseRegistration edge;
+  edge.target = sensor(100);
+  edge.source = sensor(101);
+  const std::vector<SensorPair> expected{{sensor(100), sensor(102)},
+                                         {sensor(100), sensor(103)},
+                                         {sensor(101), sensor(103)},
+                                         {sensor(102), sensor(103)}};
+  EXPECT_EQ(untried_links(walkers, tried, {edge}), expected);
+  EXPECT_TRUE(untried_links(walkers, partners_of(walkers), {edge}).empty());
+}
+
 }  // namespace
 }  // namespace chorus::registration
