@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fusion-server/fusion/error_model.h"
 #include "fusion-server/fusion/fuse.h"
 #include "tests/unit/fusion/cameras.h"
 #include "tests/unit/fusion/views.h"
@@ -83,6 +84,19 @@ TEST(PointsAndRays, APointOfGuessedDepthStaysSeenInTheBodyFilter) {
   const FusedBody body = cell.at(milliseconds(0), {guessed, precise});
   EXPECT_TRUE(body.skeleton[JointId::Head].seen());
   EXPECT_TRUE(body.skeleton[JointId::Neck].seen());
+}
+
+/// Rounded to floats, a covariance of rank one has eigenvalues below 0.
+TEST(StatedCovariance, CanBeInvertedHoweverThinItIs) {
+  const Eigen::Vector3d depth = Eigen::Vector3d(0.3, 0.5, 0.81).normalized();
+  SensorView view = neck_view(1, {0, 1, 0}, 0.5);
+  for (const double sigma : {0.3, 3.0, 10.0}) {
+    view.skeleton[JointId::Neck].covariance =
+        Covariance(Eigen::Matrix3d(sigma * sigma * depth * depth.transpose()));
+    const Eigen::Matrix3d used = line_of_sight_errors({}, {})->covariance(view, JointId::Neck);
+    EXPECT_EQ(used.llt().info(), Eigen::Success) << sigma;
+    EXPECT_NEAR(used.trace(), sigma * sigma, 1e-3 * sigma * sigma);
+  }
 }
 
 TEST(PointsAndRays, AnswersForPeopleOfWhomThereAreRaysAloneWhateverTheMethod) {
