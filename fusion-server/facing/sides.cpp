@@ -139,16 +139,32 @@ bool nobody_tells(const Instant& now) {
   return sum < kBlind;
 }
 
+/// Log odds that the held sides are right, from the labels of all sensors that tell front from
+/// rear.
+double sight_of_all(const Instant& now, const Person& person, const SidesMemory& memory,
+                    const TellingPrior& prior) {
+  double sum = 0.0;
+  for (std::size_t v = 0; v < person.views.size(); ++v) {
+    const auto telling = memory.telling.find(person.views[v].sensor);
+    if (telling != memory.telling.end())
+      sum += sight_log_odds(now.agree[v], telling->second, prior);
+  }
+  return sum;
+}
+
 /// The evidence of an instant.  A view's first evidence counts in full, later evidence only as far
 /// as it is new.
 Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, const Spans& spans,
-                     const SidesConfig& config) {
+                     const SidesMemory& memory, const SidesConfig& config) {
   const Eigen::Vector3d forward = forward_of(spans);
   const double posture = posture_log_odds(person.views, forward, config.posture);
   Evidence evidence;
   evidence.news =
-      now.first ? posture : posture_news(posture, sides.posture, now.elapsed, config.posture.same);
+      now.first ? posture : news(posture, sides.posture, now.elapsed, config.posture.same);
   for (const LabelStep& step : now.steps) evidence.news += step.log_ratio;
+  const double sight = sight_of_all(now, person, memory, config.telling);
+  if (!now.first) evidence.news += news(sight, sides.sight, now.elapsed, config.telling.same);
+  sides.sight = sight;
   evidence.walking = sides.walk.log_odds(forward, config.walking);
   evidence.share = now.first ? 1.0 : std::min(1.0, now.elapsed / config.walking.same);
   sides.posture = posture;
@@ -158,6 +174,7 @@ Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, con
 void turn_round(Instant& now, Sides& sides, Spans& spans) {
   sides.filter.turn_round();
   sides.posture = -sides.posture;
+  sides.sight = -sides.sight;
   for (Spans* each : {&sides.spans, &spans}) {
     for (Eigen::Vector3d& span : *each) span = -span;
   }
@@ -176,7 +193,10 @@ void learn(const Instant& now, const Person& person, const Sides& sides, SidesMe
   if (sides.filter.right() < config.learn_from) return;
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     const Passage& passage = now.steps[v].passage;
-    if (passage.elapsed > 0) memory.habits[person.views[v].sensor].learn(passage, config.habit);
+    if (!(passage.elapsed > 0)) continue;
+    const SensorId& sensor = person.views[v].sensor;
+    memory.habits[sensor].learn(passage, config.habit);
+    memory.telling[sensor].learn(passage, config.telling);
   }
 }
 
@@ -215,8 +235,9 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   auto before = recall(memory, person.id, instant, config);
   now.first = !before;
   Sides sides =
-      before ? std::move(*before)
-             : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, {}};
+      before
+          ? std::move(*before)
+          : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, {}};
   now.elapsed = seconds(instant - sides.seen);
   look_at_views(now, person, sides);
   Spans spans = joined(now);
@@ -225,7 +246,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   step_views(now, person, spans, sides, memory, config);
   sides.walk.follow(person.views, instant, config.walking);
   sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
-  sides.filter.update(evidence_of(now, person, sides, spans, config));
+  sides.filter.update(evidence_of(now, person, sides, spans, memory, config));
   if (must_turn(sides.filter, now.first, config)) {
     turn_round(now, sides, spans);
   } else {

@@ -248,6 +248,31 @@ TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   EXPECT_GT(first_odds(memory), first_odds({}) + 0.005);
 }
 
+/// Somebody turns between sensors, and then their sides slip, as when limbs cross in a jump.  The
+/// body tells nothing, so only the labels can.
+bool right_after_a_slip(const std::vector<Flips>& flips) {
+  SidesMemory memory;
+  Ring ring(kSix, flips);
+  const auto instant = [&](double t, double heading, const Posture& posture) {
+    const auto exact = body_at({0, 0, 0}, heading, posture);
+    Person person = ring.look(exact, heading);
+    resolve_sides(person, kStart + from_seconds(t), memory, {});
+    return std::ranges::all_of(person.views, [&](const auto& v) { return is_right(v, exact); });
+  };
+  double t = 0.0;
+  for (; t < 10.0; t += kSidesStep) instant(t, wrap_angle(deg(80) * t), kAtWork);
+  for (Eigen::Vector3d& span : memory.people.at(PersonId{1}).spans) span = -span;
+  bool right = false;
+  for (const double end = t + 2.0; t < end; t += kSidesStep) right = instant(t, 0.0, kPlank);
+  return right;
+}
+
+TEST(Sides, ThatSlippedArePutRightBySensorsThatTellFrontFromRear) {
+  EXPECT_TRUE(right_after_a_slip({kNever}));
+  EXPECT_TRUE(right_after_a_slip({kNever, {deg(130), deg(55)}}));
+  EXPECT_FALSE(right_after_a_slip({{deg(130), deg(55)}}));
+}
+
 /// Sides are held as firmly after a reversal as when they were first found.
 TEST(Sides, ThatTurnedRoundStayWithTheirPosture) {
   SidesMemory memory;
