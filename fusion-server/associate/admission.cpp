@@ -95,7 +95,8 @@ bool Admission::misses(const Observer& observer, const Track& track,
   if (!looks_at(observer, place)) return false;
   const bool sees_somebody =
       std::ranges::any_of(bodies_of(observer.sensor), [&](const Assigned& body) {
-        const bool here = (on_floor(body.core) - on_floor(place)).norm() <= config_.gate;
+        const bool here =
+            horizontal_distance(body.core, place, body.error, config_.gate) <= config_.gate;
         return here && (body.track == track.id || !body.settled);
       });
   return !sees_somebody && !hidden_from(observer, place);

@@ -16,6 +16,7 @@ namespace chorus::associate {
 struct Assigned {
   SensorId sensor;
   Eigen::Vector3d core = Eigen::Vector3d::Zero();  ///< World [m].
+  PlanError error = PlanError::Zero();             ///< Of `core`, as the sensor states it.
   PersonId track;
   bool settled = false;  ///< True if the track is already published.
 };

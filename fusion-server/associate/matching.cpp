@@ -69,8 +69,9 @@ double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vect
   if (!body.rays) {
     const Track& track = candidate.track;
     const Build& known = track.before ? *track.before : track.build;
-    return std::hypot(horizontal_distance(body.core, place),
-                      kSizeReach * size_difference(loose.spans, known)) /
+    return std::hypot(
+               horizontal_distance(body.core, place, body.error + track.error, candidate.gate),
+               kSizeReach * size_difference(loose.spans, known)) /
                candidate.gate +
            (candidate.track.admitted ? 0.0 : kDoubtful);
   }
@@ -127,11 +128,13 @@ void assign_all(BySensor& sensors, const std::vector<Candidate>& candidates) {
 
 /// Complete linkage: distance of the view to the farthest member; none when its sensor already has
 /// a member.
-std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& view) {
+std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& view,
+                              double limit) {
   if (has_sensor(cluster, view.view.sensor)) return std::nullopt;
   double farthest = 0.0;
   for (const PlacedView& member : cluster) {
-    farthest = std::max(farthest, horizontal_distance(member.core, view.core));
+    farthest = std::max(
+        farthest, horizontal_distance(member.core, view.core, member.error + view.error, limit));
   }
   return farthest;
 }
@@ -157,7 +160,7 @@ std::vector<std::vector<PlacedView>> cluster(std::vector<PlacedView> views, doub
     std::vector<PlacedView>* nearest = nullptr;
     double least = limit;
     for (auto& members : clusters) {
-      const auto distance = linkage(members, view);
+      const auto distance = linkage(members, view, limit);
       if (!distance || *distance > least) continue;
       nearest = &members;
       least = *distance;

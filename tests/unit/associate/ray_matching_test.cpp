@@ -143,7 +143,8 @@ TEST(RayMatching, OneBehindAnotherIsToldApartBySize) {
   for (const Person& person : found) {
     const auto body = locate([&] {
       std::vector<PlacedView> views;
-      for (const SensorView& view : person.views) views.push_back({view, {}, true});
+      for (const SensorView& view : person.views)
+        views.push_back({view, Eigen::Vector3d::Zero(), PlanError::Zero(), true});
       return views;
     }());
     const double x = middle_of(body)->x();
