@@ -108,7 +108,8 @@ TEST(RecordingStream, HoldsFewChunksHoweverManyThereAre) {
 TEST(RecordingStream, RefusesChunksThatAreAllDueAtOnce) {
   std::string bytes = head_of_file();
   for (int i = 0; i < 2000; ++i) bytes += chunk_of({{1, 0}, {1, 5000 - i}});
-  auto stream = RecordingStream::of_bytes(bytes + end_of_file(), {.max_total_bytes = 20'000});
+  bytes += end_of_file();  // A stream reads from the caller's bytes.
+  auto stream = RecordingStream::of_bytes(bytes, {.max_total_bytes = 20'000});
   ASSERT_TRUE(stream);
   auto message = stream->next();
   while (message && *message) message = stream->next();
