@@ -37,8 +37,12 @@ Passage passage(const Labels& now, double before, double after) {
 
 }  // namespace
 
+double shown_log_odds(const Spans& view, const Spans& held) {
+  return 2.0 * agreement(view, held) / (kSpanSigma * kSpanSigma);
+}
+
 double agreement_log_odds(const Spans& view, const Spans& held) {
-  return std::clamp(2.0 * agreement(view, held) / (kSpanSigma * kSpanSigma), -kMaxAgree, kMaxAgree);
+  return std::clamp(shown_log_odds(view, held), -kMaxAgree, kMaxAgree);
 }
 
 LabelStep step_labels(const std::optional<Exchanged>& before, const Labels& now,

@@ -50,17 +50,24 @@ void keep_lost(Spans& spans, const Spans& before) {
 }
 
 /// True if the view opposes the held sides.  A view that clearly shows left and right is trusted;
-/// for an unclear one the last decision is kept.
-bool opposes(const SensorView& view, double agree, const Sides& sides) {
+/// for an unclear one the last decision is kept.  A sensor that tells front from rear seldom
+/// exchanges them, so that its view must show it the more clearly.
+bool opposes(const SensorView& view, const Spans& spans, const Sides& sides,
+             const SidesMemory& memory, const SidesConfig& config) {
+  const auto telling = memory.telling.find(view.sensor);
+  const double usually =
+      telling == memory.telling.end() ? 0.0 : usual_log_odds(telling->second, config.telling);
+  const double agree = usually + shown_log_odds(spans, sides.spans);
   if (std::abs(agree) > kClear) return agree < 0;
   const auto before = sides.views.find(view.sensor);
   return before != sides.views.end() && before->second.exchanged.held > 0.5;
 }
 
-void look_at_views(Instant& now, const Person& person, const Sides& sides) {
+void look_at_views(Instant& now, const Person& person, const Sides& sides,
+                   const SidesMemory& memory, const SidesConfig& config) {
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     now.agree.push_back(agreement_log_odds(now.views[v], sides.spans));
-    now.exchanged.push_back(opposes(person.views[v], now.agree[v], sides));
+    now.exchanged.push_back(opposes(person.views[v], now.views[v], sides, memory, config));
   }
 }
 
@@ -239,7 +246,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
           ? std::move(*before)
           : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, {}};
   now.elapsed = seconds(instant - sides.seen);
-  look_at_views(now, person, sides);
+  look_at_views(now, person, sides, memory, config);
   Spans spans = joined(now);
   spans = followed(sides.spans, spans, trust_in(spans, sides.spans));
   keep_lost(spans, sides.spans);

@@ -42,4 +42,8 @@ class Telling {
 [[nodiscard]] double sight_log_odds(double agree, const Telling& telling,
                                     const TellingPrior& prior);
 
+/// Log odds that the labels of a sensor are right before they are looked at; 0 unless the sensor is
+/// known to tell front from rear.
+[[nodiscard]] double usual_log_odds(const Telling& telling, const TellingPrior& prior);
+
 }  // namespace chorus::facing

@@ -273,6 +273,20 @@ TEST(Sides, ThatSlippedArePutRightBySensorsThatTellFrontFromRear) {
   EXPECT_FALSE(right_after_a_slip({{deg(130), deg(55)}}));
 }
 
+TEST(Sides, AreNotTurnedByAKickAcross) {
+  SidesMemory memory;
+  for (int i = 0; i < 60; ++i) {
+    auto exact = body_at({0, 0, 0}, 0);
+    if (i >= 30 && i < 36) {
+      exact[JointId::AnkleLeft].position.x() = -0.5;
+      exact[JointId::AnkleRight].position.x() = 0.5;
+    }
+    Person person{PersonId{1}, {view_from(1, 0, exact), view_from(2, deg(60), exact)}};
+    resolve_sides(person, kStart + i * kFrame, memory, {});
+    for (const SensorView& view : person.views) ASSERT_TRUE(is_right(view, exact)) << i;
+  }
+}
+
 /// Sides are held as firmly after a reversal as when they were first found.
 TEST(Sides, ThatTurnedRoundStayWithTheirPosture) {
   SidesMemory memory;

@@ -1,5 +1,7 @@
 #include "fusion-server/facing/telling.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
@@ -38,6 +40,12 @@ TEST(Telling, MakesEveryViewEvidence) {
   EXPECT_NEAR(sight_log_odds(0.0, known, kTellingPrior), 0.0, 1e-9);
   // At most as much as a sensor is wrong itself: log(0.97 / 0.03) = 3.5.
   EXPECT_LT(sight_log_odds(4.0, known, kTellingPrior), 3.5);
+}
+
+TEST(Telling, AsksMoreOfAViewThatLooksExchanged) {
+  EXPECT_NEAR(usual_log_odds(watched(170, 10.0, false), kTellingPrior), std::log(0.97 / 0.03), 0.1);
+  EXPECT_EQ(usual_log_odds(Telling{}, kTellingPrior), 0.0);
+  EXPECT_EQ(usual_log_odds(watched(170, 10.0, true), kTellingPrior), 0.0);
 }
 
 TEST(Telling, IsNeverAssumed) {
