@@ -61,8 +61,8 @@ class ConfigReader {
   /// Adds a problem that the caller found with the value of this key ("must be below ...").
   void complain(std::string_view key, std::string message);
 
-  /// All problems in one Error (Malformed or InvalidArgument), or success.  Call it on the root,
-  /// once, after everything has been read.
+  /// All problems in one InvalidArgument error, or success.  Call it on the root, once, after
+  /// everything has been read.
   [[nodiscard]] Result<void> finish() const;
 
   struct Node;  ///< Private: the parsed tree and the problem list.

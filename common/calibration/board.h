@@ -23,7 +23,8 @@ struct Board {
   int marker_bits = 4;      ///< 4 to 7, as in OpenCV's dictionaries DICT_4X4 to DICT_7X7.
 };
 
-/// InvalidArgument names the option to change.
+/// Refuses a board that cannot be made: an InvalidArgument error whose context is the option to
+/// change.
 [[nodiscard]] Result<void> check(const Board& board);
 
 /// Number of inner corners.
@@ -33,10 +34,11 @@ struct Board {
 /// beginning of the next larger one.)
 [[nodiscard]] int markers_in_dictionary(const Board& board);
 
-/// "charuco, 8 x 6 squares of 30 mm, markers of 22 mm (DICT_4X4_50)"
+/// "charuco, 8 x 6 squares of 30 mm, markers of 22.5 mm (DICT_4X4_50)"
 [[nodiscard]] std::string description(const Board& board);
 
-/// A black rectangle: x to the right and y up from the board's lower left corner [mm].
+/// A black rectangle [mm]: x and y of its lower left corner, to the right and up from that of the
+/// board.
 struct BlackPart {
   double x = 0.0;
   double y = 0.0;
@@ -44,7 +46,7 @@ struct BlackPart {
   double height = 0.0;
 };
 
-/// Everything that is black; parts that touch are joined.
+/// Everything that is black; neighbouring cells in a row of a marker make one part.
 [[nodiscard]] std::vector<BlackPart> black_parts(const Board& board);
 
 }  // namespace chorus::calibration

@@ -58,7 +58,8 @@ Eigen::Vector2d fall_of(const View& view, const Affine& map) {
 }
 
 Look look_of(const View& view, PictureSize size) {
-  constexpr double kAcross = 4.0;  // a board's width relative to the deviation of its corners
+  constexpr double kAcross = 4.0;  // a board's width relative to the standard deviation of its
+                                   // corners
   const Affine map = affine_of(view);
   const auto count = static_cast<double>(view.corners.size());
   const double extent = kAcross * std::sqrt(map.scatter.trace() / count);

@@ -193,7 +193,7 @@ std::string header_of(const Take& take, std::size_t data_start) {
   append_word(header, 0);  // analog samples per frame
   append_word(header, 1);  // first frame
   append_word(header, std::min(take.frames, kMaxFrames));
-  append_word(header, 0);  // interpolated gap
+  append_word(header, 0);  // longest gap that was interpolated
   append_float(header, kFloatsInMillimetres);
   append_word(header, data_start);
   append_word(header, 0);  // analog samples per channel

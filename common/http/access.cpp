@@ -75,7 +75,7 @@ std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
   return basic ? password_in(*basic) : std::nullopt;
 }
 
-/// The role of the request's token; none without one of our tokens.  Every token is compared, so
+/// The role of the request's token; none if it has none of our tokens.  Every token is compared, so
 /// that the time does not reveal which one matched.
 std::optional<Role> role_of(const RequestHead& head, Role needed, const Guard& guard) {
   const auto secret = secret_in(head, needed);
@@ -118,7 +118,7 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
 std::vector<std::string> host_names() { return net::names_of(net::host_name()); }
 
 bool from_own_page(const RequestHead& head) {
-  // If a proxy in front of us ends TLS, the page's origin is https.
+  // If a proxy in front of us terminates TLS, the page's origin is https.
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (is_present(head.origin) && head.origin.starts_with(scheme) &&
         equal_ignoring_case(head.origin.substr(scheme.size()), head.host))

@@ -27,7 +27,10 @@ class HttpConnection final : public Connection {
   void expire() override;
   void stop() override;
   void close() override;
-  [[nodiscard]] bool idle() const override { return conversation_.idle(); }  // handshake included
+  [[nodiscard]] bool idle() const override {
+    return conversation_.idle();
+  }  // true during the TLS
+     // handshake too
 
  private:
   using Beginning = Orders (Conversation::*)(SteadyTime);

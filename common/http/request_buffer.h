@@ -42,7 +42,7 @@ class RequestBuffer {
   std::size_t capacity_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
-  std::size_t checked_ = 0;  ///< The length of the beginning of unread() in which no head ends.
+  std::size_t checked_ = 0;  ///< No head ends in the first `checked_` bytes of unread().
 };
 
 }  // namespace chorus::http
