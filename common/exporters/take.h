@@ -58,7 +58,7 @@ struct TakeOptions {
   std::optional<PersonId> person = {};  ///< Export only this person.
 };
 
-/// Limit for the poses of all persons together; one pose takes 2 kB.
+/// Limit for the poses of all persons together; one pose takes 2.6 kB.
 inline constexpr std::size_t kMaxPoses = 500'000;
 
 /// Puts the samples, which may come in any order, on the grid.  Refuses: no samples; a rate below 0

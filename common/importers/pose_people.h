@@ -20,11 +20,11 @@ struct PosePerson {
 };
 
 /// Numbers people consistently where a file numbers them from scratch in every picture: each gets
-/// the number of the nearest person of the pictures before, if that person is within half a body
-/// height.
+/// the number of the nearest person of the pictures before, if that person is within half the
+/// person's size (Known::size).
 class PeopleNumbers {
  public:
-  /// A different number for each; the file's ids, if all people have one.
+  /// A different number for each; the file's ids, if all people have different ones.
   [[nodiscard]] std::vector<std::uint64_t> number(const std::vector<PosePerson>& people);
 
  private:
