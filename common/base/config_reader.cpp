@@ -21,8 +21,7 @@ using nlohmann::json;
 constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
 /// Limits the length of arrays, and the array index in --set.
 constexpr std::size_t kMaxArrayLength = 4096;
-constexpr std::size_t kShownCharacters = 80;  ///< Messages quote at most this much of a wrong
-                                              ///< value.
+constexpr std::size_t kShownCharacters = 80;  ///< Limit for quoting a wrong value [bytes].
 constexpr double kMillisecondsPerSecond = 1e3;
 
 /// What is wrong with a value; names the key that was given twice, if any.

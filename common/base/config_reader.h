@@ -7,8 +7,8 @@
 //   if (auto ok = root->finish(); !ok) return pass(ok);   // unknown keys, wrong types, ranges
 //
 // An absent key leaves the default unchanged.  finish() reports all problems at once: unknown keys
-// with their full path and the nearest known key, wrong types, values out of range.  The names of
-// keys end in their unit.
+// with their full path and the nearest known key, wrong types, values out of range.  The key of a
+// quantity ends in its unit ("best_distance_m").
 #pragma once
 
 #include <cstdint>

@@ -20,8 +20,7 @@
 namespace chorus {
 namespace {
 
-constexpr int kLookMs = 1000;  // A blocked writer checks at this interval whether it is still
-                               // needed [ms].
+constexpr int kLookMs = 1000;  // Interval at which a blocked writer checks `ended` [ms].
 
 /// While this exists, new threads start with all signals blocked, so that only the program's other
 /// threads handle signals.
@@ -59,10 +58,8 @@ struct LineWriter::State {
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<Line> waiting;           ///< Guarded by mutex.
-  std::uint64_t missing_last = 0;      ///< Lines dropped after the last of `waiting`; guarded by
-                                       ///< mutex.
-  std::uint64_t untold = 0;            ///< Lines dropped but not yet reported; only the writer's
-                                       ///< thread uses it.
+  std::uint64_t missing_last = 0;      ///< Lines dropped after `waiting`; guarded by mutex.
+  std::uint64_t untold = 0;            ///< Dropped lines not yet reported; writer's thread only.
   std::atomic<std::size_t> bytes = 0;  ///< Bytes waiting or being written.
   std::atomic<std::uint64_t> dropped = 0;
   /// Grows whenever the reader takes some bytes, and whenever a line is finished or lost.

@@ -1,4 +1,5 @@
-// A calibration board: what it looks like, and where its inner corners are.  Pure.
+// A calibration board: what it looks like, and where its inner corners are.  All functions are
+// pure.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,8 @@
 namespace chorus::calibration {
 
 enum class BoardKind {
-  Charuco,    ///< Markers in the white squares: found even if only a part of it is visible.
-  Chessboard  ///< Without markers: must be entirely visible.
+  Charuco,    ///< Has markers in the white squares; found even if only a part is visible.
+  Chessboard  ///< Has no markers; must be entirely visible.
 };
 
 struct Board {

@@ -153,7 +153,7 @@ Result<std::string> board_png(const Board& board) {
   if (!cv::imencode(".png", picture, bytes))
     return fail(ErrorCode::Internal, "board", "the picture could not be encoded");
   std::string out(bytes.begin(), bytes.end());
-  constexpr std::size_t kBehindHeader = 33;  // signature, and the chunk IHDR
+  constexpr std::size_t kBehindHeader = 33;  // after the signature and the chunk IHDR
   return out.insert(kBehindHeader, resolution_chunk());
 }
 

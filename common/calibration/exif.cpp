@@ -8,8 +8,7 @@ namespace chorus::calibration {
 namespace {
 
 constexpr std::string_view kExif("Exif\0\0", 6);
-constexpr std::uint32_t kExifFolder = 0x8769;   // tag: where the directory of Exif's own tags
-                                                // begins
+constexpr std::uint32_t kExifFolder = 0x8769;   // tag: offset of the directory of Exif
 constexpr std::uint32_t kFocalOn35mm = 0xA405;  // tag
 constexpr double kFilmWidth = 36.0;             // [mm]
 constexpr double kFilmHeight = 24.0;

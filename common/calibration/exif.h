@@ -1,4 +1,4 @@
-// The focal length that a camera writes into its photos (Exif 2.3).  Pure.
+// The focal length that a camera writes into its photos (Exif 2.3).  All functions are pure.
 #pragma once
 
 #include <optional>

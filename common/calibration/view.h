@@ -1,4 +1,5 @@
-// The corners of a board in one picture, and the choice among many pictures.  Pure.
+// The corners of a board in one picture, and the choice among many pictures.  All functions are
+// pure.
 #pragma once
 
 #include <string>

@@ -168,7 +168,7 @@ std::string parameters_of(const Take& take, std::size_t data_start) {
   parameters.group("ANALOG");
   parameters.add("USED", word(0));
   parameters.add("GEN_SCALE", real(1.0));
-  // No analog samples; py-c3d compares this rate with the header's.
+  // There are no analog samples, so their rate is 0; py-c3d compares it with the header.
   parameters.add("RATE", real(0.0));
   for (const std::string_view name : {"LABELS", "DESCRIPTIONS", "UNITS"})
     parameters.add(name, {-1, {0, 0}, {}});

@@ -8,8 +8,7 @@
 namespace chorus::exporters {
 namespace {
 
-constexpr double kThickness = 0.08;  // Half the width of an octahedron, as a fraction of the bone's
-                                     // length.
+constexpr double kThickness = 0.08;  // Half an octahedron's width, relative to the bone's length.
 constexpr double kWaist = 0.2;       // Position of the widest part, as a fraction of that length.
 constexpr std::array<std::array<double, 3>, 6> kColours{{{0.90, 0.45, 0.13},
                                                          {0.16, 0.50, 0.73},

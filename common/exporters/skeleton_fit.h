@@ -1,4 +1,5 @@
-// A skeleton of constant bones that follows a person; BVH and glTF can express only such skeletons.
+// A skeleton with bones of constant length that follows a person; BVH and glTF can express only
+// such skeletons.
 //
 // Fused joints are points, and the distances between them vary by centimetres.  Files of skeletal
 // animation hold one rest pose and a rotation per joint and frame.  We derive from the whole track:

@@ -14,8 +14,7 @@ namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr Duration kSameInstant = std::chrono::microseconds(1);
-constexpr double kWholeHertz = 1e-6;  // A rate as near as this to a whole number is rounded to it
-                                      // (relative).
+constexpr double kWholeHertz = 1e-6;  // Relative tolerance for rounding a rate to whole hertz.
 constexpr double kUsualHz = 30.0;     // For a single sample.
 constexpr double kMaxRateHz = 1000.0;
 

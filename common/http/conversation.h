@@ -26,7 +26,7 @@ struct ConversationContext {
   const ServerConfig& config;
   const Responder& responder;
   AtomicCounters& counters;
-  const bool& stopping;  ///< The server is stopping: each answer is the last one of its connection.
+  const bool& stopping;  ///< While the server stops, each answer is the last one of its connection.
 };
 
 class Conversation {

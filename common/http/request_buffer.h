@@ -11,8 +11,8 @@
 
 namespace chorus::http {
 
-/// The buffer has a fixed size; further bytes stay in the kernel.  Bytes are not moved before
-/// compact(), so views of a head remain valid while its body is read.
+/// The buffer has a fixed size; further bytes stay in the kernel.  A head is not moved before
+/// compact(), so views of it remain valid while its body is read.
 class RequestBuffer {
  public:
   explicit RequestBuffer(std::size_t capacity);

@@ -40,7 +40,7 @@ using Getter = std::function<Result<DocumentPtr>(const Request&, const PathParam
 /// new document.
 struct ActionResult {
   int status = 200;
-  DocumentPtr document = {};  ///< May be null with 204.
+  DocumentPtr document = {};  ///< Null: the answer has no body.
   std::string location = {};
 };
 using Action = std::function<Result<ActionResult>(const Request&, const PathParams&)>;

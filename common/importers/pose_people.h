@@ -16,7 +16,7 @@ struct PosePoint {
 
 struct PosePerson {
   std::vector<PosePoint> points;         ///< In the order of a layout.
-  std::optional<std::uint64_t> id = {};  ///< As stated in the file, if it is.
+  std::optional<std::uint64_t> id = {};  ///< The id in the file plus 1, if the file states one.
 };
 
 /// Numbers people consistently where a file numbers them from scratch in every picture: each gets
