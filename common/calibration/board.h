@@ -31,8 +31,8 @@ struct Board {
 /// Number of inner corners.
 [[nodiscard]] std::size_t corner_count(const Board& board);
 
-/// Size of the smallest predefined dictionary of OpenCV that suffices for the board.  (Each is the
-/// beginning of the next larger one.)
+/// Size of the smallest predefined dictionary of OpenCV that suffices for the board.  (Each begins
+/// with the markers of the next smaller one.)
 [[nodiscard]] int markers_in_dictionary(const Board& board);
 
 /// "charuco, 8 x 6 squares of 30 mm, markers of 22.5 mm (DICT_4X4_50)"

@@ -102,7 +102,8 @@ class Parameters {
   }
 
  private:
-  /// An entry: length of the name, number, name, offset to the next entry, content; no description.
+  /// Appends an entry: length of the name, number, name, offset to the next entry, content, and an
+  /// empty description.
   void entry(int number, std::string_view name, std::string_view content) {
     entries_ += static_cast<char>(name.size());
     entries_ += static_cast<char>(number);

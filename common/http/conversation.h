@@ -1,5 +1,5 @@
 // One client's requests and our answers, as a state machine without IO: it takes events and returns
-// orders to the shell.
+// orders (orders.h).
 //
 // Requests are read one after the other and answered in order; what a client sends ahead waits in
 // the buffer.  Long polls and event streams wait for publishes.  Time is an argument; the Asio

@@ -1,4 +1,4 @@
-// What a conversation orders its Asio shell to do.
+// What a conversation orders its Asio shell (http_connection.h) to do.
 #pragma once
 
 namespace chorus::http {

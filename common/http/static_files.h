@@ -1,5 +1,5 @@
-// A folder of files as resources: serves nothing outside the folder, media types by extension,
-// limited size.
+// Serves the files of a folder as resources: nothing outside the folder and nothing larger than a
+// limit.  The extension of a file decides its media type.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Collects bodies that are read row by row into frames.  Private to this folder's .cpp files.
+// Groups bodies, which are read row by row, into frames by their capture times.  Private to this
+// folder's .cpp files.
 #pragma once
 
 #include "common/importers/import_options.h"
