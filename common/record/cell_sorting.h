@@ -101,7 +101,7 @@ class Sorting {
   std::size_t frames_ = 0;  ///< Number of frames so far, on all topics.
   std::map<SensorId, Stream> streams_;
   Line fused_;
-  std::string registration_;  ///< The newest one.
+  std::string registration_;  ///< The registration returned last, as JSON.
   CellRecording out_;
 };
 

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How long a message may wait in an open chunk if no other follows; also the interval at which
-/// space, index and duration are checked.
+/// Interval at which the open chunk is written to the disk, the index is updated and the free space
+/// is checked.
 constexpr auto kRest = std::chrono::seconds(1);
 /// Events are taken in batches, because waking up for each one would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);

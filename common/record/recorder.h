@@ -52,8 +52,8 @@ using RecordedEvent = std::variant<RawFrame, FusedFrame, PlacesChanged>;
 
 class Recorder {
  public:
-  /// Opens the first file.  Io, Conflict (the file exists) and Unavailable (too little space) name
-  /// the file.
+  /// Opens the first file.  The errors Io, Conflict (the file or folder exists) and Unavailable
+  /// (too little space) name the file or folder.
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> start(RecorderOptions options);
   ~Recorder();  ///< Writes what is queued, closes the file, joins the thread.
 

@@ -26,8 +26,9 @@ struct FittedBody {
   Nodes now = Nodes::Zero();
   Nodes before = Nodes::Zero();  ///< One frame earlier.
   double height = kGenericHeight;
-  std::array<double, kNodeCount> support{};  ///< Points near each node over those of a free view.
-  double misfit = 0.0;                       ///< Mean distance of points to the surface [m]
+  /// For each node: the number of points near it, relative to the number if nothing hid it.
+  std::array<double, kNodeCount> support{};
+  double misfit = 0.0;  ///< Mean distance of points to the surface [m]
 };
 
 /// Distance of a point to the body's surface [m].
