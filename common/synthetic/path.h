@@ -52,11 +52,11 @@ class Path {
   enum class Move { Walk, Turn, Pause, Orbit, Aside, Reach };
   struct Leg {
     Move move = Move::Pause;
-    double start = 0.0;     ///< [s] in the loop
+    double start = 0.0;     ///< Time at which the leg starts, within the loop [s].
     double duration = 0.0;  ///< [s]
     Eigen::Vector2d from = Eigen::Vector2d::Zero();
     Eigen::Vector2d to = Eigen::Vector2d::Zero();
-    double heading = 0.0;  ///< At the start of the leg.
+    double heading = 0.0;  ///< Heading at the start of the leg [rad].
     double turn = 0.0;     ///< Total turn [rad].
     double speed = 0.0;    ///< Cruising speed of this leg [m/s].
     double ramp = 0.0;  ///< Time to reach that speed, and to stop; for a hand, time each way [s].

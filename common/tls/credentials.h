@@ -32,7 +32,7 @@ class Identity {
   std::shared_ptr<ssl_ctx_st> context_;
 };
 
-/// The authorities that a client accepts.  A client cannot accept everyone.
+/// The authorities that a client accepts.  A client cannot accept every certificate.
 class Trust {
  public:
   Trust() = default;  ///< The authorities of the operating system.

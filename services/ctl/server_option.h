@@ -10,7 +10,7 @@ class App;
 
 namespace chorus::ctl {
 
-/// `names`: of the option; "url,--url" also accepts it as a positional argument.
+/// `names`: the option's names; "url,--url" also accepts it as a positional argument.
 void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names = "--url");
 

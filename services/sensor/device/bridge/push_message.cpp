@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 using layout::Landmark;
 
 constexpr double kMaxVariance = 1e8;  // [m^2]
-constexpr double kMaxShape = 10.0;    // From the shape's origin [m].
+constexpr double kMaxShape = 10.0;    // Limit of a coordinate in a shape [m].
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 
 /// An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
