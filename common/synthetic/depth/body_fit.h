@@ -34,7 +34,8 @@ struct FittedBody {
 /// Distance of a point to the body's surface [m].
 [[nodiscard]] double distance_to(const Nodes& nodes, double height, const Eigen::Vector3d& point);
 
-/// Predicts the next frame: all nodes go on moving as before, but more slowly.
+/// Predicts the next frame: nodes keep moving as before, but more slowly; those without enough
+/// points move with the trunk.
 void predict(FittedBody& body);
 
 /// Makes `rounds` Gauss-Newton steps from the current pose, then computes support and misfit.
