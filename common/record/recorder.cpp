@@ -246,7 +246,7 @@ void Recorder::Impl::run() {
   finish(how);
 }
 
-/// Logs that the recording has ended; for a single file, the caller asks for the report.
+/// Logs that the recording has ended, except for a single file, whose report the caller asks for.
 void Recorder::Impl::tell_end() const {
   if (!rotates()) return;
   if (report.state == RecordingState::Failed)

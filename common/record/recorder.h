@@ -28,7 +28,8 @@ struct RecorderLimits {
   Duration max_file_duration = std::chrono::minutes(10);
   /// The recording ends when the free space would fall below this.
   std::uintmax_t min_free_bytes = 200ull << 20;
-  std::size_t max_queue = 2048;  ///< A few seconds of ten sensors.
+  /// Largest number of queued events; ten sensors produce them in a few seconds.
+  std::size_t max_queue = 2048;
 
   bool operator==(const RecorderLimits&) const = default;
 };

@@ -26,7 +26,7 @@ bool plausible(Timestamp t) {
   return ns >= kMinNs && ns <= kMaxNs;
 }
 
-/// False for an exchange that cannot have happened or that contains no information.
+/// False for an exchange that cannot have happened, or that is too uncertain to be of use.
 bool possible(const ClockExchange& exchange, Duration max_uncertainty) {
   if (!plausible(exchange.sent) || !plausible(exchange.received) ||
       !plausible(exchange.their_receipt) || !plausible(exchange.their_sending)) {

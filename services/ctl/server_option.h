@@ -14,7 +14,7 @@ namespace chorus::ctl {
 void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names = "--url");
 
-/// --ca: the authorities of https:// servers, for every request of this process.
+/// Adds --ca, which names the authorities of https:// servers for every request of this process.
 void add_authority_option(CLI::App& app);
 
 }  // namespace chorus::ctl

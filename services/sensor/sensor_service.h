@@ -39,7 +39,7 @@ struct ServiceOptions {
 
 struct ServiceCounters {
   std::uint64_t captured = 0;  ///< Frames published.
-  std::uint64_t lost = 0;      ///< Gaps in the device's frame numbers.
+  std::uint64_t lost = 0;      ///< Number of frames missing in the device's numbering.
   std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
   std::uint64_t failures = 0;  ///< Exceptions of the device, of publishing, and of images.
   std::uint64_t bodies = 0;    ///< Bodies in the latest frame.

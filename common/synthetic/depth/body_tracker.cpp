@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::size_t kMostTracks = 6;    // As a Kinect v2.
 constexpr std::size_t kMostPoints = 400;  // Number of a person's points that the fit uses.
-constexpr std::size_t kFewPoints = 40;    // With fewer points of a body, the frame is poor for it.
-constexpr std::size_t kNewPoints = 120;   // Least number of points of a new person.
+// With fewer points of a body, the frame counts as poor for it.
+constexpr std::size_t kFewPoints = 40;
+constexpr std::size_t kNewPoints = 120;  // Least number of points of a new person.
 constexpr int kRounds = 4;
 constexpr int kFirstRounds = 15;
 constexpr std::array kFirstYaws{0.0, deg(40), -deg(40), deg(80), -deg(80)};
@@ -29,8 +30,8 @@ constexpr double kOwnShare = 0.5;
 constexpr double kForeignShare = 0.1;
 constexpr int kConfirmed = 3;  // Frames before a body is reported.
 constexpr int kPatience = 10;  // Poor frames in a row before a body is given up.
-constexpr double kBadFit =
-    0.035;  // Largest mean distance of points to the surface of a good fit [m].
+// Largest mean distance of points to the surface of a good fit [m].
+constexpr double kBadFit = 0.035;
 constexpr double kTrunkSeen = 0.15;     // Least support of head and chest of a real body.
 constexpr double kSame = 0.15;          // Two trunks cannot be closer than this [m].
 constexpr double kExchange = deg(100);  // Beyond this facing, left and right are swapped.

@@ -84,7 +84,7 @@ double unit_noise(Draw& draw) {
   return (sum - kMean) * kScale;
 }
 
-/// The depth on the other side of the nearest edge; the pixel's own depth if there is no edge.
+/// The depth of a neighbouring pixel beyond an edge; the pixel's own depth if there is no edge.
 double across_edge(const DepthImage& exact, int column, int row) {
   const double own = exact.at(column, row);
   constexpr std::array<std::array<int, 2>, 4> kCross{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};

@@ -1,5 +1,5 @@
 // When frames are exposed and when they arrive, which ones are lost, and what the sensor host's
-// clock shows.  All times in seconds.
+// clock shows.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Random joint error (coloured noise, white noise, teleports) and the state tracked or inferred.
 //
-// Times are seconds since the epoch.  Everything except ColouredState is a pure function of its
-// arguments, so that it can be computed for any frame in any order.
+// Times are seconds since the epoch.  All results except the changes of a ColouredState depend only
+// on the arguments, so they can be computed for any frame in any order.
 #pragma once
 
 #include <array>

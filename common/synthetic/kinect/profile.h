@@ -21,8 +21,9 @@ struct ViewLimits {
 };
 
 struct Delivery {
-  double period = 0, jitter = 0;  ///< Share of frames that are lost.
-  double drop_share = 0;
+  /// Time between frames, and the largest deviation of an exposure from that rhythm [s].
+  double period = 0, jitter = 0;
+  double drop_share = 0;  ///< Share of frames that are lost.
   /// How often the SDK loses a person; limits of how long that lasts [s].
   double gaps_per_minute = 0, gap_least = 0, gap_most = 0;
   double gap_block = 10;  ///< At most one gap starts in each block [s]

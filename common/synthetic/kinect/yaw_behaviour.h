@@ -21,7 +21,7 @@ struct FlipState {
 };
 
 /// The yaw that the SDK shows for a true yaw [rad] of a person in the front state.  Beyond the
-/// reliable angle it grows by `slope` times the true yaw.  Odd and continuous.
+/// reliable angle it grows `slope` times as fast as the true yaw.  Odd and continuous.
 [[nodiscard]] double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour);
 
 /// One sensor's own angles: flip_to_rear and flip_to_front of the profile, both moved by the same

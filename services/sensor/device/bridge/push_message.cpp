@@ -146,7 +146,7 @@ Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at)
   return landmark;
 }
 
-/// Reads a landmark of `world`; its uncertainty is that of its pixel.
+/// Reads the position of a landmark of `world`; its state and its error are those of its pixel.
 Result<Landmark> read_shape_point(const Json& value, const Hello& /*hello*/, const At& at) {
   if (value.is_null()) return Landmark{};
   const auto element = read_element<3>(value, {-kMaxShape, kMaxShape}, at);

@@ -36,7 +36,7 @@ struct CameraSettings {
   bool depth_from_size = false;  ///< Delivers points instead of rays, if the runner supports it.
   std::optional<FloorPlane> floor = {};  ///< Made from height and pitch, if they are configured.
   std::optional<Intrinsics> intrinsics = {};
-  double focal_sigma = 0.0;  ///< Standard deviation of their focal length, relative to it.
+  double focal_sigma = 0.0;  ///< Relative standard deviation of the focal length in `intrinsics`.
   /// Field of view across the picture's longer side [rad], used if nothing better is known.
   double fov = deg(65.0);
   double fov_sigma = deg(6.0);  ///< Standard deviation of that value [rad].
