@@ -45,7 +45,7 @@ struct FrameResource {
   std::string source;  ///< Sensor id, or "fusion".
   SpaceKind space = SpaceKind::Sensor;
   std::vector<std::string> sensors;  ///< Fused: the sensors of the contributor bits (at most 64).
-  std::vector<BodyResource> bodies;  ///< With distinct ids, at most kMaxBodies.
+  std::vector<BodyResource> bodies;  ///< At most kMaxBodies, with distinct ids.
 };
 
 /// How far the length of a ray's direction may be from 1.

@@ -26,7 +26,7 @@ class LearnedBones {
     double spread = 0.0;  ///< Mean absolute deviation [m].
     double count = 0.0;
   };
-  std::array<Learned, kJointCount> bones_;  ///< By the joint at the outer end.
+  std::array<Learned, kJointCount> bones_;  ///< Indexed by the joint at the bone's outer end.
 };
 
 }  // namespace chorus

@@ -38,7 +38,7 @@ struct PathPoint {
   double heading = 0.0;    ///< Direction of walking, as yaw about +y; 0: +z [rad]
   double phase = 0.0;      ///< Phase of the gait [cycles].
   double amplitude = 0.0;  ///< Amplitude of the strides, 0: standing, 1: as recorded.
-  Reach reach{};           ///< In the person's walk frame (see reach.h).
+  Reach reach{};           ///< What a hand reaches for, in the person's walk frame (see reach.h).
 };
 
 class Path {
@@ -78,7 +78,7 @@ class Path {
   [[nodiscard]] PathPoint along(const Leg& leg, double time) const;
 
   PathScript script_;
-  double amplitude_ = 1.0;  ///< Of the strides at cruising speed.
+  double amplitude_ = 1.0;  ///< Amplitude of the strides at cruising speed.
   double cadence_ = 1.0;    ///< Gait cycles per second.
   double loop_ = 0.0;       ///< [s]
   /// Where the last leg ends, while the path is built.

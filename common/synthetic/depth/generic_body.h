@@ -42,7 +42,7 @@ struct Between {
 struct Segment {
   Between from;
   Between to;
-  double radius;  ///< For a body of kGenericHeight [m].
+  double radius;  ///< Radius for a body of kGenericHeight [m].
 };
 
 constexpr Between on(Node node) { return {node, node, 0.0}; }

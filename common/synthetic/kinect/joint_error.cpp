@@ -175,9 +175,9 @@ Eigen::Vector3d stretched(const Eigen::Vector3d& unit, const Eigen::Vector3d& ra
 
 /// Standard deviations of the random errors of a seen joint, and the ray to it.
 struct Sizes {
-  double coloured = 0.0;  ///< Of the coloured error, across the ray [m].
-  double hidden = 0.0;    ///< Of the error of hidden joints, across the ray [m].
-  Eigen::Vector3d white = Eigen::Vector3d::Zero();  ///< Of the white noise, along the axes [m].
+  double coloured = 0.0;  ///< Coloured error, across the ray [m].
+  double hidden = 0.0;    ///< Error of a hidden joint, across the ray [m].
+  Eigen::Vector3d white = Eigen::Vector3d::Zero();  ///< White noise, along the axes [m].
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
 };
 

@@ -26,7 +26,8 @@ struct KinectSetting {
   SensorId id;
   std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
   Profile profile;
-  std::uint64_t seed = 1;  ///< The same for all sensors of a room, for errors that they share.
+  /// Seed of the other errors; the same for all sensors of a room, because they share some errors.
+  std::uint64_t seed = 1;
   /// Seed of the bias of the SDK and of people; it is the same in every run.
   std::uint64_t bias_seed = 1;
   /// True: frames are stamped by the host's clock with its errors.  False: by true time.

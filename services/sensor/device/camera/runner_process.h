@@ -57,7 +57,7 @@ class RunnerProcess {
   [[nodiscard]] bool reap();
   [[nodiscard]] Error obituary();
 
-  std::string name_;  ///< For messages.
+  std::string name_;  ///< Name in messages.
   pid_t pid_ = -1;
   int input_ = -1;  ///< Our end of the process's standard input; of its output and error below.
   int output_ = -1;
