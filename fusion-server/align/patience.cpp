@@ -5,11 +5,11 @@
 namespace chorus::align {
 namespace {
 
-constexpr int kWorse = 2;  // A spread of more than this many times the median sensor's is unsteady.
+constexpr int kWorse = 2;  // A sensor with more than this many times the median spread is unsteady.
 /// Number of cameras without depth that are needed for a body.
 constexpr std::size_t kCameras = 2;
 
-/// Factor for differences between sensors, and between the frames of one.
+/// Factor between slowness and patience; it allows for differences between sensors and frames.
 constexpr int kSlack = 2;
 
 /// The inherent slowness of a sensor: its period plus its least delay.  A busy computer, which

@@ -12,7 +12,7 @@ struct AssociationConfig {
   double gate = 0.6;
   double gate_growth = 0.3;  ///< The gate grows by this for every second without a view [m/s].
   double cluster = 0.4;  ///< New bodies of different sensors closer than this are one person [m].
-  /// Rays of different cameras can found a new person if they pass each other closer than this [m].
+  /// Rays of different cameras can start a new person if they pass each other closer than this [m].
   double ray_cluster = 0.15;
   int confirm_frames = 3;  ///< Number of instants with a view before a new person is published.
   Duration coast = std::chrono::seconds(3);  ///< How long an unseen person is looked for.

@@ -38,7 +38,7 @@ inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
 /// True if services of this host use TLS, which `chorus init` configures where host.crt exists.
 [[nodiscard]] bool host_has_tls(const std::string& folder = kTlsFolder);
 
-/// The fusion server of this host.
+/// The address of the fusion server on this host.
 [[nodiscard]] std::string default_server(const std::string& tls_folder = kTlsFolder);
 
 class ServiceClient {

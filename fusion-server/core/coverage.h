@@ -18,7 +18,7 @@ namespace chorus::core {
 class Coverage {
  public:
   void clear();
-  /// Takes a frame with one body or none; others cannot be matched.
+  /// Takes a frame.  Several bodies count like none, because they cannot be matched.
   void add(const SensorFrame& frame);
 
   /// All pairs that saw somebody together, ordered by names.

@@ -61,12 +61,13 @@ class Registrar {
   /// Starts a session, or takes over an automatic one that is running, and returns its id; Conflict
   /// when the running one was started by hand.
   [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now);
-  /// Cancels this session and all its effects; NotFound when it is not running.
+  /// Cancels this session and withdraws what it changed; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
   /// Cancels the session and forgets the registration, but not its world.
   void forget();
-  /// Goes back to the previous registration; a second call changes nothing.  Conflict while a
-  /// session is running; NotFound when there is no previous one.
+  /// Exchanges the registration in use with the previous one, so a second call undoes the first.
+  /// Conflict while a session is running; NotFound when there is no previous one, or when none of
+  /// its sensors is configured any more.
   [[nodiscard]] Result<void> undo();
   /// The registration that undo() goes back to; set at the start from what is stored.
   [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }
@@ -120,7 +121,9 @@ class Registrar {
   LastSeen last_seen_;
   std::uint64_t next_session_;
   std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
-  std::optional<Registration> before_;  ///< Set while the session's own registration is in use.
+  /// The registration from before the session; set while the session's own provisional one is in
+  /// use.
+  std::optional<Registration> before_;
   std::optional<Registration>
       earlier_;  ///< The registration in use before; provisional ones of sessions do not count.
   /// True if `earlier_` is from before a sensor was displaced; the session that registers the
