@@ -16,7 +16,7 @@
 
 namespace chorus::fusion {
 
-/// Each sensor's constant offset of each joint [m]; zero for joints without one.
+/// What was learned of each sensor's error of each joint's position [m]; zero where nothing was.
 using Biases = std::map<SensorId, std::array<Eigen::Vector3d, kJointCount>>;
 
 class SightedBody {
@@ -62,7 +62,7 @@ class SightedBody {
     std::vector<JointView> views;
     std::vector<Weighing> weighings;  ///< Of the same views.
     bool round = true;                ///< All points have isotropic errors.
-    bool bounded = false;             ///< The predicted place was needed besides the views.
+    bool bounded = false;             ///< The views alone leave the position open.
   };
   using Offsets = std::array<Eigen::Vector3d, kJointCount>;
 
