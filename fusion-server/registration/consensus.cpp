@@ -26,7 +26,7 @@ bool of(const SensorId& sensor, const SensorId& target, const SensorId& source) 
   return sensor == target || sensor == source;
 }
 
-/// to_from_from along an edge, whichever way it was estimated.
+/// The transform to the sensor `to` from the other end of the edge, whichever way it was estimated.
 Eigen::Isometry3d along(const PairwiseRegistration& edge, const SensorId& to) {
   return edge.target == to ? edge.target_from_source : edge.target_from_source.inverse();
 }

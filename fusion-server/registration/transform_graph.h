@@ -23,8 +23,8 @@ struct Chain {
 [[nodiscard]] std::map<SensorId, Chain> best_chains(const SensorId& master,
                                                     const std::vector<PairwiseRegistration>& edges);
 
-/// Cost of an edge in the graph: rms / sqrt(inliers) plus a constant, so that among equal chains
-/// the shorter one wins [m].
+/// Cost of an edge in the graph [m]: rms / sqrt(inliers), larger for a narrow walk, plus a
+/// constant, so that among equal chains the shorter one wins.
 [[nodiscard]] double edge_error(const PairwiseRegistration& edge);
 
 }  // namespace chorus::registration
