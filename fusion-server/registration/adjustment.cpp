@@ -19,9 +19,9 @@ constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its c
 constexpr int kIterations = 40;
 constexpr int kScaleRounds = 2;    // each with a new scale for Tukey's weights
 constexpr double kSettled = 1e-6;  // [rad], [m]
-// [rad], [m] the same, before the scale is computed again
+// [rad], [m]; the same before the scale is computed again.
 constexpr double kNearly = 1e-4;
-// with more, only a part of the points is used for the bias
+// With more terms, only a part of the points is used for the bias.
 constexpr std::size_t kBiasTerms = 1'000'000;
 constexpr double kRidge = 1e-6;      // keeps the equations solvable where nothing is measured
 constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master

@@ -5,10 +5,9 @@
 //
 // with S_ik small across and large along each line of sight, Tukey weights w, the variance factor v
 // (block_variance.h), and each sensor's floor as a prior of its own tilt and height.  Given the
-// places, each x_k is the inverse-variance mean,
-// so only the places are unknown.  No measurement determines the world's position along the floor
-// and its yaw.  They are held at those of the master; nothing else of the master is held.  Derived
-// in docs/papers/registration.md, Section 8.
+// places, each x_k is the inverse-variance mean, so only the places are unknown.  No measurement
+// determines the world's position along the floor and its yaw.  They are held at those of the
+// master; nothing else of the master is held.  Derived in docs/papers/registration.md, Section 8.
 #pragma once
 
 #include <map>

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kAllPairs = 12;  // sensors of which all pairs are tried
 constexpr std::size_t kPartners = 8;   // partners of each sensor, if there are more
-// two sensors that see the person in one bin see them together
+// Two sensors that see the person in one bin see them together.
 constexpr auto kBin = std::chrono::seconds(1);
 
 /// Number of frames in which the person had moved, by seconds since 1970.

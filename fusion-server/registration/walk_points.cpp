@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 1500;  // of the walk; successive ones are redundant
 constexpr double kPointsEach = 100.0;     // at least this many per sensor, if two see each point
-// the least time between two instants of one sensor
+// The least time between two instants of one sensor.
 constexpr Duration kFrame = std::chrono::milliseconds(33);
-// [s] before and after a point, for its direction
+// [s] before and after a point, from which its direction is computed.
 constexpr double kAside = 0.3;
-// [m] a point that moves less has no direction
+// [m]; a point that moves less has no direction.
 constexpr double kLeastWay = 0.06;
 
 /// Adds the slots that several sensors saw at one instant.
