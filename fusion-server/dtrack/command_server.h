@@ -1,5 +1,6 @@
 // The TCP server of DTrack's command channel: runs on its own thread, serves a few connections,
 // trusts no client.
+//
 // It refuses, logs and counts connections beyond a limit, commands over 200 bytes, and clients that
 // do not read their answers (at most 4 kB are kept), send no known command in time (`first_word`),
 // are silent for longer than `idle`, or send more than 64 commands that are unknown or not

@@ -19,9 +19,9 @@ namespace chorus::rest {
 inline constexpr double kMinSession = 8.0;
 inline constexpr double kMaxSession = 300.0;
 
-/// Requests by the routes to the owner of the registration.  They must only post a task and return.
-/// `ticket` counts the requests: RegistrationProgress::commands says how many have been carried
-/// out.
+/// What the routes ask of the owner of the registration.  The functions must only post a task and
+/// return.  `ticket` counts the requests: RegistrationProgress::commands says how many have been
+/// carried out.
 struct RegistrationControl {
   std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;

@@ -23,7 +23,7 @@ struct Finding {
   std::optional<SensorId> or_else;
   double shift = 0.0;    ///< Distance between where it and where the others see people [m].
   bool drifted = false;  ///< True if it has lasted for minutes, false if it began recently.
-  Timestamp since;       ///< When it began, or was first certain.
+  Timestamp since;       ///< When it began; for a drift, the latest instant.
 };
 
 class Watch {
