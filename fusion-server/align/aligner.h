@@ -26,11 +26,12 @@ struct AlignConfig {
   /// for no longer than the others usually need, so that one bad link does not delay everybody's
   /// bodies.
   Duration unsteady = std::chrono::milliseconds(30);
-  /// The most to which `max_gap` grows for a sensor with a long period, and `patience` where most
-  /// sensors are slow (cameras whose pictures take long).  A limit that is larger anyway does not
-  /// grow.
+  /// How far `max_gap` may grow for a sensor with a long period, and `patience` where most sensors
+  /// are slow (cameras whose pictures take long).  Whichever of the two is larger than this does
+  /// not grow.
   Duration slowest = std::chrono::milliseconds(2000);
-  double max_speed = 6.0;  ///< Greatest speed of the mean of a body's core joints [m/s].
+  /// A body whose core joints move faster than this on average is left out [m/s].
+  double max_speed = 6.0;
 
   bool operator==(const AlignConfig&) const = default;
 };

@@ -75,7 +75,7 @@ class History {
 
   HistoryLimits limits_;
   std::deque<SensorFrame> frames_;
-  int steps_back_ = 0;   ///< How many in a row were refused as Stale or Backwards.
+  int steps_back_ = 0;   ///< Number of frames in a row refused as Stale or Backwards.
   Timestamp last_step_;  ///< When the last of these was received.
   std::optional<Habit> habit_;
   std::optional<Duration> period_;

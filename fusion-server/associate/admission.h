@@ -12,7 +12,7 @@
 
 namespace chorus::associate {
 
-/// A body at the instant, and the track to which it was assigned.
+/// A body seen at the present instant, and the track to which it was assigned.
 struct Assigned {
   SensorId sensor;
   Eigen::Vector3d core = Eigen::Vector3d::Zero();  ///< World [m].

@@ -24,8 +24,8 @@ struct AssociationConfig {
   Duration remember = std::chrono::seconds(60);
   /// How long a newcomer is observed before it is decided which missing person, if any, they are.
   Duration recognise = std::chrono::seconds(1);
-  /// If a person is seen again after at least this long, their build is compared with the build
-  /// from before.
+  /// The build of a person who was unseen for longer than this is compared with the build from
+  /// before.
   Duration question = std::chrono::milliseconds(200);
   /// Two confirmed tracks merge after this many instants at the same spot without a common sensor.
   int merge_frames = 15;

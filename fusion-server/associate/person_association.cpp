@@ -81,7 +81,7 @@ bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
          horizontal_distance(a.track.core, b.track.core) <= limit;
 }
 
-/// Orders published tracks first; within each group the older first (ids only grow).
+/// Puts published tracks before the others, and in each group older tracks first (ids only grow).
 void seniors_first(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
     return is_settled(candidate.track, config);

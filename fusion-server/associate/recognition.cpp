@@ -17,7 +17,7 @@ constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
 constexpr double kContinuity = 1.5;
 // Log odds below which a person who was lost and found loses the id.
 constexpr double kUnlikely = -0.5;
-// The time in addition to config.recognise after which a newcomer is new, recognised or not.
+// A newcomer not recognised within this time plus config.recognise is taken for a new person.
 constexpr Duration kNoBones = std::chrono::seconds(2);
 
 /// True if the candidate's person is missing.  A candidate without an id passed it on in become(),

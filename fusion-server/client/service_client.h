@@ -35,7 +35,7 @@ namespace chorus::client {
 /// Where the certificates of this host are, if it has any.
 inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
 
-/// True if services of this host use TLS, which `chorus init` configures where host.crt exists.
+/// True if services of this host use TLS: `chorus init` configures it where there is a host.crt.
 [[nodiscard]] bool host_has_tls(const std::string& folder = kTlsFolder);
 
 /// The address of the fusion server on this host.

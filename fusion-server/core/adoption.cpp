@@ -55,7 +55,7 @@ std::set<SensorId> newcomers(const Registration& current, const Registration& ca
   return found;
 }
 
-/// The sensor itself, and points in front of, next to and above the walk as the sensor sees it.
+/// Adds the sensor's position, and points in front of, next to and above the walk as it sees it.
 void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& marks) {
   const Eigen::Vector3d walk = kReach * Eigen::Vector3d::UnitZ();
   for (const Eigen::Vector3d& mark : {Eigen::Vector3d(Eigen::Vector3d::Zero()), walk,

@@ -29,20 +29,22 @@ class Coverage {
  private:
   struct Sight {
     Timestamp received;
-    Eigen::Vector3d place;       ///< Of the neck, in the sensor's space [m].
-    std::set<SensorId> counted;  ///< The sensors with which it was counted.
+    Eigen::Vector3d place;       ///< Position of the neck in the sensor's space [m].
+    std::set<SensorId> counted;  ///< The sensors with which this view was already counted.
   };
   struct Common {
     std::size_t sightings = 0;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< In the first sensor's space [m].
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< Sum of the neck's positions in the first
+                                                    ///< sensor's space [m].
     double squares = 0.0;
-    double distance = 0.0;  ///< Sum over both sensors' distances / 2 [m].
+    double distance = 0.0;  ///< Sum of the mean distances from both sensors [m].
   };
   using Cell = std::pair<int, int>;
 
   std::map<SensorId, Sight> newest_;
   std::map<std::pair<SensorId, SensorId>, Common> common_;
-  std::map<SensorId, std::map<Cell, Eigen::Vector3d>> seen_;  ///< In each sensor's own space.
+  std::map<SensorId, std::map<Cell, Eigen::Vector3d>> seen_;  ///< The last neck in each cell, in
+                                                              ///< each sensor's own space.
 };
 
 /// The 95 % radius [m] to which the place of one sensor will be known relative to the other's, for

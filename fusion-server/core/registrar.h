@@ -35,7 +35,8 @@ struct Solution {
   SolveKind kind = SolveKind::Provisional;
   Registration registration;
   Duration cost{0};       ///< How long the solve took.
-  bool given_up = false;  ///< It was stopped before the end: no result.
+  bool given_up = false;  ///< True if the solve was stopped before its end: then there is no
+                          ///< result.
 };
 
 struct RegistrarConfig {
@@ -63,7 +64,7 @@ class Registrar {
   [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now);
   /// Cancels this session and withdraws what it changed; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
-  /// Cancels the session and forgets the registration, but not its world.
+  /// Cancels the session and forgets the registration; the next one is moved into the same world.
   void forget();
   /// Exchanges the registration in use with the previous one, so a second call undoes the first.
   /// Conflict while a session is running; NotFound when there is no previous one, or when none of
@@ -86,7 +87,7 @@ class Registrar {
 
   [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
   [[nodiscard]] const LastSeen& last_seen() const noexcept { return last_seen_; }
-  /// Newest first.
+  /// The last sessions, newest first.
   [[nodiscard]] std::vector<SessionStatus> sessions() const;
   [[nodiscard]] std::uint64_t next_session() const noexcept { return next_session_; }
   /// What is missing for a (better) registration, as sentences for people.
@@ -124,8 +125,8 @@ class Registrar {
   /// The registration from before the session; set while the session's own provisional one is in
   /// use.
   std::optional<Registration> before_;
-  std::optional<Registration>
-      earlier_;  ///< The registration in use before; provisional ones of sessions do not count.
+  /// What undo() goes back to; never a provisional registration of a session.
+  std::optional<Registration> earlier_;
   /// True if `earlier_` is from before a sensor was displaced; the session that registers the
   /// sensor again keeps `earlier_`.
   bool lacks_displaced_ = false;
@@ -134,7 +135,7 @@ class Registrar {
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;
   std::map<SensorId, Retry> retries_;
-  Timestamp not_before_{};  ///< No automatic session before this.
+  Timestamp not_before_{};  ///< No session starts by itself before this time.
 };
 
 }  // namespace chorus::core

@@ -65,7 +65,8 @@ class RegistrationSession {
   /// After Final the session no longer collects.
   [[nodiscard]] std::optional<SolveKind> due();
   [[nodiscard]] bool final_due() const noexcept { return collecting_ && elapsed_ >= target_; }
-  /// Takes the duration of the last solve: the next provisional one waits three times as long.
+  /// Takes the duration of the last solve; the next provisional one waits at least three times as
+  /// long.
   void solved_in(Duration cost) { cost_ = cost; }
 
   [[nodiscard]] bool collecting() const noexcept { return collecting_; }

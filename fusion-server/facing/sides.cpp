@@ -12,7 +12,7 @@ namespace chorus::facing {
 namespace {
 
 constexpr double kClear = 2.0;  // Log odds above which one view alone counts as certain.
-// Sum of the views' |log odds|; with less, nobody shows left and right.
+// Sum of the views' |log odds|; with less, no view shows left and right.
 constexpr double kBlind = 1.0;
 constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame count as one observation.
 

@@ -19,10 +19,10 @@ namespace {
 constexpr double kHabit = 5.0;        // [s] time constant of a Habit
 constexpr double kUsualScale = 0.01;  // relative differences in size that noise alone causes
 constexpr double kFirstAgreement = 0.25;
-// [m] closer together from above, shoulders have no direction
+// [m]; shoulders that are closer together, seen from above, show no direction.
 constexpr double kNarrowShoulders = 0.1;
 
-/// A mean that follows slowly.
+/// A mean that follows new values slowly.
 struct Habit {
   double value = 0.0;
 

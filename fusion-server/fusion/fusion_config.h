@@ -50,7 +50,7 @@ struct FusionConfig {
   /// PointsAndRays, BodyFilter: a joint that is left less certain than this by rays alone is left
   /// out [m].
   double max_sigma = 0.15;
-  BodyModel body;  ///< BodyFilter.
+  BodyModel body;  ///< Parameters of BodyFilter.
 
   bool operator==(const FusionConfig&) const = default;
 };

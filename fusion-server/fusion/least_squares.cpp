@@ -23,7 +23,7 @@ constexpr double kNearest = 0.1;            // [m] a nearer joint counts as behi
 constexpr double kFirstRange = 3.0;         // [m] assumed range of a ray while it is unknown
 constexpr double kMinAngle = 1e-5;          // [rad] no camera is more precise
 constexpr double kLeastInformation = 1e-2;  // [1/m^2] (10 m); less along any axis counts as none
-// Weight of the prior that the scale is 1, in views or in degrees of freedom
+// Weight of the prior that the scale is 1, in views or in degrees of freedom.
 constexpr double kScalePrior = 4.0;
 constexpr std::size_t kManyViews = 4;  // from this many on, a median estimates the scale
 constexpr double kMedianOf2 = 1.3863;  // median of chi^2 with two degrees of freedom

@@ -16,7 +16,7 @@
 
 namespace chorus::fusion {
 
-/// What was learned of each sensor's error of each joint's position [m]; zero where nothing was.
+/// The learned error of each joint's position in each sensor [m]; zero if none was learned.
 using Biases = std::map<SensorId, std::array<Eigen::Vector3d, kJointCount>>;
 
 class SightedBody {
@@ -52,16 +52,17 @@ class SightedBody {
  private:
   /// How one view of a joint counts.
   struct Weighing {
-    double variance = 0.0;                           ///< Per axis, for weights [m^2].
-    double stated = 0.0;                             ///< Per axis, with the whole pose error [m^2].
-    Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< What was subtracted [m].
+    double variance = 0.0;                           ///< Variance per axis, for the weights [m^2].
+    double stated = 0.0;                             ///< Variance per axis, with the whole pose
+                                                     ///< error [m^2].
+    Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< The bias that was subtracted [m].
     double trust = 1.0;
   };
   /// A joint's views, corrected, and how far each is trusted.
   struct Sights {
     std::vector<JointView> views;
     std::vector<Weighing> weighings;  ///< Of the same views.
-    bool round = true;                ///< All points have isotropic errors.
+    bool round = true;                ///< True if all views are points with isotropic errors.
     bool bounded = false;             ///< The views alone leave the position open.
   };
   using Offsets = std::array<Eigen::Vector3d, kJointCount>;

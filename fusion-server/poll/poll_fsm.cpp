@@ -34,7 +34,7 @@ Duration backoff(const PollTimings& timings, int failures_in_row, double jitter)
   Duration whole = timings.first_backoff;
   for (int i = 0; i < doublings && whole < timings.max_backoff; ++i) whole *= 2;
   whole = std::min(whole, timings.max_backoff);
-  const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // False for NaN, too.
+  const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // Also 0 for NaN.
   return whole / 2 + from_seconds(seconds(whole) * 0.5 * fraction);
 }
 

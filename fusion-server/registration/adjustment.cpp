@@ -167,7 +167,7 @@ void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// The given parameters of all sensors that can move relative to the master.
+/// Indices of the parameters `of_each` of all sensors that can move relative to the master.
 std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
                                  std::span<const Eigen::Index> of_each) {
   std::vector<Eigen::Index> all;
@@ -278,7 +278,7 @@ bool iterate(Adjustment& adjustment, double settled) {
   return motion.lpNorm<Eigen::Infinity>() > settled;
 }
 
-/// Covariance of the places that the bias of all sights causes.
+/// Covariance of the places that the bias of all views causes.
 Eigen::MatrixXd bias_covariance(Adjustment& adjustment) {
   const std::vector<FusedPoint> all = adjustment.fuse_all();
   const auto ways = ways_of(adjustment.points, all);

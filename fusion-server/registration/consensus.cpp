@@ -31,7 +31,7 @@ Eigen::Isometry3d along(const PairwiseRegistration& edge, const SensorId& to) {
   return edge.target == to ? edge.target_from_source : edge.target_from_source.inverse();
 }
 
-/// The edges by their sensors, the lesser first.
+/// The edges by their two sensors, the one with the lesser id first.
 class EdgeIndex {
  public:
   explicit EdgeIndex(const Evidence& evidence) {
@@ -43,7 +43,7 @@ class EdgeIndex {
     const auto found = edges_.find(std::minmax(a, b));
     return found == edges_.end() ? nullptr : found->second;
   }
-  /// The sensors after `sensor` with which it has edges, in ascending order.
+  /// The sensors with a greater id than `sensor` with which it has edges, in ascending order.
   [[nodiscard]] std::vector<SensorId> after(const SensorId& sensor) const {
     std::vector<SensorId> others;
     for (auto at = edges_.lower_bound({sensor, {}}); at != edges_.end(); ++at) {

@@ -22,7 +22,8 @@ class TrailReader {
  public:
   TrailReader(const Trail& trail, Duration max_gap) : frames_(trail.frames), max_gap_(max_gap) {}
 
-  /// Instants must not decrease.  None unless the instant lies in a narrow bracket of one body.
+  /// Instants must not decrease.  None unless two frames of one body, at most max_gap apart,
+  /// enclose the instant.
   std::optional<TrailMoment> at(Timestamp instant);
 
  private:

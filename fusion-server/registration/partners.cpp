@@ -7,7 +7,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kAllPairs = 12;  // sensors of which all pairs are tried
+constexpr std::size_t kAllPairs = 12;  // up to this many sensors, all pairs are tried
 constexpr std::size_t kPartners = 8;   // partners of each sensor, if there are more
 // Two sensors that see the person in one bin see them together.
 constexpr auto kBin = std::chrono::seconds(1);

@@ -26,8 +26,8 @@ enum class PairMethod {
 
 enum class JointChoice {
   Neck,  ///< Otto: the neck alone.
-  Core,  ///< Neck, SpineShoulder, Head, SpineMid and the flip-invariant shoulder and hip
-         ///< mid-points.
+  Core,  ///< Neck, SpineShoulder, Head, SpineMid, and the mid-points of shoulders, hips, elbows and
+         ///< wrists, which swapped sides do not change.
   All,   ///< All joints: if sensors distinguish left and right, and for motions beyond walking.
 };
 

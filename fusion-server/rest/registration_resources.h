@@ -62,11 +62,12 @@ class RegistrationResources {
   std::uint64_t version_ = 0;
 };
 
-/// "{"seconds": 30}" or an empty body -> the target; InvalidArgument for anything else.
+/// Reads a body such as {"seconds": 30}; an empty body or object gives `fallback`.  InvalidArgument
+/// for anything else.
 [[nodiscard]] Result<Duration> parse_session_request(std::string_view body, Duration fallback);
 
-/// "{"x": 1.5, "z": -2, "yawDegrees": 90}", in the present world; what is omitted is 0.
-/// InvalidArgument for anything else.
+/// Reads a body such as {"x": 1.5, "z": -2, "yawDegrees": 90}, in the present world; what is
+/// omitted is 0.  InvalidArgument for anything else.
 [[nodiscard]] Result<core::Origin> parse_origin_request(std::string_view body);
 
 }  // namespace chorus::rest

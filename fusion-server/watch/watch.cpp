@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 constexpr Duration kEvery = milliseconds(90);    // successive frames have nearly the same errors
 constexpr Duration kBlock = milliseconds(500);   // length of a block
 constexpr Duration kStale = milliseconds(1500);  // a block that takes longer is given up
-constexpr std::size_t kLeast = 3;                // residuals in a block
+constexpr std::size_t kLeast = 3;                // fewest residuals in a block
 constexpr Duration kBreak = milliseconds(400);   // after a longer gap, a person starts over
 constexpr double kSmoothing = 0.5;               // [s]
 constexpr double kWalking = 0.25;                // [m/s]
