@@ -3,7 +3,7 @@
 // A solve puts the origin of the world below its master, with +z in the master's viewing direction.
 // All users of the output (a VRED scene, marks on the floor) rely on the previous world, so a new
 // registration is moved into that one: only about +y and along the floor, because each solve
-// determines the floor anew.
+// estimates the floor again.
 #pragma once
 
 #include <map>

@@ -61,7 +61,7 @@ class SightedBody {
   /// A joint's views, corrected, and how far each is trusted.
   struct Sights {
     std::vector<JointView> views;
-    std::vector<Weighing> weighings;  ///< Of the same views.
+    std::vector<Weighing> weighings;  ///< One for each of `views`.
     bool round = true;                ///< True if all views are points with isotropic errors.
     bool bounded = false;             ///< The views alone leave the position open.
   };

@@ -48,9 +48,9 @@ struct Pairing {
   std::vector<Pair> pairs;
   std::size_t instants = 0;      ///< Source frames for which there are pairs.
   std::size_t together = 0;      ///< Source frames at whose instant the target saw a body, too.
-  std::size_t resting = 0;       ///< Of these, frames at which the person had hardly moved.
-  std::size_t too_fast = 0;      ///< Of these, frames rejected by max_speed.
-  std::size_t out_of_range = 0;  ///< Of these, frames rejected by min_distance or max_distance.
+  std::size_t resting = 0;       ///< Frames of `together` at which the person had hardly moved.
+  std::size_t too_fast = 0;      ///< Frames of `together` rejected by max_speed.
+  std::size_t out_of_range = 0;  ///< Frames of `together` rejected by min_distance or max_distance.
 };
 
 [[nodiscard]] Pairing pair_up(const Trail& target, const Trail& source,
