@@ -66,8 +66,8 @@ struct SensorStatus {
   FrameFates fates;
   std::uint64_t failures = 0;  ///< Requests without a usable answer.
 
-  /// Distance between where this sensor and the others see the same people, less what is usual for
-  /// this sensor [m]; none until somebody has walked in view of it and of another one.
+  /// Distance between where this sensor and the others see the same people, minus the distance that
+  /// is usual for this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
   /// Says in a sentence for people that the sensor was moved; empty if it stands as registered.
   std::string alarm;

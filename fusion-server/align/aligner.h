@@ -49,8 +49,8 @@ struct AlignConfig {
 /// periods if that is longer, but then at most `slowest`.
 [[nodiscard]] Duration widest_gap(const History& history, const AlignConfig& config);
 
-/// How long an instant waits for this sensor's next frame at most, going by its recent frames, with
-/// 15 ms to spare; none until there are enough frames with a time of receipt.
+/// The longest time that an instant waits for this sensor's next frame, judged by the recent
+/// frames, plus 15 ms; none until there are enough frames with a time of receipt.
 [[nodiscard]] std::optional<Duration> longest_wait(const History& history);
 
 /// Like longest_wait(), but for the median of the recent frames instead of the longest wait; a

@@ -59,7 +59,7 @@ class Hungarian {
   }
 
   /// Visits `column`, updates the slack of all columns, and returns the unvisited column with the
-  /// least.
+  /// least slack.
   std::size_t step(std::size_t column) {
     visited_[column] = true;
     const std::size_t row = row_of_[column];

@@ -41,7 +41,7 @@ double size_difference(const Spans& spans, const Build& build) {
   return count > 0 ? sum / count : 0.0;
 }
 
-/// The mean of where each track is expected and where sensors see it.
+/// For each track, the weighted mean of its expected place and of its places in the sensors' views.
 class Places {
  public:
   explicit Places(const std::vector<Candidate>& candidates) {

@@ -68,7 +68,7 @@ class ServiceClient {
                                   std::string fallback = "-");
 /// NaN if there is no such number.
 [[nodiscard]] double number_at(const nlohmann::json& object, const char* key);
-/// The member if it is an object or array; otherwise an empty one.
+/// The member if it is an object or array; otherwise an empty object.
 [[nodiscard]] const nlohmann::json& part_at(const nlohmann::json& object, const char* key);
 
 }  // namespace chorus::client

@@ -1,7 +1,7 @@
 // What the walk of a session has covered so far: which sensors saw somebody together, and where.
 //
-// Needs no extrinsics: whether two sensors saw somebody together is judged by the time of receipt;
-// how far the person walked is measured in the space of one of the two.
+// No extrinsics are needed for the pairs: whether two sensors saw somebody together is judged by
+// the time of receipt, and how far the person walked is measured in the space of one of the two.
 #pragma once
 
 #include <map>
@@ -18,12 +18,14 @@ namespace chorus::core {
 class Coverage {
  public:
   void clear();
-  /// Takes a frame.  Several bodies count like none, because they cannot be matched.
+  /// Takes a frame.  A frame with several bodies is treated as an empty one, because the bodies
+  /// cannot be matched.
   void add(const SensorFrame& frame);
 
-  /// All pairs that saw somebody together, ordered by names.
+  /// All pairs that saw somebody together, ordered by the sensors' names.
   [[nodiscard]] std::vector<PairCoverage> pairs() const;
-  /// The squares of the floor in which somebody walked, and by how many sensors each was seen.
+  /// The squares of the floor in which somebody walked, each with the number of sensors that saw
+  /// somebody there.
   [[nodiscard]] std::vector<CoveredCell> cells(const Registration& registration) const;
 
  private:

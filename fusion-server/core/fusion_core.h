@@ -98,7 +98,7 @@ class FusionCore {
   /// How often a sensor lost its place because it was moved.
   [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
-  /// No person has had this id or a higher one so far.
+  /// All persons so far have lower ids.
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:

@@ -10,7 +10,8 @@ namespace chorus::facing {
 namespace {
 
 constexpr double kNearest = 0.3;  // [m], horizontal; a person is not nearer to a camera.
-// [m]; a figure is narrow if size_of() its spans is less.  A person seen from the front has 0.8.
+// A figure is narrow if the size_of() its spans is less than this [m]; a person seen from the front
+// has 0.8.
 constexpr double kWide = 0.35;
 // Cosine of the angle between ray and normal; a flatter ray meets the plane too far away.
 constexpr double kSteepest = 0.1;

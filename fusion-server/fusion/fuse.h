@@ -35,7 +35,7 @@ class Memory {
   void keep_only(const std::set<PersonId>& tracked);
 
  private:
-  /// The last body that a sensor saw.
+  /// A person's fused body at the last instant at which a sensor saw the person.
   struct Last {
     FusedBody body;
     Timestamp at;

@@ -41,8 +41,8 @@ class SightedBody {
   /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last
   /// call, since when the person has turned by `turned` [rad].
   void learn(Biases& biases, const PlacedBody& body, double passed, double turned) const;
-  /// Mean squared residual between the points and `body`, per axis, in the points' variances; none
-  /// without a joint that two views have.
+  /// Mean squared residual between the points and `body`, per axis, in units of the points'
+  /// variances; none if no joint is seen in two views.
   [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;
   /// Mean square of the views' scale errors; none with fewer than two views.
   [[nodiscard]] std::optional<double> scale_square() const;

@@ -36,7 +36,8 @@ class Seating {
     PersonId person;
     Timestamp seen;
     bool absent = false;
-    /// The person's own slot, or a lower one whose person was absent when this person arrived.
+    /// The slot for which the person waits: their own, or a lower one whose person was absent when
+    /// this one arrived.
     std::size_t waits_for = 0;
   };
 

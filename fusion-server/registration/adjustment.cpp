@@ -17,9 +17,10 @@ namespace {
 
 constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
-constexpr int kScaleRounds = 2;    // each with a new scale for Tukey's weights
-constexpr double kSettled = 1e-6;  // [rad], [m]
-// [rad], [m]; the same before the scale is computed again.
+constexpr int kScaleRounds = 2;  // each with a new scale for Tukey's weights
+// [rad], [m]: an iteration that moves no sensor by more ends the last round.
+constexpr double kSettled = 1e-6;
+// [rad], [m]; the same for the rounds before, after which the scale is computed again.
 constexpr double kNearly = 1e-4;
 // With more terms, only a part of the points is used for the bias.
 constexpr std::size_t kBiasTerms = 1'000'000;

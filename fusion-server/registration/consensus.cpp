@@ -31,7 +31,7 @@ Eigen::Isometry3d along(const PairwiseRegistration& edge, const SensorId& to) {
   return edge.target == to ? edge.target_from_source : edge.target_from_source.inverse();
 }
 
-/// The edges by their two sensors, the one with the lesser id first.
+/// Finds the edge between two sensors, whichever of them is its target.
 class EdgeIndex {
  public:
   explicit EdgeIndex(const Evidence& evidence) {

@@ -8,8 +8,9 @@ namespace chorus::registration {
 namespace {
 
 constexpr std::size_t kAllPairs = 12;  // up to this many sensors, all pairs are tried
-constexpr std::size_t kPartners = 8;   // partners of each sensor, if there are more
-// Two sensors that see the person in one bin see them together.
+// With more sensors, each one chooses this many partners.
+constexpr std::size_t kPartners = 8;
+// Two sensors that saw the person in the same bin count as having seen the person together.
 constexpr auto kBin = std::chrono::seconds(1);
 
 /// Number of frames in which the person had moved, by seconds since 1970.

@@ -12,9 +12,9 @@ constexpr std::size_t kMaxPoints = 1500;  // of the walk; successive ones are re
 constexpr double kPointsEach = 100.0;     // at least this many per sensor, if two see each point
 // The least time between two instants of one sensor.
 constexpr Duration kFrame = std::chrono::milliseconds(33);
-// [s] before and after a point, from which its direction is computed.
+// The direction of a point is computed from its way during this time before and after it [s].
 constexpr double kAside = 0.3;
-// [m]; a point that moves less has no direction.
+// A point that moves less than this has no direction [m].
 constexpr double kLeastWay = 0.06;
 
 /// Adds the slots that several sensors saw at one instant.

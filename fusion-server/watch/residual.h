@@ -10,7 +10,7 @@
 
 namespace chorus::watch {
 
-/// One sensor, one person, one instant.
+/// How one sensor's view of one person at one instant differs from the views of the others.
 struct Residual {
   SensorId sensor;
   std::set<SensorId> others;  ///< The other sensors that saw the person.
