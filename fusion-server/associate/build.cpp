@@ -34,7 +34,7 @@ constexpr double kOwnLength = 0.010;
 constexpr double kOwnInOneView = 0.036;
 constexpr double kOthersSize = 0.050;
 constexpr double kOthersLength = 0.020;
-// Variance of a mean length, as a share of what independent errors would give.
+// Variance of the mean over all lengths, relative to its value if the errors were independent.
 constexpr double kSizeShare = 0.5;
 // A length that was in view for this time only [s] has twice the variance.
 constexpr double kSlowly = 0.3;

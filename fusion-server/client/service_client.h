@@ -23,8 +23,8 @@ namespace chorus::client {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
 /// The authorities that are accepted for an https:// server: those in the file that CHORUS_CA
-/// names; otherwise the workshop's, if this host has its certificate and the user may read it
-/// (/etc/chorus/tls/ca.crt); otherwise those of the operating system.
+/// names; otherwise the workshop's own (/etc/chorus/tls/ca.crt), if this host has its certificate
+/// and the user may read it; otherwise those of the operating system.
 [[nodiscard]] Result<tls::Trust> authorities();
 
 /// http::fetch() with authorities().

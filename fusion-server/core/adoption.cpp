@@ -14,7 +14,8 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more were moved
+// Held sensors whose places differ by more than this were moved [m].
+constexpr double kMisfit = 0.3;
 
 int rank(Verdict verdict) {
   switch (verdict) {

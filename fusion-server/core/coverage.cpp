@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Longest time between the receipts of one common view.
+// Two sensors saw somebody together if their frames were received within this time.
 constexpr Duration kTogether = milliseconds(40);
 constexpr double kCell = 0.5;            // [m]
 constexpr std::size_t kMostCells = 400;  // per sensor, 10 x 10 m

@@ -12,9 +12,9 @@
 
 namespace chorus::core {
 
-/// A sensor does not stand where it was registered.
+/// The finding that a sensor does not stand where it was registered.
 struct SensorAlarm {
-  double shift = 0.0;  ///< How far it sees people from where the others see them [m].
+  double shift = 0.0;  ///< Distance between where it and where the others see people [m].
   Timestamp since;
   bool drifted = false;  ///< True if it happened gradually, false if at once.
   /// Set if either the sensor itself or this other one was moved: two sensors do not show which.

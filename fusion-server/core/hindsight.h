@@ -22,7 +22,7 @@ struct Answered {
   pipeline::Memory before;        ///< The memory before this instant.
   std::vector<SensorId> without;  ///< Registered sensors whose frames did not arrive in time.
   Parts parts;
-  Duration extension{0};  ///< How much longer than usual it may have waited.
+  Duration extension{0};  ///< How much longer than usual the instant may have waited.
 };
 
 class Hindsight {

@@ -8,13 +8,13 @@ namespace {
 constexpr Duration kAgeWindow = std::chrono::seconds(40);
 constexpr Duration kBeforeTrust = std::chrono::seconds(3);
 constexpr Duration kSilence = std::chrono::seconds(1);
-// Younger by less than this may be chance.
+// A frame may be younger than all before by less than this through chance.
 constexpr Duration kJitter = std::chrono::milliseconds(20);
 constexpr Duration kSetBack =
     std::chrono::milliseconds(100);  // ages that grow by more show that the clock was set back
 constexpr int kBelieved = 3;         // younger frames in a row
-// A smaller change of the correction is not applied.  A walk determines a clock offset to twice
-// this.
+// A smaller change of the correction is not applied.  The clock offsets found from a walk are
+// accurate to twice this.
 constexpr Duration kWorthIt = std::chrono::milliseconds(2);
 
 /// The walk's clock offset, plus the change of the least age since the walk.

@@ -34,7 +34,7 @@ class LeastAge {
 
   std::deque<Entry> entries_;  ///< Ages increase from front to back, so the first is the least.
   std::optional<Timestamp> last_;
-  Timestamp since_;  ///< Received without a pause since then.
+  Timestamp since_;  ///< The start of the present series of frames without a pause.
   bool settled_ = false;
   int younger_ = 0;  ///< Number of frames in a row that are younger than all before.
 };

@@ -36,7 +36,7 @@ struct Term {
   bool usable = true;  ///< The joint is in front of this camera.
 };
 
-/// Information across the ray at a range of one [1/rad^2].
+/// Information across the ray [1/rad^2], which is also that in [1/m^2] at a range of 1 m.
 Eigen::Matrix3d angular_information(const JointView& view) {
   const Eigen::Vector3d& d = view.joint.position;
   Eigen::Matrix<double, 3, 2> basis;

@@ -116,7 +116,8 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
       Weighing& weighing = sights.weighings[v];
       const Eigen::Vector3d& place = sights.views[v].joint.position;
-      // The bias was subtracted, but counts as distance: a view known to be off is trusted less.
+      // The bias was subtracted but counts as distance, so that a view known to be biased is
+      // trusted less.
       const Eigen::Vector3d off = place + weighing.bias - joint.position;
       const double distance = off.norm() / std::sqrt(weighing.variance);
       const bool weigh = joint.placed && huber > 0 && distance > huber;
@@ -131,7 +132,8 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
 
 PlacedJoint SightedBody::robust_squares(Sights& sights, const PlacedJoint& expected) const {
   auto found = least_squares(sights.views, config_.huber);
-  // A point states its own uncertainty; only what rays alone leave open is not placed.
+  // A point is placed whatever its covariance is; a joint with rays alone only if they determine
+  // it.
   const bool point =
       std::ranges::any_of(sights.views, [](const JointView& view) { return view.joint.seen(); });
   const auto is_open = [&](const auto& solved) {

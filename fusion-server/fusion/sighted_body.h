@@ -63,7 +63,7 @@ class SightedBody {
     std::vector<JointView> views;
     std::vector<Weighing> weighings;  ///< One for each of `views`.
     bool round = true;                ///< True if all views are points with isotropic errors.
-    bool bounded = false;             ///< The views alone leave the position open.
+    bool bounded = false;             ///< True if the views alone do not determine the position.
   };
   using Offsets = std::array<Eigen::Vector3d, kJointCount>;
 

@@ -1,4 +1,4 @@
-// Seats people in numbered slots, once for all outputs.
+// Assigns people to numbered slots, once for all outputs.
 //
 // A plain value without clock, thread or socket: the instants determine how long a person was
 // absent.

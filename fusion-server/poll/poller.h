@@ -2,7 +2,7 @@
 // clocks.
 //
 // There is one thread for all sensors, and one or two connections per sensor.  A dead, slow or
-// lying sensor costs the others nothing except network traffic and a tenth of the thread's time.
+// faulty sensor costs the others nothing except network traffic and a tenth of the thread's time.
 #pragma once
 
 #include <functional>

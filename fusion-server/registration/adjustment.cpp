@@ -24,15 +24,17 @@ constexpr double kSettled = 1e-6;
 constexpr double kNearly = 1e-4;
 // With more terms, only a part of the points is used for the bias.
 constexpr std::size_t kBiasTerms = 1'000'000;
-constexpr double kRidge = 1e-6;      // keeps the equations solvable where nothing is measured
-constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
+constexpr double kRidge = 1e-6;  // keeps the equations solvable where nothing is measured
+// Sigma with which the master's yaw and its position on the floor are held [rad], [m].
+constexpr double kGauge = 1e-5;
 constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependent = 1.2;          // [1/s] rate of independent measurements
-constexpr double kPriorFreedom = 3.0;         // degrees of freedom that this expectation counts for
-constexpr Eigen::Index kAlong[] = {1, 3, 5};  // yaw and position on the floor
+constexpr double kIndependent = 1.2;  // [1/s] rate of independent measurements
+// Weight of the expected factor, in degrees of freedom.
+constexpr double kPriorFreedom = 3.0;
+constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
 constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
 
 std::vector<Station> stations_of(const Places& places, const Walkers& walkers, bool use_floor) {

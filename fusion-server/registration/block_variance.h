@@ -24,7 +24,7 @@ class BlockScores {
   /// Blocks last 2 s, or a quarter of a walk shorter than 8 s.  `length`: that of the walk [s].
   explicit BlockScores(double length);
 
-  /// The block that an instant [s] lies in.
+  /// Index of the block that contains the instant `time` [s].
   [[nodiscard]] long index(double time) const;
   /// Adds one whole block.
   void add(Eigen::MatrixXd information, Eigen::VectorXd score);

@@ -85,7 +85,7 @@ Trail inner_part(const Trail& trail, const Trail& other, Duration range) {
   return out.frames.size() < trail.frames.size() / 2 ? trail : out;
 }
 
-/// Points that do not depend on which side is called left, where both sensors have them.
+/// Adds the points that do not depend on which side is called left, where both sensors have them.
 void add_points(const TrailFrame& target, const TrailFrame& source, std::size_t frame,
                 Points& points) {
   const auto both = [&](JointId id) { return target.has(slot(id)) && source.has(slot(id)); };

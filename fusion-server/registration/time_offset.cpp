@@ -76,7 +76,7 @@ std::optional<Duration> least_age_of(const WalkTrack& track) {
   return *std::ranges::lower_bound(ages, ages[std::min(kOdd, ages.size() - 1)] - kJitter);
 }
 
-/// The pairs that are worth a search, each searched.
+/// Searches the offset of each pair for which that is worthwhile.
 void measure(Network& network, const RegistrationConfig& config, const PairSearch& search) {
   const std::vector<Walker>& walkers = network.walkers;
   for (std::size_t target = 0; target < walkers.size(); ++target) {

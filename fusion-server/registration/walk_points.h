@@ -1,4 +1,4 @@
-// The points of a walk that the adjustment counts: what several sensors saw at one instant.
+// The points of a walk that the adjustment uses: what several sensors saw at one instant.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct Station {
   Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
   FloorPrior floor = {};  ///< How well its own floor is known; zero: not at all.
   bool master = false;
-  bool fixed = false;  ///< Has too few common points to be moved.
+  bool fixed = false;  ///< True if it has too few common points to be moved.
 
   [[nodiscard]] Eigen::Isometry3d world_from_sensor() const {
     return world_from_level * level_from_sensor;

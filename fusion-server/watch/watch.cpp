@@ -107,7 +107,7 @@ void Watch::judge(Watched& sensor) const {
   sensor.drift = sigmas >= config_.least_sigmas ? off.norm() : 0.0;
 }
 
-/// Zero unless the sensor counts as moved or drifted.
+/// The sensor's shift or drift [m]; zero unless the sensor counts as moved or drifted.
 double Watch::size_of(const Watched& sensor) const {
   if (sensor.recent.empty()) return 0.0;
   const double shift = sensor.shift.mean.norm();
