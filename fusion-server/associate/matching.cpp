@@ -63,7 +63,8 @@ class Places {
   std::vector<Sum> sums_;
 };
 
-/// Distance of a body from a track, in units of the track's gate; NaN when it cannot be computed.
+/// Cost of assigning a body to a track: their distance in units of the track's gate, more for a
+/// track that is not admitted; NaN when it cannot be computed.
 double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
   const PlacedView& body = loose.view;
   if (!body.rays) {

@@ -147,7 +147,7 @@ std::optional<Eigen::Vector3d> plain_start(const Terms& terms, std::span<const d
   return point;
 }
 
-/// Of all starts computed from one or two views, the one that agrees with the most other views.
+/// The start with the least loss: `start`, or one computed from one or two views alone.
 Eigen::Vector3d best_start(const Terms& terms, Eigen::Vector3d start) {
   double least = loss_at(terms, start);
   const std::size_t count = std::min(terms.size(), kMaxStarts);

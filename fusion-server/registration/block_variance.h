@@ -1,8 +1,8 @@
 // Estimates from the residuals how far successive measurements are from independent.
 //
 // A least-squares estimate with information H, sum of scores g = 0 and independent measurements has
-// the covariance H^-1.  Errors of joints last for seconds, so the scores of one block of time add
-// up.  With g_b and H_b the score and the information of block b, H = sum H_b, the factor
+// the covariance H^-1.  Errors of joints persist over many frames, so the scores of one block of
+// time add up.  With g_b and H_b the score and the information of block b, H = sum H_b, the factor
 //   v = sum_b g_b^T H^-1 g_b / (dim - sum_b tr((H^-1 H_b)^2))
 // is what H^-1 has to be multiplied by: the scalar form of the cluster-robust (sandwich)
 // covariance, where the denominator accounts for what the fit has removed from each block.  Scores

@@ -1,7 +1,8 @@
-// Finds the best chain of edges from the master to each client (Otto 5.2.3, Fig. 11).
+// Finds the best chain of edges from the master to every other sensor (Otto 5.2.3, Fig. 11).
 //
-// Best = smallest sum of edge errors (Dijkstra).  An edge may be followed in both directions; it is
-// reversed explicitly, here and nowhere else.  Derived in docs/papers/registration.md, Section 7.
+// The best chain has the smallest sum of edge errors (Dijkstra).  An edge may be followed in both
+// directions; against its own direction its inverse is used.  Derived in
+// docs/papers/registration.md, Section 7.
 #pragma once
 
 #include <map>
