@@ -84,14 +84,14 @@ bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
              limit;
 }
 
-/// Orders published tracks first; within each group the older first (ids only grow).
+/// Puts published tracks before the others, and in each group older tracks first (ids only grow).
 void seniors_first(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
     return is_settled(candidate.track, config);
   });
 }
 
-/// Merges tracks on one spot; the first in seniors_first() keeps the person.
+/// Merges tracks on one spot; of each two, the first in the order of seniors_first() is kept.
 void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   seniors_first(candidates, config);
   for (std::size_t i = 1; i < candidates.size(); ++i) {
@@ -111,7 +111,7 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
   }
 }
 
-/// Removes people who are not where several sensors look, because they have left.
+/// Removes people who have left: several sensors have seen through their places for kGone.
 void leave(std::vector<Candidate>& candidates, const Admission& admission, Duration elapsed,
            Tracks& tracks) {
   std::erase_if(candidates, [&](Candidate& candidate) {
@@ -162,7 +162,7 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
   std::vector<Person> people;
   for (Candidate& candidate : candidates) {
     const Track& track = candidate.track;
-    // A single ray body does not determine a position.
+    // `seen` is unchanged by a single ray body, which does not determine a position.
     const bool placed = instant - track.seen <= config.carry;
     if (placed && track.named && is_settled(track, config)) people.push_back(person_of(candidate));
   }

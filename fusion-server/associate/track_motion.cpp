@@ -71,7 +71,7 @@ void turn_velocity(Track& track, const Eigen::Vector3d& seen) {
 void update_velocity(Track& track, std::vector<Footprint> prints, const Eigen::Vector3d& centre,
                      double elapsed) {
   auto way = way_between(track.footprints, prints);
-  // Both instants have rays only.
+  // If both instants have rays only, the points where they meet are compared.
   if (prints.empty() && track.footprints.empty()) way = centre - track.core;
   if (track.hits > 0 && elapsed > 0 && way) turn_velocity(track, *way / elapsed);
   track.footprints = std::move(prints);

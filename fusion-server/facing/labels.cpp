@@ -14,7 +14,7 @@ constexpr double kMaxAgree = 4.0;  // Limit on the log odds of one instant, beca
 /// The state of a two-state chain after one more observation.
 struct Chain {
   double likelihood = 0.0;  ///< Likelihood of the observation.
-  double exchanged = 0.0;   ///< Probability afterwards.
+  double exchanged = 0.0;   ///< Probability afterwards that the labels are swapped.
 };
 
 /// Advances the chain and adds an observation; `odds`: its log odds for "swapped".

@@ -17,7 +17,7 @@ constexpr int kRounds = 3;  // One or two rounds are enough for agreement.
 
 struct Joined {
   Spans spans;          ///< Mean of the views, each with the sign that makes it agree.
-  double agreed = 0.0;  ///< [m^2]
+  double agreed = 0.0;  ///< Sum of |agreement()| of the views with the mean [m^2].
 };
 
 Joined join(const std::vector<Spans>& views, const Spans& start) {

@@ -11,8 +11,9 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kClear = 2.0;  // Log odds from which on one view alone counts as certain.
-constexpr double kBlind = 1.0;  // Log odds of all views together; with less, they show nothing.
+constexpr double kClear = 2.0;  // Log odds above which one view alone counts as certain.
+// Sum of the views' |log odds|; with less, no view shows left and right.
+constexpr double kBlind = 1.0;
 constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame count as one observation.
 
 /// Everything that the model computes for one person at one instant.
@@ -71,8 +72,8 @@ void look_at_views(Instant& now, const Person& person, const Sides& sides,
   }
 }
 
-/// The weighted mean of the views; a view that opposes the held sides is reversed, and one whose
-/// spans have become much shorter counts less.
+/// The mean of the views, weighted by the size of their spans; a view that opposes the held sides
+/// is reversed.
 Spans joined(const Instant& now) {
   Spans spans = no_spans();
   double weights = 0.0;
@@ -122,7 +123,7 @@ LabelStep step_of_view(const SensorView& view, double agree, double facing, cons
                      config.habit);
 }
 
-/// True if the view counts: from the instant when it first clearly shows left and right.
+/// True if the view counts: it does so once it has clearly shown left and right.
 bool counts(const SensorView& view, double agree, const Sides& sides) {
   return std::abs(agree) > kClear || sides.views.contains(view.sensor);
 }
@@ -194,7 +195,7 @@ bool must_turn(const PersonFilter& filter, bool first, const SidesConfig& config
   return std::log((1.0 - right) / right) > (first ? 0.0 : config.change_odds);
 }
 
-/// Learns habits, but only while the sides are certain, and from views whose labels could change.
+/// Learns habits, but only while the sides are certain, and from views that were seen before.
 void learn(const Instant& now, const Person& person, const Sides& sides, SidesMemory& memory,
            const SidesConfig& config) {
   if (sides.filter.right() < config.learn_from) return;

@@ -30,7 +30,7 @@ struct SidesConfig {
   double change_odds = 1.0;  ///< The held sides change if the log odds against them exceed this.
   double smoothing = 0.1;    ///< Time constant with which the held spans follow the views [s].
   double learn_from = 0.95;  ///< Habits are learned while the sides are at least this probable.
-  /// Forgets a person who was not seen for this long.
+  /// A person who was not seen for this long is forgotten.
   Duration forget = std::chrono::seconds(1);
 
   bool operator==(const SidesConfig&) const = default;
