@@ -44,7 +44,7 @@ Start start_of(const Walker& walker) {
 /// the walk will start.
 struct Pose {
   double ahead = 0.0;  ///< In front of the start, along its heading [m]
-  double phase = 0.0;  ///< Phase of the gait; runs backwards like the feet.
+  double phase = 0.0;  ///< Phase of the gait; decreases while the person walks backwards.
   double amplitude = 0.0;
   synthetic::Reach reach{};
 };

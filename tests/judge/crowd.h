@@ -17,8 +17,9 @@ namespace chorus::bench {
 [[nodiscard]] std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed,
                                                              double passing = 0.5);
 
-/// Three people who use the same walk one after the other: each leaves the room on the way, and the
-/// next enters at that place 0.3 to 2 s later.  The first is there at `begin`; nobody comes back.
+/// Three people who follow the same path one after the other: each leaves the room on the way, and
+/// the next enters at that place 0.3 to 2 s later.  The first is there at `begin`; nobody comes
+/// back.
 [[nodiscard]] std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin);
 
 /// Three people at work.  The first leaves for 0.3 to 2 s and, later, for 20 s; the other two leave

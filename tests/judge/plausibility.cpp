@@ -57,7 +57,7 @@ void add_stance(const Places& places, double length, Mean& squares) {
   for (const Eigen::Vector2d& each : places) squares.add((each - middle).squaredNorm());
 }
 
-/// Adds the stances of one foot.
+/// Adds the squared deviations of all stances of one foot.
 void add_stances(const Answers& answers, JointId ankle, Mean& squares) {
   Places places;
   std::size_t first = 0;

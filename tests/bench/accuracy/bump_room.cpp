@@ -23,7 +23,7 @@ SensorId sensor_of(std::size_t place) {
 }
 
 std::vector<Eigen::Isometry3d> places_of(const RoomSetting& setting) {
-  constexpr std::size_t kSeenTogether = 3;  // fewer sensors stand side by side
+  constexpr std::size_t kSeenTogether = 3;  // two sensors stand like two of a ring of three
   synthetic::Ring ring;
   ring.count = std::max(setting.sensors, kSeenTogether);
   auto places = ring_places(ring);

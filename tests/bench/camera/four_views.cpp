@@ -34,7 +34,7 @@ Result<ImportedSet> published() {
 
 using Tracks = std::vector<registration::WalkTrack>;
 
-/// Lens and file of a camera, as the demo has them.
+/// The lens and the video of a camera, as the demo configures them.
 Result<camera::CameraSettings> settings_of(const std::string& id) {
   std::ifstream file(fmt::format("{}/{}.json", kFourVideos, id));
   const auto all = nlohmann::json::parse(file, nullptr, false, true);

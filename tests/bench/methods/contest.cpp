@@ -152,7 +152,7 @@ Person with_true_labels(Person person, const Body& exact) {
   return person;
 }
 
-/// A draw, its place in the world, and the views of all people in it.
+/// A draw, the registration that is used for it, and the views of all people in it.
 struct Stage {
   Workshop workshop;
   Registration registration;

@@ -212,7 +212,8 @@ constexpr Pair kTable1[] = {
     {0, 9.6}, {45, 16.0}, {90, 17.8}, {135, 26.6}, {180, 12.3}};  // Otto Table 1
 constexpr std::uint64_t kSetUps = 11;  // a single one is uncertain by 20 %
 
-/// (c) The paper's ICP, 10 s, twenty walks per set-up; the condition is on the median set-up.
+/// (c) Repeats Table 1 with the paper's ICP: twenty walks of 10 s for each set-up; the condition
+/// is on the median set-up.
 std::vector<TableOneBar> compare_with_table1(Report& report) {
   std::vector<TableOneBar> bars;
   for (const Pair& pair : kTable1) {
