@@ -1,4 +1,5 @@
-// proto/golden/vrpn: our server writes it byte for byte, and the tests' own client reads it.
+// Our VRPN server writes the file proto/golden/vrpn byte for byte, and the tests' own client reads
+// it.
 #include <fstream>
 #include <sstream>
 

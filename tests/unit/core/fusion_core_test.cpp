@@ -105,7 +105,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, milliseconds(500));
   SensorFrame back = sight(0, milliseconds(300));
-  back.sequence = ~std::uint64_t{0};  // a later frame of the sensor
+  back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
   EXPECT_EQ(core.fates(sensor_id("s1")).backwards, 1u);
   SensorFrame stranger = sight(0, milliseconds(600));
@@ -329,7 +329,7 @@ TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
   (void)run(core, Duration{0}, milliseconds(500));
   EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   SensorFrame back = sight(0, milliseconds(300));
-  back.sequence = ~std::uint64_t{0};  // a later frame of the sensor
+  back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
   EXPECT_NE(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + std::chrono::seconds(4)), "");

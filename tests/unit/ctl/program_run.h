@@ -1,4 +1,4 @@
-// Runs `chorus` in this process and captures its output; recordings as its input.
+// Runs `chorus` in this process and captures its output; makes recordings as its input.
 #pragma once
 
 #include <string>
@@ -67,7 +67,8 @@ class Cell {
     std::filesystem::create_directory(folder_ / "rec");
     for (int i = 0; i < kRing; ++i) {
       auto recording = walk_seen_by(i, length);
-      recording.notes["set_origin"] = to_iso8601(recording.frames.front().captured);  // one clock
+      recording.notes["set_origin"] =
+          to_iso8601(recording.frames.front().captured);  // their clocks agree
       const auto file = folder_ / "rec" / (recording.sensor.str() + ".mcap");
       EXPECT_THAT(record::write_frame_recording(file, recording), chorus::testing::IsOk());
     }

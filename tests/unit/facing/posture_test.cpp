@@ -51,7 +51,7 @@ TEST(Posture, ArmsThatOnlyOneSideSeesAreOnThatSide) {
 TEST(Posture, ThatStaysTheSameIsHardlyNews) {
   EXPECT_NEAR(posture_news(2.0, 2.0, 0.033, 5.0), 2.0 * 0.033 / 10.0, 1e-4);
   EXPECT_NEAR(posture_news(2.0, -1.0, 0.033, 5.0), 1.5,
-              0.02);  // the mean of the first and the last
+              0.02);  // with -1 it adds up to 0.5, the mean of both
   EXPECT_NEAR(posture_news(2.0, -1.0, 1e3, 5.0), 2.0, 1e-9);
   double sum = 0.0;
   for (int i = 0; i < 300; ++i) sum += posture_news(2.0, 2.0, 0.033, 5.0);

@@ -51,7 +51,7 @@ TEST(PointsAndRays, TwoRaysMakeAJointWithItsContributors) {
 }
 
 TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
-  // Two sensors: what one source alone states counts as fused already.
+  // Two sensors are needed: what a single source states counts as already fused.
   const auto person = [](double along, double across) {
     const Eigen::Vector3d sigma(across, across, along);
     Person seen{PersonId{1}, {}};
@@ -72,7 +72,8 @@ TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
   EXPECT_EQ(method_for(person(0.25, 0.025), config), Method::Mean);
 }
 
-/// Wide as it is, what a point states is a place; only rays can leave a joint open.
+/// However uncertain its depth is, a point states a position; only rays can leave a joint without
+/// one.
 TEST(PointsAndRays, APointOfGuessedDepthStaysSeenInTheBodyFilter) {
   SensorView guessed = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 3});
   guessed.skeleton[JointId::Neck].covariance =
@@ -86,7 +87,7 @@ TEST(PointsAndRays, APointOfGuessedDepthStaysSeenInTheBodyFilter) {
   EXPECT_TRUE(body.skeleton[JointId::Neck].seen());
 }
 
-/// Rounded to floats, a covariance of rank one has eigenvalues below 0.
+/// A covariance of rank one that was rounded to floats can have eigenvalues below 0.
 TEST(StatedCovariance, CanBeInvertedHoweverThinItIs) {
   const Eigen::Vector3d depth = Eigen::Vector3d(0.3, 0.5, 0.81).normalized();
   SensorView view = neck_view(1, {0, 1, 0}, 0.5);

@@ -11,7 +11,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The people of ring.h have no bones whose lengths a filter could use.
+/// A method without memory is used, because the people of ring.h have no bones whose lengths a
+/// filter could learn.
 PipelineConfig without_memory() {
   PipelineConfig config;
   config.fusion.method = fusion::Method::InverseVariance;

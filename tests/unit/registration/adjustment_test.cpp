@@ -106,7 +106,8 @@ TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   }
 }
 
-/// Single cameras: chains of pairs leave the depth open; three rays determine it.
+/// The sensors measure depth badly, as cameras do: chains of pairs leave the depth open, but three
+/// rays determine it.
 TEST(AdjustTogether, ThreeBluntSensorsFixWhatEachPairLeavesOpen) {
   double before = 0.0;
   double after = 0.0;

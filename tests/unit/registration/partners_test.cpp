@@ -70,7 +70,7 @@ TEST(PartnersOf, WhoNeverSawThePersonTogetherIsTriedSoThatItIsTold) {
   EXPECT_EQ(partners_with(partners_of(walkers), 300), 14u);
 }
 
-/// A pair that was chosen can be refused: only edges link sensors.
+/// A pair that was tried may have been refused; only an edge connects two groups.
 TEST(UntriedLinks, AreThePairsBetweenGroupsThatNoEdgeConnects) {
   const auto walkers = crowd(4);  // 100 to 103
   const std::vector<SensorPair> tried{{sensor(100), sensor(101)}, {sensor(101), sensor(102)}};

@@ -65,7 +65,8 @@ TEST(ViewBias, IsWhatDisplacedSightsDoToTheScores) {
   EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm());
 }
 
-/// cos^2 + sin^2 = 1 for both harmonics: one point counts three times, whichever way it goes.
+/// The constant and both harmonics count once each, because cos^2 + sin^2 = 1: a point counts
+/// three times, whichever way the person walks.
 TEST(ViewBias, KnowsFiveTermsWhereTheWayIsKnown) {
   const BiasScene scene;
   const Eigen::MatrixXd constant = scene.scores(std::nullopt);

@@ -214,7 +214,8 @@ TEST(BodyPlacing, ErrorsAreAsLargeAsStated) {
   for (int i = 0; i < kDraws; ++i) {
     const auto placed = place_body(draws.rays(truth, kRay), draws.shape(errors), errors);
     ASSERT_TRUE(placed) << i;
-    double one = 0.0;  // joints of one draw share their size: 200 draws count, not their joints
+    double one =
+        0.0;  // joints of a draw share its error of size, so only the 200 draws are independent
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const Vector3d off = placed->joints[j].position - truth.joints[j].position;
       one += off.dot(placed->joints[j].covariance.matrix().inverse() * off) / (3.0 * kJointCount);

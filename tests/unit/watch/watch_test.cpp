@@ -55,7 +55,7 @@ class Room : public ::testing::Test {
 
   static double seconds_of(Duration d) { return chorus::seconds(d); }
 
-  /// An eight through the room.
+  /// The person, who walks in a figure of eight, at the present point of the way.
   Person person() {
     const double t = way_ / 1.1;
     const Vector3d place(std::sin(t), 0.0, 0.8 * std::sin(2.0 * t));
