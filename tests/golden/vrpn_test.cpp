@@ -1,5 +1,5 @@
-// Our VRPN server writes the file proto/golden/vrpn byte for byte, and the tests' own client reads
-// it.
+// Our VRPN server writes the files in proto/golden/vrpn byte for byte, and the tests' own client
+// reads them.
 #include <fstream>
 #include <sstream>
 

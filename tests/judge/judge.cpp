@@ -192,7 +192,7 @@ std::vector<Eigen::Isometry3d> pair_places(double angle) {
 }
 
 Timestamp true_time(const HostClock& clock, Timestamp stamp) {
-  // The clock deviates by parts per million, so two iterations are exact to nanoseconds.
+  // The clock deviates by parts per million, so a few iterations are exact to nanoseconds.
   Timestamp guess = stamp;
   for (int i = 0; i < 3; ++i) guess = stamp - (clock.host_time(guess) - guess);
   return guess;

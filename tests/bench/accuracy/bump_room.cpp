@@ -38,7 +38,8 @@ Eigen::Isometry3d pushed(const Eigen::Isometry3d& place, const Push& push) {
   return out;
 }
 
-/// One sensor before and after the push, with the next frame that it will deliver.
+/// A sensor, which is replaced by another object when it is pushed, and the next frame that it
+/// will deliver.
 struct Lane {
   std::unique_ptr<BodySensor> sensor;
   std::optional<SensorFrame> next;

@@ -1,5 +1,5 @@
-// A room in everyday use, one of whose sensors is pushed: the fusion server's core on the frames of
-// simulated sensors, frame by frame, with its own registration.
+// A room in everyday use in which one sensor is pushed: the fusion server's core, with its own
+// registration, processes the frames of simulated sensors one by one.
 #pragma once
 
 #include <optional>

@@ -47,8 +47,8 @@ void watch(Report& report, const RegistrationCase& each, const std::vector<Score
                    median(position) < kCeiling);
 }
 
-/// Measures the claim for white noise, which is older than the sensor model and is kept so that it
-/// can be repeated.
+/// Checks an earlier claim, which was made for white noise before there was the sensor model; it
+/// is kept so that it can be repeated.
 void measure_gauss(Report& report) {
   Setting setting;
   setting.profile = synthetic::kGaussProfile;
@@ -98,8 +98,8 @@ void sweep_stress(Report& report) {
 /// One of the short walks, and its result.
 struct ShortWalk {
   Score score;
-  /// True for a uniform circle or a straight line.  A circle does not determine a clock, in
-  /// principle.
+  /// True for a uniform circle or a straight line.  In principle, a circle does not determine a
+  /// clock offset.
   bool marked = false;
   double offset_error = kNoRatio;  ///< Error of the pair's clock offset, as found from the motion
                                    ///< [ms]; NaN: none was found.

@@ -82,7 +82,7 @@ double percent_of(const std::vector<Score>& draws, Count count) {
   return asked == 0 ? kNoRatio : 100.0 * static_cast<double>(counted) / static_cast<double>(asked);
 }
 
-/// Percentage that `count` counts of the sensors that have a place.
+/// Percentage of the placed sensors that `count` counts.
 template <class Count>
 double percent_of_placed(const std::vector<Score>& draws, Count count) {
   std::size_t placed = 0;
@@ -95,7 +95,7 @@ double percent_of_placed(const std::vector<Score>& draws, Count count) {
                      : 100.0 * static_cast<double>(counted) / static_cast<double>(placed);
 }
 
-/// Reports the errors on the floor that our method states, and whether they are right.
+/// Reports the horizontal errors that our method states, and how often they hold.
 void report_stated(Report& report, const std::string& name, const std::vector<Score>& draws) {
   std::vector<double> stated;
   std::vector<double> off;

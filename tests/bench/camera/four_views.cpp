@@ -20,7 +20,7 @@ namespace {
 
 using importers::ImportedSet;
 
-/// Joints that every network gives as one landmark, so that networks can be compared.
+/// Joints for which every network has a landmark of its own, so that networks can be compared.
 constexpr std::array kLimbs{JointId::ShoulderLeft, JointId::ShoulderRight, JointId::ElbowLeft,
                             JointId::ElbowRight,   JointId::WristLeft,     JointId::WristRight,
                             JointId::HipLeft,      JointId::HipRight,      JointId::KneeLeft,

@@ -67,8 +67,8 @@ struct NamedSighted {
   Sighted which;
 };
 
-/// The groups of joints: all of them, then by how many views saw them, then by whether they are at
-/// rest.
+/// The groups of joints: all of them, and then by how many views saw them, combined with whether
+/// they are at rest.
 std::vector<NamedSighted> sighted_apart() {
   using enum Sighted::Motion;
   std::vector<NamedSighted> all{{"", {}}};
@@ -189,7 +189,8 @@ Stage stage_of(const Contest& contest, bool with_bound) {
   return stage;
 }
 
-/// The person at that moment as the contender gets it; none if there is none.
+/// The person at that moment, with the views as the contender gets them; none if association found
+/// nobody there.
 std::optional<Person> given_at(const Stage& stage, std::size_t at, const Contender& contender) {
   const Body& exact = stage.exact[at];
   if (contender.bound && stage.confided.empty()) return std::nullopt;

@@ -174,7 +174,8 @@ MannequinFigures mannequin_figures(std::uint64_t seed) {
   return figures;
 }
 
-/// (b) The mannequin (Otto Figs. 5-8).  Jitter may be 0.2 to 1.3 times Otto's bound.
+/// (b) Compares the mannequin's figures with Otto Figs. 5-8.  Jitter may be 0.2 to 1.3 times
+/// Otto's bound.
 void compare_with_mannequin(Report& report) {
   const std::vector<MannequinFigures> all = over_seeds(report, mannequin_figures);
   const auto values_of = [&](double MannequinFigures::*figure) {

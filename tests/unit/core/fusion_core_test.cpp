@@ -231,7 +231,7 @@ TEST(FusionCore, TheRateMayChangeWhileRunning) {
   EXPECT_GT(after.front().instant, before.back().instant);
 }
 
-/// What run_delayed() saw; it runs as run() does, but frame i of the last sensor comes
+/// Result of run_delayed(), which runs as run() does, except that frame i of the last sensor comes
 /// `lateness(i)` late.
 struct Delayed {
   Answers live;
@@ -284,7 +284,8 @@ TEST(FusionCore, OneBadLinkCostsTheOthersAtMostThirtyMillisecondsAndIsUsedAfterw
   FusionCore core(config(), ring());
   const Delayed with = run_delayed(core, std::chrono::seconds(10), bad);
   EXPECT_LT(p90(with.ages), before + 0.030);
-  // A second later almost all instants include the late sensor, under the ids already published.
+  // After the first second, almost all instants include the late sensor once they are amended,
+  // under the ids already published.
   std::map<std::uint64_t, const Snapshot*> afterwards;
   for (const Snapshot& snapshot : with.live) afterwards[snapshot.sequence] = &snapshot;
   for (const Snapshot& snapshot : with.amended) {

@@ -55,7 +55,7 @@ TEST(Posture, ThatStaysTheSameIsHardlyNews) {
   EXPECT_NEAR(posture_news(2.0, -1.0, 1e3, 5.0), 2.0, 1e-9);
   double sum = 0.0;
   for (int i = 0; i < 300; ++i) sum += posture_news(2.0, 2.0, 0.033, 5.0);
-  // One long step contains slightly less information.
+  // One step as long as all of these together contains slightly less information.
   EXPECT_NEAR(sum, posture_news(2.0, 2.0, 9.9, 5.0), 0.6);
 }
 

@@ -46,7 +46,7 @@ TEST(PointsAndRays, TwoRaysMakeAJointWithItsContributors) {
   EXPECT_EQ(joint.state, JointState::Tracked);
   EXPECT_EQ(joint.measurement, Measurement::Point);
   EXPECT_EQ(body.contributors[kNeck], 0b11U);
-  // Half a degree at about 3 m.
+  // An error of half a degree is 26 mm at about 3 m.
   EXPECT_NEAR(std::sqrt(body.variance[kNeck]), 0.026, 0.01);
 }
 
@@ -112,7 +112,8 @@ TEST(PointsAndRays, AnswersForPeopleOfWhomThereAreRaysAloneWhateverTheMethod) {
   const FusedBody both = cell.at(
       milliseconds(33), {ray_view(1, neck), ray_view(2, neck), neck_view(3, neck, 0.5, {0, 1, 3})});
   EXPECT_EQ(both.contributors[kNeck], 0b100U);
-  // Each method keeps its own memory.
+  // Each method keeps its own memory: points-and-rays knows the neck from before, so one ray is
+  // enough.
   (void)cell.at(milliseconds(66), {ray_view(1, neck)});
   EXPECT_EQ(cell.at(milliseconds(66), {ray_view(1, neck)}).contributors[kNeck], 0b1U);
 }

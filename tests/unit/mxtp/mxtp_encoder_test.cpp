@@ -116,8 +116,8 @@ TEST(Mxtp, TheHeadOfWhomOnlyPartOfTheNeckIsSeenStaysOnIt) {
   EXPECT_NEAR(place_without(JointId::Neck), 1.4, 1e-5);
 }
 
-/// Makes an MVNX file from the content of a datagram.  The only point that it states is jC1Head,
-/// the end of the neck, at the distance of the head's origin along the neck.
+/// Makes an MVNX file from the content of a datagram.  The file states a single point, jC1Head,
+/// the end of the neck: it lies on the neck's z axis, as far away as the head's origin.
 motion::Mvnx file_of(const std::vector<char>& bytes) {
   constexpr std::array kLabels{"Pelvis",
                                "L5",

@@ -73,7 +73,7 @@ TEST(PollFsmStream, WhatItLeavesOutIsFetchedAtOnceOneByOne) {
   const Step gap = fsm.resume(streamed(5, 132), milliseconds(100), kFull);
   EXPECT_EQ(send_of(gap).resource, Resource::KeptFrame);
   EXPECT_EQ(send_of(gap).sequence, 3u);
-  // One request is in flight.
+  // There is no second request while one is in flight.
   EXPECT_FALSE(fsm.resume(streamed(6, 165), milliseconds(133), kFull).action);
   const Step next = fsm.resume(KeptAnswered{true}, milliseconds(201), kFull);
   EXPECT_TRUE(next.deliver);

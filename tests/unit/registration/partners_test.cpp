@@ -9,7 +9,7 @@
 namespace chorus::registration {
 namespace {
 
-/// A sensor that saw somebody move from one second to another, ten times a second.
+/// A sensor that saw somebody move from second `from` to second `to`, ten times a second.
 Walker present(int number, int from, int to) {
   Walker walker;
   walker.trail.sensor = sensor(number);

@@ -96,7 +96,8 @@ TEST(Refine, TheCostCountsEachSensorsDepthForLess) {
   EXPECT_EQ(cost_of(pair, at, kDepth), 0.0);
 }
 
-/// The source looks along the target's z from elsewhere: its ray must be rotated with its pose.
+/// The source is at the target's place, but rotated by 90 deg: its ray to the point, which lies
+/// along the target's z, must be rotated with its pose.
 TEST(Refine, TheSourcesDepthIsTakenWhereItLooks) {
   Refined at;
   at.target_from_source.linear() = about_y(deg(90)).toRotationMatrix();

@@ -37,7 +37,7 @@ Body turned_and_moved(Body body, const Eigen::Quaterniond& turn, const Vector3d&
   return body;
 }
 
-/// The turn from a line of sight straight ahead to the one to `place`.
+/// The rotation from a line of sight straight ahead to the one to `place`.
 Eigen::Quaterniond towards(const Vector3d& place) {
   return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), place);
 }
@@ -173,7 +173,8 @@ TEST(BodyPlacing, DepthIsWorseThanDirectionAndFocalLengthAddsToIt) {
   EXPECT_NEAR(sigma_of(2), std::hypot(alone, 0.4), 1e-3);
 }
 
-/// A shape and rays that err as `errors` says.
+/// Draws shapes with errors as large as a PlacingErrors states, and rays with errors of `sigma`
+/// [rad].
 class Draws {
  public:
   Body shape(const PlacingErrors& errors) {

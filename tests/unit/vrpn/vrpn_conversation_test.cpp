@@ -93,7 +93,8 @@ TEST(VrpnSession, DescribesEverythingOnceTheCookieIsComplete) {
   for (const std::string_view joint : kJointNames) {
     EXPECT_TRUE(names.contains("Body0_" + std::string(joint))) << joint;
   }
-  // No -3: the server accepts no datagrams from clients; no -4: it keeps no logs.
+  // System messages -3 and -4 are missing, because the server accepts no datagrams from clients
+  // and keeps no logs.
   EXPECT_EQ(std::set(client.decoder.system_types.begin(), client.decoder.system_types.end()),
             (std::set<std::int32_t>{-2, -1}));
 }

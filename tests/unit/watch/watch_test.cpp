@@ -34,7 +34,7 @@ class Room : public ::testing::Test {
     slow_.assign(static_cast<std::size_t>(sensors), Vector3d::Zero());
   }
 
-  /// Moves what this sensor shows by a vector, and turns it about the sensor by `yaw`.
+  /// Shifts what this sensor shows by `by`, and turns it about the sensor by `yaw`.
   void push(int sensor, const Vector3d& by, double yaw = 0.0) {
     const Vector3d eye = testing::ring_sensor(sensor, sensors_).translation();
     Isometry3d move = Isometry3d::Identity();

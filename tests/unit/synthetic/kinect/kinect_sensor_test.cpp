@@ -233,7 +233,8 @@ TEST(KinectSensor, OfProfileDHasOneScaleForAllBonesOfAFrameAndNeverExchangesLabe
 
 TEST(KinectSensor, WhomItFindsAgainFromBehindItTakesToFaceIt) {
   Scene scene = room();
-  // Turned by 100 deg, which is between the angles of exchange, so that only the past decides.
+  // The person is turned by 100 deg.  This lies between the angles at which left and right are
+  // swapped and swapped back, so only the past decides.
   scene.people = {[](Duration) {
     return testing::standing_person({0, 0, 2.0}, deg(180) + deg(100));
   }};
