@@ -93,7 +93,7 @@ Recorded record_sensor(const Workshop& workshop, const SensorId& id, std::size_t
   return {record(*sensor, workshop.begin + setting.length), sensor->clock()};
 }
 
-/// Adds an offset and a drift to the host's clock.
+/// Adds an offset and a drift to the host's clock, and corrects the capture times accordingly.
 void set_off(Recorded& recorded, Timestamp begin, double offset, double drift) {
   const HostClock before = recorded.clock;
   recorded.clock.origin = begin;

@@ -40,7 +40,7 @@ Workshop workshop_of(const Report& report, const CostCase& each) {
   return draw_workshop(setting);
 }
 
-/// Time of every instant from frames to snapshot [ms].
+/// Processing time of every instant, from its frames to the snapshot [ms].
 std::vector<double> step_times(const Workshop& workshop, fusion::Method method) {
   pipeline::PipelineConfig config;
   config.fusion.method = method;

@@ -42,8 +42,8 @@ using Sights = associate::Scene;
 /// instant to the next.
 using Grouper = std::function<std::vector<Person>(const Sights& sights)>;
 
-/// Reports every occluded joint as inferred.  Profile A reports many of them as tracked, close to
-/// their true positions, so its sensors would see through the screen.
+/// Makes the sensors report every occluded joint as inferred.  With profile A alone, they would
+/// report many of them as tracked, close to their true positions, and thus see through the screen.
 void know_the_occluded(synthetic::kinect::Profile& profile, std::size_t) {
   profile.visibility.inferred_occluded = 1.0;
 }
@@ -229,7 +229,8 @@ Identities identities_in(const PersonsCase& each, std::uint64_t seed,
   for (const Contestant& contestant : contestants) {
     const Identity found = identity_of(contestant.rolls);
     const auto [known, fresh] = identities.emplace(contestant.name, found);
-    // The ids of every sensor take part, all under the same name; only the best result is kept.
+    // The ids that each sensor gives take part as well, all under the same name; only the best
+    // result is kept.
     if (!fresh && found.idf1 > known->second.idf1) known->second = found;
   }
   return identities;

@@ -130,7 +130,7 @@ double distance_to(const Eigen::Vector3d& core, const Body& exact) {
   return std::hypot(off.x(), off.z());
 }
 
-/// Of several candidates the one nearest to the truth, within reach.
+/// The candidate whose core is nearest to the truth's, within kReach; end() if there is none.
 template <class Candidates, class Core>
 auto nearest(const Candidates& candidates, const Body& exact, const Core& core) {
   auto best = candidates.end();

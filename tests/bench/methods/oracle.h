@@ -20,7 +20,7 @@ namespace chorus::bench::baselines {
 struct SharedErrors {
   double joints = 0.0;  ///< Where both see the same side.
   double neck = 0.0;    ///< The same for neck and chest.
-  double twice = 0.0;   ///< Its part that varies with twice the angle between the views.
+  double twice = 0.0;   ///< Fraction that varies with twice the angle between the views.
 };
 
 /// Computes the body `bound` (see above) and states its covariance.  The views' joints must carry

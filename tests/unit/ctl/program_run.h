@@ -35,7 +35,7 @@ inline Outcome run_chorus(const std::vector<std::string>& words) {
 
 inline constexpr int kRing = 3;
 
-/// Position at t seconds of a person who walks in a figure of eight.
+/// Position at t seconds of a person who walks on a winding path.
 inline Eigen::Vector3d walked(double t) {
   return {0.9 * std::sin(0.7 * t), 0.0, 0.8 * std::sin(1.1 * t)};
 }

@@ -168,7 +168,7 @@ TEST(AdjustTogether, TheMasterKeepsItsPlaceAlongTheFloorAndItsDirectionAlone) {
   const Matrix6 shift = at_point(after.translation());
   const Matrix6 at_eye = shift * adjusted->covariances.at(sensor(0)) * shift.transpose();
   EXPECT_LT(to_mm(std::sqrt(at_eye(3, 3))), 0.1);
-  EXPECT_GT(to_mm(std::sqrt(at_eye(4, 4))), 3.0);  // three floors of 10 mm
+  EXPECT_GT(to_mm(std::sqrt(at_eye(4, 4))), 3.0);  // mean of three floors, each off by 10 mm
   EXPECT_GT(to_deg(std::sqrt(at_eye(0, 0))), 0.1);
 }
 

@@ -139,7 +139,7 @@ TEST(Refine, PairsThatGoTogetherCountOnce) {
   CloudSpec alike = white;  // three joints with the same error
   alike.shared = true;
   EXPECT_NEAR(inflation(alike), 3.0, 0.4);
-  CloudSpec coloured = white;  // (1 + 0.8) / (1 - 0.8)
+  CloudSpec coloured = white;  // a correlation of 0.8 gives (1 + 0.8) / (1 - 0.8) = 9
   coloured.rho = 0.8;
   EXPECT_NEAR(inflation(coloured), 9.0, 1.8);
   EXPECT_EQ(inflation({}), 1.0);  // no residuals, no correlation

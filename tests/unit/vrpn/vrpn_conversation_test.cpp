@@ -155,7 +155,7 @@ TEST(VrpnSession, AClientGetsTheTrackersItNames) {
   const Reports reports = encode(two_persons(), *trackers());
   Heard client;
   client.say(vrpn_cookie() + vrpn_description(-1, 0, "VRPN Control"));
-  EXPECT_EQ(client.poses(reports).size(), 98u);  // the client named no sender of ours
+  EXPECT_EQ(client.poses(reports).size(), 98u);  // it named none of ours: gets all
   client.say(vrpn_description(-1, 1, "Body1_Head"));
   EXPECT_EQ(client.poses(reports), (std::multiset<std::string>{"Body1_Head 0"}));
   client.say(vrpn_description(-1, 2, "Body0"));

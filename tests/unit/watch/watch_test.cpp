@@ -24,8 +24,8 @@ constexpr Duration kStep = milliseconds(100);
 
 SensorId name(int sensor) { return sensor_id("s" + std::to_string(sensor + 1)); }
 
-/// Sensors on a ring with the errors of real ones: some last half a second, some depend on the
-/// person's orientation towards the sensor.
+/// Sensors on a ring whose errors resemble those of real ones: one part is correlated over half a
+/// second, another depends on the person's orientation towards the sensor.
 class Room : public ::testing::Test {
  protected:
   void furnish(int sensors) {
@@ -73,7 +73,7 @@ class Room : public ::testing::Test {
     view.sensor = name(sensor);
     view.eye = testing::ring_sensor(sensor, sensors_).translation();
     view.skeleton = exact;
-    constexpr double kKept = 0.82;  // of an error after 0.1 s
+    constexpr double kKept = 0.82;  // fraction of an error that remains after 0.1 s
     constexpr double kSigma = 0.01;
     for (double& part : slow_[at])
       part = kKept * part + kSigma * std::sqrt(1.0 - kKept * kKept) * normal_(random_);
