@@ -26,7 +26,7 @@ constexpr double kBeside = 0.5;                     // from the middle, for two 
 constexpr double kBench = 0.2;  // between neighbouring stations of one person [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
-/// A walker of random build who starts somewhere in the loop.
+/// A walker of random build; the random speed is the same for all people of one `seed`.
 WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   constexpr double kSpread = 0.08;
   WalkerScript script;

@@ -147,7 +147,8 @@ bool is_exchanged(const Skeleton<SensorSpace>& body, const Skeleton<SensorSpace>
   return better > 0;
 }
 
-/// Errors of the seen joints during a minute, each divided by the rms error that its joint states.
+/// Mean squared error of the seen joints over three draws of a minute each, in units of the mean
+/// square error that each joint states.
 struct Honesty {
   double square = 0.0;  ///< Mean per axis: 1 is consistent.
   double count = 0.0;
