@@ -206,8 +206,9 @@ Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<World
   return body;
 }
 
-/// A tracker shows 65 deg until it takes the back for the front, then 120 deg.  In between, for
-/// three frames, it moves left and right joints through the middle to the other side.
+/// A tracker shows a body that faces 65 deg until it takes the back for the front; then it shows
+/// one that faces 120 deg, with left and right swapped.  In between, for three frames, it moves
+/// left and right joints through the middle to the other side.
 TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   const auto front = body_at({0, 0, 0}, deg(65));
   const auto rear = exchanged(body_at({0, 0, 0}, deg(120)));
@@ -227,8 +228,8 @@ TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
 }
 
 /// A person at work turns in front of a camera that never swaps sides.  Then a flat body ("plank")
-/// is first seen from its side, at an angle that decides nothing for a camera whose habit is
-/// unknown.
+/// appears, turned by 150 deg from facing the camera.  Its sides are told more surely than by a
+/// camera whose habit is unknown.
 TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   const auto plank = body_at({0, 0, 0}, deg(150));
   const auto first_odds = [&](const SidesMemory& from) {

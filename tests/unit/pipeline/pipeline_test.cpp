@@ -12,7 +12,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The people of ring.h have no bones whose lengths a filter could use.
+/// Settings with a method without memory, because the people of ring.h have no bones whose lengths
+/// a filter could learn.
 PipelineConfig without_memory() {
   PipelineConfig config;
   config.fusion.method = fusion::Method::InverseVariance;
@@ -94,7 +95,7 @@ TEST(Step, SeatsItsPeopleOnceForAllOutputs) {
   ASSERT_EQ(last.snapshot.bodies.size(), 2u);
   EXPECT_EQ(last.snapshot.bodies[0].slot, 0u);
   EXPECT_EQ(last.snapshot.bodies[1].slot, 1u);
-  // Nobody is seen for half a second: people who come meanwhile do not get their slots.
+  // Nobody is seen for half a second: somebody who comes meanwhile gets neither of the two slots.
   Histories empty = ring_histories({.length = milliseconds(1)});
   for (auto& [name, history] : empty) history = align::History();
   const Timestamp later = last.snapshot.instant + milliseconds(500);

@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Messages of channel 1 ("/a") or 2 ("/b"), one per second, without a chunk around them.
+/// A message of channel 1 ("/a") or 2 ("/b") at a time in seconds.
 struct Entry {
   std::uint16_t channel;
   int second;
