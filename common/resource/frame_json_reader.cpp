@@ -14,7 +14,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMoreThanEnough = 65;  // One above the limit; assemble() reports it.
 
-/// Reads one object of the document into the facts about one subject; keeps the first complaint.
+/// Reads each object of the document into the facts about one subject; keeps only the first error.
 class Reading {
  public:
   Result<Facts> run(const json& root) {

@@ -17,7 +17,7 @@ namespace {
 using rdf::TermKind;
 using rdf::TermView;
 
-/// Most subjects that a document may have; 64 bodies of 25 joints and the frame are 1 665.
+/// Largest number of subjects in a document; 64 bodies of 25 joints and the frame are 1 665.
 constexpr std::size_t kMaxSubjects = 4096;
 
 /// Most cells of RDF lists: the shares of 64 bodies of 25 joints that ten sensors see.

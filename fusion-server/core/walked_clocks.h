@@ -16,13 +16,13 @@
 namespace chorus::core {
 
 /// The least of a sensor's recent ages, from capture by its own stamps to receipt.  A frame that is
-/// younger than all before it by more than jitter counts only if the next two are, too.  A clock
-/// that was set back is believed after three seconds; that an old delay has ended, only after the
-/// whole window.
+/// younger than all before it by more than jitter counts only if it is the third in a row.  If all
+/// ages grow by more than a link would delay frames for seconds, because the clock was set back,
+/// this is believed after three seconds; if they grow less, only after the whole window.
 class LeastAge {
  public:
   void add(Timestamp received, Duration age);
-  /// None until frames have come for three seconds without a longer pause, once.
+  /// None until frames have once come for three seconds without a pause of more than one.
   [[nodiscard]] std::optional<Duration> value() const;
 
  private:
@@ -32,11 +32,11 @@ class LeastAge {
   };
   void forget_until(Timestamp received);
 
-  std::deque<Entry> entries_;  ///< Later ones are older in age: the first is the least.
+  std::deque<Entry> entries_;  ///< Ages increase from front to back, so the first is the least.
   std::optional<Timestamp> last_;
-  Timestamp since_;  ///< Received without a pause since then.
+  Timestamp since_;  ///< The start of the present series of frames without a pause.
   bool settled_ = false;
-  int younger_ = 0;  ///< Frames in a row that are younger than all before.
+  int younger_ = 0;  ///< Number of frames in a row that are younger than all before.
 };
 
 /// What is added to one sensor's capture times.

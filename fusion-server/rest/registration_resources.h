@@ -19,9 +19,9 @@ namespace chorus::rest {
 inline constexpr double kMinSession = 8.0;
 inline constexpr double kMaxSession = 300.0;
 
-/// Requests by the routes to the owner of the registration.  They must only post a task and return.
-/// `ticket` counts the requests: RegistrationProgress::commands says how many have been carried
-/// out.
+/// What the routes ask of the owner of the registration.  The functions must only post a task and
+/// return.  `ticket` counts the requests: RegistrationProgress::commands says how many have been
+/// carried out.
 struct RegistrationControl {
   std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
@@ -62,11 +62,12 @@ class RegistrationResources {
   std::uint64_t version_ = 0;
 };
 
-/// "{"seconds": 30}" or an empty body -> the target; InvalidArgument for anything else.
+/// Reads a body such as {"seconds": 30}; an empty body or object gives `fallback`.  InvalidArgument
+/// for anything else.
 [[nodiscard]] Result<Duration> parse_session_request(std::string_view body, Duration fallback);
 
-/// "{"x": 1.5, "z": -2, "yawDegrees": 90}", in the present world; what is omitted is 0.
-/// InvalidArgument for anything else.
+/// Reads a body such as {"x": 1.5, "z": -2, "yawDegrees": 90}, in the present world; what is
+/// omitted is 0.  InvalidArgument for anything else.
 [[nodiscard]] Result<core::Origin> parse_origin_request(std::string_view body);
 
 }  // namespace chorus::rest

@@ -46,7 +46,7 @@ Mean mean_of(Blocks begin, Blocks end, const StandingError& usual) {
   return mean;
 }
 
-/// True if both halves are shifted in the same direction.
+/// True if each half of the window shows at least kLasting of the shift.
 bool lasts(Blocks begin, Blocks end, const StandingError& usual, const Eigen::Vector3d& shift) {
   const auto middle = begin + (end - begin) / 2;
   const double whole = shift.squaredNorm();

@@ -16,7 +16,8 @@ inline constexpr std::size_t kLongestWindow = kWindows.back();
 
 /// The window that differs most.
 struct Shift {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Beyond the usual [m]; axes of Residual.
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Mean residual beyond the usual [m]; axes of
+                                                   ///< Residual.
   double sigmas = 0.0;                             ///< Mahalanobis distance of `mean`.
   bool lasting = false;                            ///< True if both halves of the window show it.
   Timestamp since;                                 ///< Beginning of the window.
