@@ -15,6 +15,7 @@
 #include "common/base/strong_id.h"
 #include "common/body/body_frame.h"
 #include "common/sensor/sensor_frame.h"
+#include "common/sensor/shares.h"
 #include "common/time/clock_estimate.h"
 #include "common/time/timestamp.h"
 
@@ -160,6 +161,10 @@ struct FusedBody {
   std::array<double, kJointCount> variance{};  ///< Mean per-axis variance [m^2].
   /// Bit i: Snapshot::sensors[i] contributed.
   std::array<std::uint64_t, kJointCount> contributors{};
+  std::array<Shares, kJointCount> shares{};  ///< Of Snapshot::sensors[i], at that index.
+  /// Time since a sensor last contributed to the joint [s]: 0 where one does now, more where the
+  /// joint is only expected.
+  std::array<double, kJointCount> age{};
   std::optional<std::size_t> slot;  ///< The person's slot in every output; none: no slot.
   std::optional<double> sides_confidence = {};  ///< Copied from Person.
   /// For how long no sensor has seen the person [s]; meanwhile they are where they are expected.

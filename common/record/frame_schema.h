@@ -43,6 +43,8 @@ inline constexpr std::string_view kFrameSchema = R"({
             "cxx": {"type": "number"}, "cxy": {"type": "number"}, "cxz": {"type": "number"}, "cyy": {"type": "number"}, "cyz": {"type": "number"},
             "czz": {"type": "number", "description": "covariance of the position [m^2], or of the ray [rad^2]"},
             "contributors": {"type": "array", "items": {"type": "string"}, "description": "fused: the sensors this joint came from; empty: where it is expected"},
+            "shares": {"type": "array", "items": {"type": "number", "minimum": 0, "maximum": 1}, "description": "fused: by how much each contributor determines the position, in the order of their ids; absent: one has all, or not known"},
+            "age": {"type": "number", "minimum": 0, "description": "fused: for how long no sensor has contributed to the joint [s]; absent: one does"},
             "state": {"enum": ["Tracked", "Inferred", "NotTracked"]}
           }
         }}

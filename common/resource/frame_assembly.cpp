@@ -8,6 +8,7 @@
 #include "common/rdf/utf8.h"
 #include "common/resource/frame_facts.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/frame_shares.h"
 #include "common/sensor/limits.h"
 
 namespace chorus::resource {
@@ -124,8 +125,27 @@ Result<void> read_contributors(const SubjectFacts& facts, const std::vector<std:
   return {};
 }
 
-Result<JointResource> read_joint(const SubjectFacts& facts,
-                                 const std::vector<std::string>& sensors) {
+/// The frame's sensors, and the order of their shares.
+struct Sensors {
+  const std::vector<std::string>& names;
+  ShareList order{names};
+};
+
+Result<void> read_shares(const SubjectFacts& facts, const Sensors& sensors, JointResource& joint) {
+  if (auto ok = read_contributors(facts, sensors.names, joint); !ok) return pass(ok);
+  const auto shares = sensors.order.read(facts.shares, joint.contributors);
+  if (!shares) {
+    return refuse(facts, "shares", "has not one share for each contributor, or they do not make 1");
+  }
+  joint.shares = *shares;
+  joint.age = number(facts, Number::Age);
+  if (joint.age && !(*joint.age >= 0.0 && *joint.age <= kLongestCarry)) {
+    return refuse(facts, "age", "is not between 0 and 3600 s");
+  }
+  return {};
+}
+
+Result<JointResource> read_joint(const SubjectFacts& facts, const Sensors& sensors) {
   JointResource joint;
   if (!facts.state) return refuse(facts, "state", "is missing: Tracked, Inferred or NotTracked");
   joint.state = *facts.state;
@@ -137,12 +157,12 @@ Result<JointResource> read_joint(const SubjectFacts& facts,
     return refuse(facts, "variance", "is not between 0 and 10000 m^2");
   }
   if (auto ok = read_covariance(facts, joint); !ok) return pass(ok);
-  if (auto ok = read_contributors(facts, sensors, joint); !ok) return pass(ok);
+  if (auto ok = read_shares(facts, sensors, joint); !ok) return pass(ok);
   return joint;
 }
 
 Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
-                               const std::vector<std::string>& sensors) {
+                               const Sensors& sensors) {
   BodyResource body;
   if (!subject.body_id) return refuse(subject, "bodyId", "is missing");
   body.id = *subject.body_id;
@@ -237,10 +257,11 @@ Result<FrameResource> assemble(const Facts& facts) {
   }
   auto frame = read_head(*root);
   if (!frame) return frame;
+  const Sensors sensors{frame->sensors};
   std::set<std::uint64_t> ids;
   std::set<std::size_t> slots;
   for (const std::size_t at : root->bodies) {
-    auto body = read_body(facts, facts[at], frame->sensors);
+    auto body = read_body(facts, facts[at], sensors);
     if (!body) return pass(body);
     if (!ids.insert(body->id).second) {
       return refuse(facts[at], "bodyId", "two bodies have the id " + std::to_string(body->id));

@@ -7,11 +7,41 @@
 namespace chorus::resource {
 namespace {
 
-JointResource joint_between(const JointResource& a, const JointResource& b, double s) {
+Shares shares_between(const JointResource& a, const JointResource& b, double s) {
+  const auto unknown = [](const JointResource& joint) {
+    return joint.contributors != 0 && !joint.shares.known();
+  };
+  if (unknown(a) || unknown(b)) return {};
+  ShareTally tally;
+  for (std::size_t i = 0; i < kMaxSensors; ++i)
+    tally.add(std::uint64_t{1} << i, (1.0 - s) * a.shares.of(i) + s * b.shares.of(i));
+  return tally.shares();
+}
+
+/// Two neighbours of an instant, `after` and `before` it [s].
+struct Apart {
+  double after;
+  double before;
+};
+
+std::optional<double> age_between(const JointResource& a, const JointResource& b,
+                                  const Apart& apart) {
+  if (a.age) return *a.age + apart.after;
+  if (b.age) return std::max(0.0, *b.age - apart.before);
+  return std::nullopt;
+}
+
+JointResource joint_between(const JointResource& a, const JointResource& b, const Apart& apart) {
+  const double s = apart.after / (apart.after + apart.before);
   JointResource out{interpolate(a, b, s), std::nullopt, 0};
   if (!out.given()) return out;
   if (a.variance && b.variance) out.variance = std::max(*a.variance, *b.variance);
   out.contributors = a.contributors | b.contributors;
+  if (out.contributors == 0) {
+    out.age = age_between(a, b, apart);
+  } else {
+    out.shares = shares_between(a, b, s);
+  }
   return out;
 }
 
@@ -19,10 +49,10 @@ JointResource joint_between(const JointResource& a, const JointResource& b, doub
 
 FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp instant) {
   const double span = seconds(b.captured - a.captured);
-  const double s = span > 0.0 ? std::clamp(seconds(instant - a.captured) / span, 0.0, 1.0) : 0.0;
+  const double after = span > 0.0 ? std::clamp(seconds(instant - a.captured), 0.0, span) : 0.0;
   // Contributor bits are indices into `sensors`, so they mean the same only while the lists are
   // equal.
-  if (s == 0.0 || a.sensors != b.sensors) return a;
+  if (after == 0.0 || a.sensors != b.sensors) return a;
   FrameResource out = a;
   out.captured = instant;
   out.bodies.clear();
@@ -37,7 +67,7 @@ FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp 
     mixed.sides_confidence = body.sides_confidence;
     mixed.carried_for = body.carried_for;
     for (std::size_t j = 0; j < kJointCount; ++j) {
-      mixed.joints[j] = joint_between(body.joints[j], later->joints[j], s);
+      mixed.joints[j] = joint_between(body.joints[j], later->joints[j], {after, span - after});
     }
   }
   return out;

@@ -35,12 +35,13 @@ enum class Number : std::uint8_t {
   Cyy,
   Cyz,
   Czz,
+  Age,
   SidesConfidence,
   CarriedFor
 };
-inline constexpr std::array<std::string_view, 19> kNumberNames{
-    "x",    "y",   "z",   "qx",  "qy",  "qz",  "qw",  "variance",        "rayX",      "rayY",
-    "rayZ", "cxx", "cxy", "cxz", "cyy", "cyz", "czz", "sidesConfidence", "carriedFor"};
+inline constexpr std::array<std::string_view, 20> kNumberNames{
+    "x",   "y",   "z",   "qx",  "qy",  "qz",  "qw",  "variance",        "rayX",      "rayY", "rayZ",
+    "cxx", "cxy", "cxz", "cyy", "cyz", "czz", "age", "sidesConfidence", "carriedFor"};
 
 /// How far the length of a quaternion may be from 1; all zero is allowed too and means "not given".
 inline constexpr double kUnitTolerance = 0.1;
@@ -61,7 +62,8 @@ struct SubjectFacts {
   std::array<std::optional<double>, kNumberNames.size()> numbers;
   std::vector<std::string> sensors;
   std::vector<std::string> contributors;
-  std::vector<std::size_t> bodies;  ///< Indices of subjects.
+  std::optional<std::vector<double>> shares;  ///< As listed (frame_shares.h).
+  std::vector<std::size_t> bodies;            ///< Indices of subjects.
   std::vector<std::size_t> joints;
 };
 

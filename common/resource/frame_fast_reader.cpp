@@ -54,7 +54,9 @@ class Template : TemplateText {
     } else if (!text("SensorSpace")) {
       return false;
     }
-    return !text(" ;\n  ch:sensor ") || names(", ", frame_.sensors);
+    if (text(" ;\n  ch:sensor ") && !names(", ", frame_.sensors)) return false;
+    share_list_.emplace(frame_.sensors);
+    return true;
   }
 
   bool same(std::uint64_t id) {
@@ -89,7 +91,7 @@ class Template : TemplateText {
     }
     if (text(" ;\n  ch:slot ") && !slot(frame_.bodies, body.slot)) return false;
     if (text(" ;\n  ch:sidesConfidence ") && !confidence(body.sides_confidence)) return false;
-    if (text(" ;\n  ch:carriedFor ") && !carried_for(body.carried_for)) return false;
+    if (text(" ;\n  ch:carriedFor ") && !duration(body.carried_for)) return false;
     if (!captured(body.captured) || !text(" ;\n  ch:joint ")) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
       if (!text(i == 0 ? "<" : ", <") || !text(iri) || !text("-") || !text(kJointNames[i]) ||
@@ -122,7 +124,19 @@ class Template : TemplateText {
       joint.variance = variance;
     }
     if (text(" ;\n  ch:cxx ") && !covariance(joint.covariance)) return false;
-    return !text(" ;\n  ch:contributor ") || subset(frame_.sensors, ", ", joint.contributors);
+    return origin(joint);
+  }
+
+  /// Which sensors the joint came from, their shares, and for how long there has been none.
+  bool origin(JointResource& joint) {
+    if (text(" ;\n  ch:contributor ") && !subset(frame_.sensors, ", ", joint.contributors))
+      return false;
+    if (text(" ;\n  ch:shares (")) {
+      if (!shares(" ", ")", *share_list_, joint)) return false;
+    } else {
+      joint.shares = *share_list_->read(std::nullopt, joint.contributors);
+    }
+    return !text(" ;\n  ch:age ") || duration(joint.age);
   }
 
   bool point(JointResource& joint) {
@@ -161,6 +175,7 @@ class Template : TemplateText {
   std::string_view names_;
   std::string_view scoped_;  ///< The IRI of the frame itself: names_, "frames/" and the sequence.
   FrameResource frame_;
+  std::optional<ShareList> share_list_;  ///< Of the frame's sensors, once these are read.
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "common/body/bones.h"
 #include "common/resource/fixed_point.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/frame_shares.h"
 #include "common/sensor/limits.h"
 
 namespace chorus::resource {
@@ -19,8 +20,9 @@ class JsonFrame {
         names_(place.up() + place.names),
         context_(linked ? "\"@context\":\"" + place.up() + "context.jsonld\"," : ""),
         sensors_(quoted_names(frame)),
+        share_list_(frame.sensors),
         pen_(1024 + frame.bodies.size() * kBodyBytes) {
-    for (const std::string& name : sensors_) sensor_bytes_ += name.size() + 2;
+    for (const std::string& name : sensors_) sensor_bytes_ += name.size() + kShareBytes;
   }
 
   std::string whole() {
@@ -89,14 +91,12 @@ class JsonFrame {
       pen_.put_integer(*body.slot);
     }
     if (body.sides_confidence) {
-      pen_.put(linked_ ? ",\"sidesConfidence\":\"" : ",\"sidesConfidence\":");
-      pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
-      pen_.put(linked_ ? "\"" : "");
+      pen_.put(",\"sidesConfidence\":");
+      put_value(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
     }
     if (body.carried_for) {
-      pen_.put(linked_ ? ",\"carriedFor\":\"" : ",\"carriedFor\":");
-      pen_.put_decimal(writable_time(*body.carried_for), kTimeDecimals);
-      pen_.put(linked_ ? "\"" : "");
+      pen_.put(",\"carriedFor\":");
+      put_value(writable_time(*body.carried_for), kTimeDecimals);
     }
     put_times(body.captured);
   }
@@ -174,14 +174,14 @@ class JsonFrame {
       pen_.put(linked_ ? "-" : "#");
       pen_.put(kJointNames[i]);
       pen_.put("\",\"@type\":\"Joint\",");
-      put_joint(writable(body.joints[i]), body.joints[i].contributors);
+      put_joint(writable(body.joints[i]), body.joints[i]);
       pen_.put("}");
       before = ",\"";
     }
     pen_.put("}");
   }
 
-  void put_joint(const WritableJoint& joint, std::uint64_t contributors) {
+  void put_joint(const WritableJoint& joint, const JointResource& origin) {
     if (joint.state != JointState::NotTracked) put_measured(joint);
     if (joint.has_orientation) {
       put_number("\"qx\":", joint.orientation.x(), kQuaternionDecimals);
@@ -194,10 +194,27 @@ class JsonFrame {
     pen_.put("\"state\":\"");
     pen_.put(name_of(joint.state));
     pen_.put("\"");
-    if (joint.state != JointState::NotTracked && !sensors_.empty()) {
+    if (joint.state != JointState::NotTracked) put_origin_of(origin);
+  }
+
+  /// Writes which sensors the joint came from, their shares, or for how long there has been none.
+  void put_origin_of(const JointResource& joint) {
+    if (!sensors_.empty()) {
       pen_.put(",\"contributors\":");
-      put_names(contributors);
+      put_names(joint.contributors);
     }
+    ShareList::Values values;
+    std::string_view before = ",\"shares\":[";
+    const auto list = share_list_.of(joint.shares, joint.contributors, values);
+    for (const double share : list) {
+      pen_.put(before);
+      put_value(share, kShareDecimals);
+      before = ",";
+    }
+    if (!list.empty()) pen_.put("]");
+    if (!joint.age) return;
+    pen_.put(",\"age\":");
+    put_value(writable_time(*joint.age), kTimeDecimals);
   }
 
   void put_measured(const WritableJoint& joint) {
@@ -217,9 +234,14 @@ class JsonFrame {
 
   void put_number(std::string_view key, double value, int decimals) {
     pen_.put(key);
+    put_value(value, decimals);
+    pen_.put(",");
+  }
+
+  void put_value(double value, int decimals) {
     pen_.put(linked_ ? "\"" : "");
     pen_.put_decimal(value, decimals);
-    pen_.put(linked_ ? "\"," : ",");
+    pen_.put(linked_ ? "\"" : "");
   }
 
   const FrameResource& frame_;
@@ -227,6 +249,7 @@ class JsonFrame {
   const std::string names_;
   const std::string context_;
   const std::vector<std::string> sensors_;
+  const ShareList share_list_;
   std::size_t sensor_bytes_ = 0;
   TimeText time_;
   Pen pen_;

@@ -12,6 +12,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kMoreThanEnough = 65;  // One above the limit; assemble() reports it.
+
 /// Reads each object of the document into the facts about one subject; keeps only the first error.
 class Reading {
  public:
@@ -89,6 +91,7 @@ class Reading {
       facts_[joint].joint_name = name;
       read_common(joint, value);
       list(joint, value, "contributors", facts_[joint].contributors);
+      numbers(joint, value, "shares", facts_[joint].shares);
       for (std::size_t i = 0; i < kNumberNames.size(); ++i) {
         number(joint, value, kNumberNames[i], facts_[joint].numbers[i]);
       }
@@ -106,16 +109,31 @@ class Reading {
     if (!out) complain(at, key, "is no integer of 64 bits, or has the wrong sign");
   }
 
+  static std::optional<double> number_in(const json& value) {
+    if (value.is_number()) return value.get<double>();
+    if (value.is_string()) return read_decimal(value.get_ref<const std::string&>());
+    return std::nullopt;
+  }
+
   void number(std::size_t at, const json& object, std::string_view key,
               std::optional<double>& out) {
     const auto found = object.find(key);
     if (found == object.end()) return;
-    if (found->is_number()) {
-      out = found->get<double>();
-    } else if (found->is_string()) {
-      out = read_decimal(found->get_ref<const std::string&>());
-    }
+    out = number_in(*found);
     if (!out) complain(at, key, "is no finite number");
+  }
+
+  void numbers(std::size_t at, const json& object, std::string_view key,
+               std::optional<std::vector<double>>& out) {
+    const auto found = object.find(key);
+    if (found == object.end()) return;
+    if (!found->is_array()) return complain(at, key, "is no array");
+    out.emplace();
+    for (const json& item : *found) {
+      const auto value = number_in(item);
+      if (!value) return complain(at, key, "holds something that is no finite number");
+      if (out->size() < kMoreThanEnough) out->push_back(*value);
+    }
   }
 
   void text(std::size_t at, const json& object, std::string_view key,
@@ -138,7 +156,6 @@ class Reading {
 
   void list(std::size_t at, const json& object, std::string_view key,
             std::vector<std::string>& out) {
-    constexpr std::size_t kMoreThanEnough = 65;  // One above the limit; assemble() reports it.
     const auto found = object.find(key);
     if (found == object.end()) return;
     if (!found->is_array()) return complain(at, key, "is no array");

@@ -41,7 +41,9 @@ class JsonTemplate : TemplateText {
       return false;
     }
     if (!text("\"")) return false;
-    return !text(",\"sensors\":[") || (names(",", frame_.sensors) && text("]"));
+    if (text(",\"sensors\":[") && !(names(",", frame_.sensors) && text("]"))) return false;
+    share_list_.emplace(frame_.sensors);
+    return true;
   }
 
   bool bodies() {
@@ -63,7 +65,7 @@ class JsonTemplate : TemplateText {
       return false;
     if (text(",\"slot\":") && !slot(frame_.bodies, body.slot)) return false;
     if (text(",\"sidesConfidence\":") && !confidence(body.sides_confidence)) return false;
-    if (text(",\"carriedFor\":") && !carried_for(body.carried_for)) return false;
+    if (text(",\"carriedFor\":") && !duration(body.carried_for)) return false;
     const auto twin = std::ranges::find(frame_.bodies, id, &BodyResource::id);
     if (&*twin != &body || !captured(body.captured)) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -100,8 +102,18 @@ class JsonTemplate : TemplateText {
     joint.state = text("Tracked") ? JointState::Tracked : JointState::Inferred;
     if (joint.state == JointState::Inferred && !text("Inferred")) return false;
     if (!text("\"")) return false;
+    return origin(joint) && text("}");
+  }
+
+  /// Which sensors the joint came from, their shares, and for how long there has been none.
+  bool origin(JointResource& joint) {
     if (text(",\"contributors\":[") && !contributors(joint.contributors)) return false;
-    return text("}");
+    if (text(",\"shares\":[")) {
+      if (!shares(",", "]", *share_list_, joint)) return false;
+    } else {
+      joint.shares = *share_list_->read(std::nullopt, joint.contributors);
+    }
+    return !text(",\"age\":") || duration(joint.age);
   }
 
   bool point(JointResource& joint) {
@@ -144,6 +156,7 @@ class JsonTemplate : TemplateText {
 
   std::string_view names_;
   FrameResource frame_;
+  std::optional<ShareList> share_list_;  ///< Of the frame's sensors, once these are read.
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Reads a frame from Turtle or N-Triples in any spelling, with the parser.
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <unordered_map>
 
 #include "common/base/parse.h"
@@ -8,6 +9,7 @@
 #include "common/resource/fixed_point.h"
 #include "common/resource/frame_facts.h"
 #include "common/resource/terms.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::resource {
 namespace {
@@ -17,6 +19,9 @@ using rdf::TermView;
 
 /// Largest number of subjects in a document; 64 bodies of 25 joints and the frame are 1 665.
 constexpr std::size_t kMaxSubjects = 4096;
+
+/// Most cells of RDF lists: the shares of 64 bodies of 25 joints that ten sensors see.
+constexpr std::size_t kMaxCells = 16'384;
 
 enum class Property : std::uint8_t {
   BodyIs,
@@ -29,6 +34,7 @@ enum class Property : std::uint8_t {
   Number,
   Sensor,
   Sequence,
+  Shares,
   Slot,
   Source,
   Space,
@@ -43,6 +49,7 @@ struct Row {
 
 /// The properties in a frame document, sorted by name.
 constexpr std::array kRows{
+    Row{"age", Property::Number, Number::Age},
     Row{"body", Property::BodyIs},
     Row{"bodyId", Property::BodyId},
     Row{"captured", Property::Captured},
@@ -66,6 +73,7 @@ constexpr std::array kRows{
     Row{"rayZ", Property::Number, Number::RayZ},
     Row{"sensor", Property::Sensor},
     Row{"sequence", Property::Sequence},
+    Row{"shares", Property::Shares},
     Row{"sidesConfidence", Property::Number, Number::SidesConfidence},
     Row{"slot", Property::Slot},
     Row{"source", Property::Source},
@@ -116,13 +124,14 @@ class Collector {
 
   /// False when the document is refused; error() gives the reason.
   bool take(const rdf::TripleView& triple) {
+    const std::string_view verb = triple.predicate.value;
+    if (verb == first_ || verb == rest_) return take_cell(triple);
     const std::size_t at = subject_of(triple.subject);
     if (facts_.size() > kMaxSubjects) {
       error_ = Error{ErrorCode::TooLarge, "frame",
                      "it speaks of more than " + std::to_string(kMaxSubjects) + " things"};
       return false;
     }
-    const std::string_view verb = triple.predicate.value;
     if (verb == type_) {
       if (individual(triple.object) == "Frame") facts_[at].is_frame = true;
       return true;
@@ -139,9 +148,56 @@ class Collector {
   }
 
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
-  [[nodiscard]] const Facts& facts() const { return facts_; }
+  /// All that was taken; errors are those of lists.
+  [[nodiscard]] Result<Facts> finish() && {
+    for (const auto& [at, list] : share_lists_) {
+      facts_[at].shares = numbers_of(list);
+      if (facts_[at].shares) continue;
+      return fail(ErrorCode::Malformed, place_of(facts_[at], "shares"), "is no list of numbers");
+    }
+    return std::move(facts_);
+  }
 
  private:
+  /// A cell of an RDF list.
+  struct Cell {
+    std::optional<double> number;
+    std::string rest;
+    bool broken = false;  ///< It has two values, or one that is no number.
+  };
+
+  bool take_cell(const rdf::TripleView& triple) {
+    const auto found = cells_.find(triple.subject.value);
+    if (found == cells_.end() && cells_.size() == kMaxCells) {
+      error_ = Error{ErrorCode::TooLarge, "frame",
+                     "its lists have more than " + std::to_string(kMaxCells) + " values"};
+      return false;
+    }
+    Cell& cell = found != cells_.end() ? found->second : cells_[std::string(triple.subject.value)];
+    if (triple.predicate.value == first_) {
+      cell.broken = cell.broken || !store_number(cell.number, triple.object).empty();
+    } else {
+      cell.broken = cell.broken || (!cell.rest.empty() && cell.rest != triple.object.value);
+      cell.rest = triple.object.value;
+    }
+    return true;
+  }
+
+  /// Nothing for what is no list, or holds something else.
+  [[nodiscard]] std::optional<std::vector<double>> numbers_of(const std::string& list) const {
+    std::vector<double> numbers;
+    for (const std::string* at = &list; *at != nil_;) {
+      const auto found = cells_.find(*at);
+      if (found == cells_.end()) return std::nullopt;
+      const Cell& cell = found->second;
+      // A longer list, which may have no end, has too many shares anyway.
+      if (cell.broken || !cell.number || numbers.size() > kMaxSensors) return std::nullopt;
+      numbers.push_back(*cell.number);
+      at = &cell.rest;
+    }
+    return numbers;
+  }
+
   /// Stores the object; returns "" or what is wrong with it.
   std::string_view store(std::size_t at, const Row& row, const TermView& object) {
     switch (row.property) {
@@ -149,31 +205,42 @@ class Collector {
         return link(at, object, &SubjectFacts::bodies);
       case Property::JointIs:
         return link(at, object, &SubjectFacts::joints);
-      case Property::Number:
-        return store_number(facts_[at].numbers[static_cast<std::size_t>(row.number)], object);
-      case Property::BodyId:
-        return store_integer(facts_[at].body_id, object);
-      case Property::Slot:
-        return store_integer(facts_[at].slot, object);
-      case Property::Sequence:
-        return store_integer(facts_[at].sequence, object);
-      case Property::CapturedNanoseconds:
-        return store_integer(facts_[at].captured_ns, object);
-      case Property::Captured:
-        return store_time(facts_[at].captured, object);
-      case Property::Source:
-        return store_text(facts_[at].source, object);
-      case Property::JointName:
-        return store_text(facts_[at].joint_name, object);
-      case Property::Space:
-        return store_named(facts_[at].space, object, space_named);
-      case Property::State:
-        return store_named(facts_[at].state, object, state_named);
+      case Property::Shares:
+        return link_shares(at, object);
       case Property::Sensor:
       case Property::Contributor:
         return list_text(at, row.property == Property::Sensor, object);
+      default:
+        return store_value(facts_[at], row, object);
     }
-    return {};
+  }
+
+  /// The same, of what a subject has once.
+  static std::string_view store_value(SubjectFacts& facts, const Row& row, const TermView& object) {
+    switch (row.property) {
+      case Property::Number:
+        return store_number(facts.numbers[static_cast<std::size_t>(row.number)], object);
+      case Property::BodyId:
+        return store_integer(facts.body_id, object);
+      case Property::Slot:
+        return store_integer(facts.slot, object);
+      case Property::Sequence:
+        return store_integer(facts.sequence, object);
+      case Property::CapturedNanoseconds:
+        return store_integer(facts.captured_ns, object);
+      case Property::Captured:
+        return store_time(facts.captured, object);
+      case Property::Source:
+        return store_text(facts.source, object);
+      case Property::JointName:
+        return store_text(facts.joint_name, object);
+      case Property::Space:
+        return store_named(facts.space, object, space_named);
+      case Property::State:
+        return store_named(facts.state, object, state_named);
+      default:
+        return {};
+    }
   }
 
   static constexpr std::string_view kTwice = "is given twice, with different values";
@@ -186,6 +253,12 @@ class Collector {
     // Limited here, so that a long list costs nothing; assemble() reports the limit.
     if (links.size() <= std::max(kMaxBodies, kJointCount)) add(links, to);
     return {};
+  }
+
+  std::string_view link_shares(std::size_t at, const TermView& object) {
+    if (object.kind == TermKind::Literal) return "is a literal, not a list";
+    const auto [list, fresh] = share_lists_.try_emplace(at, object.value);
+    return fresh || list->second == object.value ? std::string_view() : kTwice;
   }
 
   static std::string_view store_number(std::optional<double>& property, const TermView& object) {
@@ -251,6 +324,9 @@ class Collector {
   }
 
   const std::string type_ = rdf::rdf("type");
+  const std::string first_ = rdf::rdf("first");
+  const std::string rest_ = rdf::rdf("rest");
+  const std::string nil_ = rdf::rdf("nil");
   Facts facts_;
   struct Hash {
     using is_transparent = void;
@@ -258,8 +334,12 @@ class Collector {
       return std::hash<std::string_view>{}(text);
     }
   };
-  using Index = std::unordered_map<std::string, std::size_t, Hash, std::equal_to<>>;
+  template <class Value>
+  using ByName = std::unordered_map<std::string, Value, Hash, std::equal_to<>>;
+  using Index = ByName<std::size_t>;
 
+  ByName<Cell> cells_;
+  std::map<std::size_t, std::string> share_lists_;  ///< Their first cells, by subject.
   Index iris_;
   Index blanks_;
   std::size_t last_ = 0;
@@ -278,7 +358,9 @@ Result<FrameResource> read_rdf_frame(std::string_view text, Format format) {
   });
   if (!ok) return pass(ok);
   if (collector.error()) return tl::unexpected<Error>(*collector.error());
-  return assemble(collector.facts());
+  const auto facts = std::move(collector).finish();
+  if (!facts) return pass(facts);
+  return assemble(*facts);
 }
 
 }  // namespace chorus::resource

@@ -17,6 +17,7 @@
 #include "common/resource/place.h"
 #include "common/sensor/limits.h"
 #include "common/sensor/sensor_frame.h"
+#include "common/sensor/shares.h"
 
 namespace chorus::resource {
 
@@ -25,6 +26,10 @@ enum class SpaceKind { Sensor, World };
 struct JointResource : Joint {
   std::optional<double> variance;  ///< Fused: mean variance per axis [m^2].
   std::uint64_t contributors = 0;  ///< Fused: bit i = FrameResource::sensors[i] contributed.
+  Shares shares =
+      {};  ///< Fused: of FrameResource::sensors[i], at that index; of contributors only.
+  /// Fused: time since a sensor last contributed to the joint [s]; none while one does.
+  std::optional<double> age = {};
 };
 
 struct BodyResource {

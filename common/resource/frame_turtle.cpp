@@ -4,6 +4,7 @@
 
 #include "common/body/bones.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/frame_shares.h"
 #include "common/resource/terms.h"
 #include "common/sensor/limits.h"
 
@@ -20,8 +21,9 @@ class TurtleFrame {
       : frame_(frame),
         names_(place.up() + place.names),
         sensors_(quoted_names(frame)),
+        share_list_(frame.sensors),
         pen_(1024 + bodies * kBodyBytes) {
-    for (const std::string& name : sensors_) sensor_bytes_ += name.size() + 2;
+    for (const std::string& name : sensors_) sensor_bytes_ += name.size() + kShareBytes;
   }
 
   std::string whole() {
@@ -187,12 +189,12 @@ class TurtleFrame {
       pen_.put("> a ch:Joint ;\n  ch:jointName \"");
       pen_.put(kJointNames[i]);
       pen_.put("\" ;\n");
-      put_joint(writable(body.joints[i]), body.joints[i].contributors);
+      put_joint(writable(body.joints[i]), body.joints[i]);
       pen_.put(" .\n");
     }
   }
 
-  void put_joint(const WritableJoint& joint, std::uint64_t contributors) {
+  void put_joint(const WritableJoint& joint, const JointResource& origin) {
     if (joint.state != JointState::NotTracked) put_measured(joint);
     if (joint.has_orientation) {
       put_number("  ch:qx ", joint.orientation.x(), kQuaternionDecimals);
@@ -205,13 +207,27 @@ class TurtleFrame {
     pen_.put(name_of(joint.state));
     if (joint.variance) put_number(" ;\n  ch:variance ", *joint.variance, kVarianceDecimals);
     if (joint.covariance.known()) put_covariance(joint.covariance);
+    if (joint.state != JointState::NotTracked) put_origin_of(origin);
+  }
+
+  /// Writes which sensors the joint came from, their shares, or for how long there has been none.
+  void put_origin_of(const JointResource& joint) {
     const std::uint64_t known = sensors_.size() >= kMaxSensors
                                     ? ~std::uint64_t{0}
                                     : (std::uint64_t{1} << sensors_.size()) - 1;
-    if (joint.state != JointState::NotTracked && (contributors & known) != 0) {
+    if ((joint.contributors & known) != 0) {
       pen_.put(" ;\n  ch:contributor ");
-      put_names(contributors);
+      put_names(joint.contributors);
     }
+    ShareList::Values values;
+    std::string_view before = " ;\n  ch:shares (";
+    const auto list = share_list_.of(joint.shares, joint.contributors, values);
+    for (const double share : list) {
+      put_number(before, share, kShareDecimals);
+      before = " ";
+    }
+    if (!list.empty()) pen_.put(")");
+    if (joint.age) put_number(" ;\n  ch:age ", writable_time(*joint.age), kTimeDecimals);
   }
 
   void put_measured(const WritableJoint& joint) {
@@ -240,6 +256,7 @@ class TurtleFrame {
   const FrameResource& frame_;
   const std::string names_;
   const std::vector<std::string> sensors_;
+  const ShareList share_list_;
   std::size_t sensor_bytes_ = 0;
   bool begun_ = false;
   TimeText time_;

@@ -24,8 +24,21 @@ bool plain(char c) {
 
 bool TemplateText::confidence(std::optional<double>& out) { return decimal_up_to(1.0, out); }
 
-bool TemplateText::carried_for(std::optional<double>& out) {
+bool TemplateText::duration(std::optional<double>& out) {
   return decimal_up_to(kLongestCarry, out);
+}
+
+bool TemplateText::shares(std::string_view comma, std::string_view close, const ShareList& list,
+                          JointResource& joint) {
+  ShareList::Values values;
+  std::size_t count = 0;
+  do {
+    if (count == values.size() || !decimal(values[count++])) return false;
+  } while (text(comma));
+  const auto read = list.read(std::span<const double>(values).first(count), joint.contributors);
+  if (!read || !text(close)) return false;
+  joint.shares = *read;
+  return true;
 }
 
 bool TemplateText::decimal_up_to(double most, std::optional<double>& out) {

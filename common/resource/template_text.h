@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/resource/frame_resource.h"
+#include "common/resource/frame_shares.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::resource {
@@ -53,7 +54,11 @@ class TemplateText {
   bool confidence(std::optional<double>& out);
 
   /// A decimal in [0, kLongestCarry].
-  bool carried_for(std::optional<double>& out);
+  bool duration(std::optional<double>& out);
+
+  /// Decimals separated by `comma`, up to `close`: a joint's shares.
+  bool shares(std::string_view comma, std::string_view close, const ShareList& list,
+              JointResource& joint);
 
   /// A decimal such as "-1.2345", at most kMaxCoordinate in size; `out` gets the nearest double.
   bool decimal(double& out);

@@ -105,6 +105,8 @@ class BodyFilter final : public Estimator {
     PlacedJoint place = filtered(j, instant, now, determined);
     if (determined) place.covariance += sighted.stated(j) - now.covariance;
     state(fused, place);
+    if (fused.contributors != 0) contributed_[j] = instant;
+    if (contributed_[j]) fused.age = seconds(instant - *contributed_[j]);
     return fused;
   }
 
@@ -153,6 +155,7 @@ class BodyFilter final : public Estimator {
   Biases biases_;
   MotionFilters filters_;
   std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last determined [m^2].
+  std::array<std::optional<Timestamp>, kJointCount> contributed_;  ///< When a sensor last did.
   Habit agreement_{kFirstAgreement};
   Habit scale_square_;
   std::optional<Eigen::Vector3d> middle_;  ///< Middle of the trunk.

@@ -21,7 +21,7 @@ FusedBody carry(const FusedBody& last, Duration unseen, const Eigen::Vector3d& m
     if (!joint.seen()) continue;
     joint.position += way;
     joint.state = JointState::Inferred;
-    FusedJoint carried{joint, 0.0, 0};
+    FusedJoint carried{joint, 0.0, 0, {}, last.age[i] + seconds(unseen)};
     state_covariance(carried,
                      joint.covariance.matrix() + drift * drift * Eigen::Matrix3d::Identity());
     put(body, static_cast<JointId>(i), carried);

@@ -45,6 +45,15 @@ Eigen::Matrix3d stated(std::span<const JointView> views, std::span<const double>
   return information.inverse();
 }
 
+Shares shares_of(std::span<const JointView> views, std::span<const Eigen::Matrix3d> information,
+                 std::span<const double> trust, const WeightedMean& estimate) {
+  const Eigen::Matrix3d spread = estimate.information.inverse();
+  ShareTally tally;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    tally.add(views[i].contributor, trust[i] * pull_of(information[i], spread));
+  return tally.shares();
+}
+
 FusedJoint finish(std::span<const JointView> views, std::span<const double> trust,
                   const WeightedMean& estimate) {
   FusedJoint fused;
@@ -82,7 +91,9 @@ FusedJoint inverse_variance(std::span<const JointView> views, double huber) {
     estimate = next;
     if (settled) break;
   }
-  return finish(views, trust, estimate);
+  FusedJoint fused = finish(views, trust, estimate);
+  fused.shares = shares_of(views, information, trust, estimate);
+  return fused;
 }
 
 }  // namespace chorus::fusion

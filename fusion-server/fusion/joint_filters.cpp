@@ -29,6 +29,8 @@ void put(FusedBody& body, JointId joint, const FusedJoint& fused) {
   body.skeleton.joints[i] = fused.joint;
   body.variance[i] = fused.variance;
   body.contributors[i] = fused.contributors;
+  body.shares[i] = fused.shares;
+  body.age[i] = fused.age;
 }
 
 }  // namespace chorus::fusion

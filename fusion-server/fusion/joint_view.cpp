@@ -66,6 +66,10 @@ std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
   return views;
 }
 
+double pull_of(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
+  return information.cwiseProduct(spread).sum() / kAxes;  // both are symmetric
+}
+
 double mean_variance(const Eigen::Matrix3d& covariance) { return covariance.trace() / kAxes; }
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {

@@ -28,6 +28,9 @@ struct FusedJoint {
   Joint joint;  ///< With covariance; NotTracked at position zero when nothing could be fused.
   double variance = 0.0;  ///< Mean per-axis variance [m^2].
   std::uint64_t contributors = 0;
+  /// Of the contributors: by how much each determines the position (decision 0075).
+  Shares shares = {};
+  double age = 0.0;  ///< Time since a sensor last contributed [s].
 };
 
 /// One joint in every view of a person that measured a point for it; rays are left out.  Weights
@@ -52,6 +55,11 @@ struct FusedJoint {
 
 /// Sets a fused joint's covariance and, computed from it, the mean variance.
 void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance);
+
+/// By how much one view determines a position: the mean of the diagonal of `spread` `information`,
+/// the matrix by which its measurement is multiplied.  `spread` is the inverse of the information
+/// of all views together, so that all of them make 1.
+[[nodiscard]] double pull_of(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread);
 
 /// Mean variance per axis [m^2].
 [[nodiscard]] double mean_variance(const Eigen::Matrix3d& covariance);

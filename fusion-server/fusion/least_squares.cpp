@@ -208,7 +208,7 @@ double scale_of_few(const Terms& terms, std::span<const double> trust,
 /// Re-weights until the point no longer moves; `scale` is the squared scale of the residuals.
 std::optional<LeastSquares> settle(const Terms& terms, const Eigen::Vector3d& start, double huber,
                                    double scale) {
-  LeastSquares found{start, {}, trusts_at(terms, start, {huber, scale})};
+  LeastSquares found{start, {}, trusts_at(terms, start, {huber, scale}), {}};
   auto estimate = solve(terms, found.trust, found.position);
   for (int i = 0; i < kIterations && estimate; ++i) {
     const bool settled = (estimate->position - found.position).norm() < kSettled;
@@ -218,7 +218,12 @@ std::optional<LeastSquares> settle(const Terms& terms, const Eigen::Vector3d& st
     estimate = solve(terms, found.trust, found.position);
   }
   if (!estimate) return std::nullopt;
-  found.covariance = scale * estimate->information.inverse();
+  const Eigen::Matrix3d spread = estimate->information.inverse();
+  found.covariance = scale * spread;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const Eigen::Matrix3d information = terms.at(i, found.position).information;
+    found.pull.push_back(pull_of(found.trust[i] * information, spread));
+  }
   return found;
 }
 

@@ -22,6 +22,7 @@ struct LeastSquares {
   /// Inverse information, times the squared scale of the residuals where that exceeds one [m^2].
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   std::vector<double> trust;  ///< Per view, in [0, 1]; 0: the joint is behind this camera.
+  std::vector<double> pull;   ///< Per view: by how much it determines the position; sums to 1.
 };
 
 /// Nothing when the views do not determine a point: no views, or only rays that leave depth open.

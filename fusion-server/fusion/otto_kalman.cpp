@@ -34,13 +34,14 @@ class OttoKalman final : public Estimator {
       const double sigma = config_.kalman_sigma;
       filters_[joint].update(instant, s.joint.position, sigma * sigma / s.weight);
     }
-    FusedJoint fused = weighted_mean(views);  // only for state, orientation, contributors
+    FusedJoint fused = weighted_mean(views);  // all but the position, whose weights are the same
     if (!views.empty()) seen_[joint] = instant;
     const bool coasting = seen_[joint] && instant - *seen_[joint] <= config_.kalman_coast;
     const auto position = filters_[joint].at(instant);
     if (!coasting || !position) return {};
     if (views.empty()) fused.joint.state = JointState::Inferred;
     fused.joint.position = *position;
+    fused.age = seconds(instant - *seen_[joint]);
     state_covariance(fused, filters_[joint].variance_at(instant) * Eigen::Matrix3d::Identity());
     return fused;
   }

@@ -23,14 +23,17 @@ FusedJoint finish(std::span<const JointView> views, const LeastSquares& found, d
   state_covariance(fused, found.covariance + common * common * Eigen::Matrix3d::Identity());
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
+  ShareTally tally;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (found.trust[i] == 0.0) continue;
     fused.joint.state = std::max(fused.joint.state, views[i].joint.state);
     fused.contributors |= views[i].contributor;
+    tally.add(views[i].contributor, found.pull[i]);
     if (!is_unit(views[i].joint.orientation)) continue;
     rotations.push_back(views[i].joint.orientation);
     weights.push_back(found.trust[i] / mean_variance(views[i].covariance));
   }
+  fused.shares = tally.shares();
   if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
   return fused;
 }

@@ -132,7 +132,8 @@ class Substitution final : public BestSkeleton {
       if (tracked(body.skeleton.joints[i]) || !tracked(view.skeleton.joints[i])) continue;
       if (!other) other = view_.body(body.id, &view, instant);
       put(body, static_cast<JointId>(i),
-          {other->skeleton.joints[i], other->variance[i], other->contributors[i]});
+          {other->skeleton.joints[i], other->variance[i], other->contributors[i],
+           other->shares[i]});
     }
   }
 };

@@ -122,8 +122,9 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
       const double distance = off.norm() / std::sqrt(weighing.variance);
       const bool weigh = joint.placed && huber > 0 && distance > huber;
       weighing.trust = weigh ? huber / distance : 1.0;
-      sum += weighing.trust / weighing.variance * place;
-      information += weighing.trust / weighing.variance;
+      weighing.pull = weighing.trust / weighing.variance;
+      sum += weighing.pull * place;
+      information += weighing.pull;
     }
     joint = {sum / information, round_covariance(1.0 / information), true};
   }
@@ -148,8 +149,14 @@ PlacedJoint SightedBody::robust_squares(Sights& sights, const PlacedJoint& expec
     views.back().covariance = expected.covariance;
     found = least_squares(views, config_.huber);
   }
-  if (is_open(found)) return {};
-  for (std::size_t v = 0; v < sights.views.size(); ++v) sights.weighings[v].trust = found->trust[v];
+  if (is_open(found)) {
+    for (Weighing& weighing : sights.weighings) weighing.trust = 0.0;  // its place is not from them
+    return {};
+  }
+  for (std::size_t v = 0; v < sights.views.size(); ++v) {
+    sights.weighings[v].trust = found->trust[v];
+    sights.weighings[v].pull = found->pull[v];
+  }
   return {found->position, found->covariance, true};
 }
 
@@ -235,16 +242,19 @@ FusedJoint SightedBody::shown(JointId joint) const {
   fused.joint.state = JointState::Inferred;
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
+  ShareTally tally;
   for (std::size_t v = 0; v < sights.views.size(); ++v) {
     const Weighing& weighing = sights.weighings[v];
     if (weighing.trust == 0.0) continue;
     const JointView& view = sights.views[v];
     fused.joint.state = std::max(fused.joint.state, view.joint.state);
     fused.contributors |= view.contributor;
+    tally.add(view.contributor, weighing.pull);
     if (!is_unit(view.joint.orientation)) continue;
     rotations.push_back(about_y(-misfits_[view.view].turn) * view.joint.orientation);
     weights.push_back(weighing.trust / weighing.variance);
   }
+  fused.shares = tally.shares();
   if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
   return fused;
 }

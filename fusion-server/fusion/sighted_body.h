@@ -46,7 +46,7 @@ class SightedBody {
   [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;
   /// Mean square of the views' scale errors; none with fewer than two views.
   [[nodiscard]] std::optional<double> scale_square() const;
-  /// State, orientation and contributors of a joint; its position is not set.
+  /// State, orientation, contributors and their shares of a joint; its position is not set.
   [[nodiscard]] FusedJoint shown(JointId joint) const;
 
  private:
@@ -57,6 +57,7 @@ class SightedBody {
                                                      ///< error [m^2].
     Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< The bias that was subtracted [m].
     double trust = 1.0;
+    double pull = 0.0;  ///< In proportion to the view's share in the position.
   };
   /// A joint's views, corrected, and how far each is trusted.
   struct Sights {

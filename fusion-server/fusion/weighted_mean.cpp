@@ -15,6 +15,7 @@ FusedJoint weighted_mean(std::span<const JointView> views) {
   fused.joint.state = JointState::Inferred;
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
+  ShareTally tally;
   for (const JointView& s : views) {
     if (!(s.weight > 0)) continue;
     const double share = s.weight / total;
@@ -22,10 +23,12 @@ FusedJoint weighted_mean(std::span<const JointView> views) {
     fused.joint.state = std::max(fused.joint.state, s.joint.state);
     covariance += share * share * s.covariance;
     fused.contributors |= s.contributor;
+    tally.add(s.contributor, share);
     if (!is_unit(s.joint.orientation)) continue;
     rotations.push_back(s.joint.orientation);
     weights.push_back(share);
   }
+  fused.shares = tally.shares();
   state_covariance(fused, covariance);
   if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
   return fused;

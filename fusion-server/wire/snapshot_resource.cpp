@@ -23,6 +23,8 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
     if (joint.state == JointState::NotTracked) continue;
     out.joints[j].variance = body.variance[j];
     out.joints[j].contributors = body.contributors[j];
+    out.joints[j].shares = body.shares[j];
+    if (body.contributors[j] == 0) out.joints[j].age = body.age[j];
     out.joints[j].covariance = joint.covariance;
   }
   return out;

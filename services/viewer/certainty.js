@@ -48,11 +48,29 @@ function sizeLine(joint) {
   return `95 % within ±${long} × ${middle} × ${short} mm`;
 }
 
-function sensorsLine(joint, sensors) {
-  const names = joint.contributors ?? [];
-  if (names.length === 0) return 'from no sensor: where it is expected';
-  const shares = names.map((id) => (Number.isFinite(sensors?.[id]?.share) ? `${id} (${percent(sensors[id].share)})` : id));
-  return `from ${shares.join(', ')}`;
+/// The sensors that a joint came from, [{ id, share }], largest share first; NaN where it is not known.
+/// The shares are listed in the order of the ids; one sensor has all.
+export function sharesOf(joint) {
+  const ids = [...(joint.contributors ?? [])].sort();
+  const shares = joint.shares ?? (ids.length === 1 ? [1] : []);
+  return ids.map((id, i) => ({ id, share: Number(shares[i] ?? NaN) }))
+    .sort((first, second) => (second.share - first.share) || 0);
+}
+
+function sensorsLine(joint) {
+  const from = sharesOf(joint).map(({ id, share }) => (Number.isFinite(share) ? `${id} ${percent(share)}` : id));
+  return from.length > 0 ? `from ${from.join(', ')}` : 'from no sensor: where it is expected';
+}
+
+/// How old a joint is [ms]: the frame's age, and how long before the frame a sensor last contributed; NaN: not known.
+export function ageOfJoint(joint, frameAge) {
+  const before = (joint.contributors ?? []).length > 0 ? 0 : Number(joint.age ?? NaN);
+  return frameAge + 1000 * before;
+}
+
+function ageLine(body, joint, frameAge) {
+  const age = ageOfJoint(joint, frameAge);
+  return `${presence(body)}${Number.isFinite(age) ? `, ${Math.round(age)} ms old` : ''}`;
 }
 
 /// "seen", or for how long nobody has seen the person.
@@ -67,10 +85,9 @@ export function personLine(body) {
   return `person ${body.bodyId}: ${presence(body)}, ${sure}`;
 }
 
-/// What is known of one joint, in lines.  `sensors`: /sensors/ by id; `age` of the frame [ms].
-export function jointLines(body, name, sensors, age) {
+/// What is known of one joint, in lines.  `frameAge`: age of the frame [ms].
+export function jointLines(body, name, frameAge) {
   const joint = body.joints[name];
   const state = joint.state === 'Tracked' ? '' : ' (inferred)';
-  return [`${name}${state}, person ${body.bodyId}`, sizeLine(joint), sensorsLine(joint, sensors),
-    `${presence(body)}${Number.isFinite(age) ? `, ${Math.round(age)} ms old` : ''}`];
+  return [`${name}${state}, person ${body.bodyId}`, sizeLine(joint), sensorsLine(joint), ageLine(body, joint, frameAge)];
 }

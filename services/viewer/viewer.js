@@ -174,7 +174,7 @@ window.addEventListener('keydown', (event) => {
 });
 const ageOf = (frame) => clock.now() - Date.parse(frame.captured);
 const readout = new Readout(canvas, camera, document.getElementById('joint'),
-  (body, name) => jointLines(body, name, known.sensors, ageOf(known.frame)));
+  (body, name) => jointLines(body, name, ageOf(known.frame)));
 
 /// Where a joint of the first person is on the screen [px].
 shown.where = (name) => {

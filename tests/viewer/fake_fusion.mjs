@@ -37,7 +37,8 @@ function frame(sequence, place, about = {}) {
   const sway = 0.4 * Math.sin(sequence / 20);
   const joints = Object.fromEntries(Object.entries(STANDING).map(([name, [x, y, z]]) => {
     const [jx, jy, jz] = place ? toSensor(place, [x + sway, y, z]) : [x + sway, y, z];
-    const fused = place ? {} : { ...COVARIANCE, contributors: about.carriedFor === undefined ? ['s1', 's2'] : [] };
+    const from = about.carriedFor === undefined ? { contributors: ['s1', 's2'], shares: [0.8, 0.2] } : { contributors: [], age: about.carriedFor };
+    const fused = place ? {} : { ...COVARIANCE, ...from };
     return [name, { '@id': `skeletons/1#${name}`, x: jx, y: jy, z: jz, ...fused, state: name === 'FootLeft' ? 'Inferred' : 'Tracked' }];
   }));
   joints.ThumbRight = { '@id': 'skeletons/1#ThumbRight', state: 'NotTracked' };

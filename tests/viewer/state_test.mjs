@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { Link, ServerClock } from '../../services/viewer/poll.js';
-import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf } from '../../services/viewer/certainty.js';
+import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf, sharesOf } from '../../services/viewer/certainty.js';
 import { accuracyLine, lineOf, mapOf } from '../../services/viewer/coverage.js';
 import { freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
@@ -139,12 +139,18 @@ test('an ellipsoid has the axes and the shape of its covariance', () => {
 });
 
 test('a joint is told with its size, its sensors and its age; what is not stated is not made up', () => {
-  const joint = { state: 'Inferred', x: 0, y: 1, z: 0, cxx: 1e-4, cxy: 0, cxz: 0, cyy: 1e-4, cyz: 0, czz: 1e-4, contributors: ['s1', 's2'] };
+  const joint = { state: 'Inferred', x: 0, y: 1, z: 0, cxx: 1e-4, cxy: 0, cxz: 0, cyy: 1e-4, cyz: 0, czz: 1e-4, contributors: ['s10', 's2'], shares: [0.04, 0.96] };
   const body = { bodyId: 7, sidesConfidence: 0.999, joints: { Head: joint, Neck: { state: 'Tracked', x: 0, y: 1, z: 0 } } };
-  assert.deepEqual(jointLines(body, 'Head', { s1: { share: 0.96 } }, 41.4),
-    ['Head (inferred), person 7', '95 % within ±28 × 28 × 28 mm', 'from s1 (96 %), s2', 'seen, 41 ms old']);
-  assert.deepEqual(jointLines({ ...body, carriedFor: 0.44 }, 'Neck', undefined, NaN),
+  assert.deepEqual(jointLines(body, 'Head', 41.4),
+    ['Head (inferred), person 7', '95 % within ±28 × 28 × 28 mm', 'from s2 96 %, s10 4 %', 'seen, 41 ms old']);
+  assert.deepEqual(jointLines({ ...body, carriedFor: 0.44 }, 'Neck', 41.4),
     ['Neck, person 7', 'how sure: not stated', 'from no sensor: where it is expected', 'out of sight for 0.4 s']);
+  assert.equal(jointLines({ bodyId: 7, joints: { Hand: { state: 'Inferred', contributors: [], age: 0.25 } } }, 'Hand', 41.4)[3],
+    'seen, 291 ms old', 'a joint that nobody sees is older than the frame');
+  assert.deepEqual(sharesOf({ contributors: ['s2', 's1'], shares: [0.3, 0.7] }), [{ id: 's2', share: 0.7 }, { id: 's1', share: 0.3 }],
+    'shares are in the order of the ids, whatever that of the contributors');
+  assert.deepEqual(sharesOf({ contributors: ['s2'] }), [{ id: 's2', share: 1 }], 'one sensor has all');
+  assert.deepEqual(sharesOf({ contributors: ['s1', 's2'] }), [{ id: 's1', share: NaN }, { id: 's2', share: NaN }], 'not known');
   assert.equal(covarianceOf({ cxx: 1, cxy: 0 }), null, 'half a covariance is none');
   assert.equal(personLine(body), 'person 7: seen, left and right 99 % certain', 'never rounded up to certainty');
   assert.equal(personLine({ bodyId: 8 }), 'person 8: seen, left and right not looked at');

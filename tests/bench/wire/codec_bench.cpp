@@ -98,8 +98,10 @@ class SerdGraph {
     }
   }
   static SerdNode node(const rdf::Term& term) {
-    if (term.kind == rdf::TermKind::Literal)
-      return serd_node_from_string(SERD_LITERAL, bytes_of(term.value));
+    if (term.kind != rdf::TermKind::Iri) {
+      const bool blank = term.kind == rdf::TermKind::Blank;
+      return serd_node_from_string(blank ? SERD_BLANK : SERD_LITERAL, bytes_of(term.value));
+    }
     return serd_node_from_string(term.language.empty() ? SERD_URI : SERD_CURIE,
                                  bytes_of(term.value));
   }

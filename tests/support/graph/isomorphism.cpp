@@ -61,10 +61,21 @@ Colours refine(const std::set<Triple>& graph, const Colours& colours) {
   return next;
 }
 
+/// The number of different colours.
+std::size_t kinds(const Colours& colours) {
+  std::set<std::string> different;
+  for (const auto& [label, colour] : colours) different.insert(colour);
+  return different.size();
+}
+
 std::multiset<std::string> lines_of(const Graph& graph) {
   const std::set<Triple> triples(graph.begin(), graph.end());
   Colours colours = first_colours(triples);
-  for (std::size_t round = 0; round < colours.size(); ++round) colours = refine(triples, colours);
+  // Once a round tells no more blank nodes apart, no further one does.
+  for (std::size_t before = 0, now = kinds(colours); now > before; now = kinds(colours)) {
+    before = now;
+    colours = refine(triples, colours);
+  }
   std::multiset<std::string> lines;
   for (const Triple& triple : triples) {
     lines.insert(text_of(triple.subject, colours) + " <" + triple.predicate.value + "> " +

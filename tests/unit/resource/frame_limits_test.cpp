@@ -28,6 +28,10 @@ TEST(FrameLimits, TheFullestFrameIsReadBackInEveryFormat) {
       joint.orientation = {-0.5, -0.5, -0.5, -0.5};
       joint.variance = 9999.99999999;
       joint.contributors = ~std::uint64_t{0} >> 60U;
+      ShareTally tally;
+      for (std::size_t i = 0; i < 4; ++i) tally.add(std::uint64_t{1} << i, 1.0);
+      joint.shares = tally.shares();
+      joint.age.reset();
     }
   }
   for (const Format format : {Format::Turtle, Format::Json, Format::JsonLd}) {

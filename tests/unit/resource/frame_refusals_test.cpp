@@ -114,6 +114,26 @@ const std::vector<Damage> kBodyDamages{
     {"huge variance", [](Json& f) { head(f)["variance"] = 1e5; }, "ch:variance", "between 0"},
     {"strange contributor", [](Json& f) { head(f)["contributors"] = {"s9"}; }, "ch:contributor",
      "'s9'"},
+    {"shares no list", [](Json& f) { head(f)["shares"] = "1"; }, "ch:shares", "no array"},
+    {"a share no number", [](Json& f) { head(f)["shares"] = {"much"}; }, "ch:shares", "no finite"},
+    {"two shares of one sensor",
+     [](Json& f) {
+       head(f)["shares"] = {0.5, 0.5};
+     },
+     "ch:shares", "one share for each"},
+    {"shares that make more than all",
+     [](Json& f) {
+       head(f)["contributors"] = {"s1", "s2"};
+       head(f)["shares"] = {0.8, 0.8};
+     },
+     "ch:shares", "make 1"},
+    {"a negative share",
+     [](Json& f) {
+       head(f)["contributors"] = {"s1", "s2"};
+       head(f)["shares"] = {-0.2, 1.2};
+     },
+     "ch:shares", "make 1"},
+    {"a joint from the future", [](Json& f) { head(f)["age"] = -0.001; }, "ch:age", "between 0"},
     {"contributors no list", [](Json& f) { head(f)["contributors"] = "s1"; }, "ch:contributors",
      "no array"}};
 

@@ -48,6 +48,28 @@ TEST(FrameSpellings, TheOrderOfTheTriplesDoesNotMatter) {
   }
 }
 
+TEST(FrameSpellings, TheCellsOfAListMayStandAnywhere) {
+  const FrameResource frame = random_frame(2, {2, true});
+  rdf::Graph graph = graph_of(frame);
+  std::ranges::reverse(std::ranges::stable_partition(graph, [](const rdf::Triple& triple) {
+    return triple.subject.kind != rdf::TermKind::Blank;
+  }));
+  std::ranges::rotate(graph, graph.end() - 20);
+  ASSERT_EQ(graph.front().subject.kind, rdf::TermKind::Blank);
+  const auto back = read_graph_as(graph, rdf::Syntax::NTriples);
+  ASSERT_TRUE(back) << to_string(back.error());
+  EXPECT_EQ(difference(frame, *back), "");
+}
+
+TEST(FrameSpellings, ListsMayNotBeEndless) {
+  std::string text = write(random_frame(2, {1, true}), Format::Turtle);
+  text += "\n<x> <http://other/list> (";
+  for (int i = 0; i < 16'400; ++i) text += " 1";
+  const auto back = read_frame(text + ") .\n", Format::Turtle);
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().code, ErrorCode::TooLarge);
+}
+
 TEST(FrameSpellings, SayingATripleTwiceChangesNothing) {
   const FrameResource frame = random_frame(2, {2, true});
   rdf::Graph graph = graph_of(frame);

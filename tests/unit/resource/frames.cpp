@@ -1,8 +1,10 @@
 #include "tests/unit/resource/frames.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <random>
 
 #include "common/body/bones.h"
@@ -54,6 +56,13 @@ Covariance random_covariance(Dice& dice) {
   return Covariance(full);
 }
 
+Shares random_shares(Dice& dice, std::uint64_t contributors) {
+  ShareTally tally;
+  for (std::uint64_t bit = 1; bit != 0 && bit <= contributors; bit <<= 1U)
+    tally.add(contributors & bit, dice.between(0, 1));
+  return tally.shares();
+}
+
 JointResource random_joint(Dice& dice, const FrameResource& frame) {
   JointResource joint;
   if (dice.chance(0.2)) return joint;
@@ -69,6 +78,9 @@ JointResource random_joint(Dice& dice, const FrameResource& frame) {
   if (frame.sensors.empty()) return joint;
   joint.variance = rounded(dice.between(0, 0.01), 1e-8);
   joint.contributors = dice.number((std::uint64_t{1} << frame.sensors.size()) - 1);
+  if (joint.contributors == 0 && dice.chance(0.8)) joint.age = rounded(dice.between(0, 3), 1e-3);
+  const bool shared = std::popcount(joint.contributors) == 1 || dice.chance(0.8);
+  if (shared) joint.shares = random_shares(dice, joint.contributors);
   return joint;
 }
 
@@ -104,6 +116,26 @@ struct About {
   }
 };
 
+/// An RDF list of the shares, by sensor id, unless one sensor has all.
+void add_shares(About& about, const FrameResource& frame, const JointResource& joint) {
+  std::map<std::string, double> shares;
+  for (std::size_t i = 0; i < frame.sensors.size(); ++i) {
+    if ((joint.contributors >> i & 1U) != 0) shares[frame.sensors[i]] = joint.shares.of(i);
+  }
+  if (!joint.shares.known() || shares.size() < 2) return;
+  const std::string cell = "list" + std::to_string(about.graph.size()) + "cell";
+  std::size_t at = 0;
+  about.say("shares", rdf::blank(cell + "0"));
+  for (const auto& [sensor, share] : shares) {
+    const Term here = rdf::blank(cell + std::to_string(at));
+    const bool last = ++at == shares.size();
+    const Term next = last ? rdf::iri(rdf::rdf("nil")) : rdf::blank(cell + std::to_string(at));
+    about.graph.push_back(
+        {here, rdf::iri(rdf::rdf("first")), rdf::literal(decimals(share, 2), rdf::xsd("decimal"))});
+    about.graph.push_back({here, rdf::iri(rdf::rdf("rest")), next});
+  }
+}
+
 void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri, std::size_t index,
                const JointResource& joint) {
   About about{graph, rdf::iri(iri)};
@@ -129,6 +161,8 @@ void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri,
     if ((joint.contributors >> i & 1U) != 0)
       about.say("contributor", rdf::literal(frame.sensors[i]));
   }
+  add_shares(about, frame, joint);
+  if (joint.age) about.decimal("age", *joint.age, 3);
 }
 
 std::string text_of(const JointResource& joint) {
@@ -138,8 +172,11 @@ std::string text_of(const JointResource& joint) {
   text += joint.measurement == Measurement::Ray ? " ray" : " point";
   for (std::size_t i = 0; joint.covariance.known() && i < Covariance::kTerms; ++i)
     text += " " + decimals(joint.covariance.term(i), 8);
+  std::string shares = joint.shares.known() ? " s" : "";
+  for (std::size_t i = 0; joint.shares.known() && i < kMaxSensors; ++i)
+    shares += " " + decimals(joint.shares.of(i), 4);
   return text + " v" + decimals(joint.variance.value_or(-1), 10) + " c" +
-         std::to_string(joint.contributors);
+         std::to_string(joint.contributors) + shares + " a" + decimals(joint.age.value_or(-1), 6);
 }
 
 }  // namespace

@@ -14,6 +14,13 @@ using testing::kFrameInterval;
 using testing::kStart;
 using testing::sensor_id;
 
+Shares shares_of(double first, double second) {
+  ShareTally tally;
+  tally.add(0b01, first);
+  tally.add(0b10, second);
+  return tally.shares();
+}
+
 Snapshot snapshot(std::uint64_t sequence, double x) {
   Snapshot s;
   s.sequence = sequence;
@@ -27,6 +34,10 @@ Snapshot snapshot(std::uint64_t sequence, double x) {
   body.skeleton = testing::standing_person({x, 0, 0});
   body.variance.fill(1e-4);
   body.contributors.fill(0b11);
+  body.shares.fill(shares_of(0.8, 0.2));
+  body.contributors[index_of(JointId::HandLeft)] = 0;
+  body.shares[index_of(JointId::HandLeft)] = {};
+  body.age[index_of(JointId::HandLeft)] = 0.1;
   testing::hide(body.skeleton[JointId::FootLeft]);
   s.bodies.push_back(body);
   return s;
@@ -45,6 +56,10 @@ TEST(SnapshotResource, SaysWorldSpaceSensorsAndContributors) {
   const auto& neck = frame.bodies[0].joints[index_of(JointId::Neck)];
   EXPECT_EQ(neck.contributors, 0b11u);
   EXPECT_EQ(neck.variance, 1e-4);
+  EXPECT_EQ(neck.shares.of(0), 0.8);
+  EXPECT_EQ(neck.shares.of(1), 0.2);
+  EXPECT_FALSE(neck.age) << "sensors see it now";
+  EXPECT_EQ(frame.bodies[0].joints[index_of(JointId::HandLeft)].age, 0.1);
   const auto& foot = frame.bodies[0].joints[index_of(JointId::FootLeft)];
   EXPECT_FALSE(foot.variance);
   EXPECT_EQ(foot.contributors, 0u);
@@ -57,6 +72,9 @@ TEST(SnapshotResource, IsValidInputForAnotherFusionServer) {
   EXPECT_EQ(read->bodies.size(), 1u);
   EXPECT_EQ(read->bodies[0].slot, 3u);
   EXPECT_EQ(read->bodies[0].sides_confidence, 0.875);
+  const auto& neck = read->bodies[0].joints[index_of(JointId::Neck)];
+  EXPECT_EQ(neck.shares, shares_of(0.8, 0.2));
+  EXPECT_EQ(read->bodies[0].joints[index_of(JointId::HandLeft)].age, 0.1);
 }
 
 TEST(SnapshotResource, MoreBodiesThanAFrameMayHoldAreCut) {
@@ -77,6 +95,20 @@ TEST(Between, InterpolatesPositionsAndTakesTheWorseState) {
   EXPECT_EQ(neck.variance, 4e-4);
   EXPECT_EQ(mid.bodies[0].joints[index_of(JointId::Head)].state, JointState::Inferred);
   EXPECT_EQ(mid.bodies[0].joints[index_of(JointId::FootLeft)].state, JointState::NotTracked);
+}
+
+TEST(Between, SharesAreInBetweenAndAJointThatNobodySeesGetsOlder) {
+  const auto a = to_resource(snapshot(1, 0.0));
+  auto b = to_resource(snapshot(2, 0.1));
+  b.bodies[0].joints[index_of(JointId::Neck)].shares = shares_of(0.4, 0.6);
+  b.bodies[0].joints[index_of(JointId::Head)].shares = {};
+  b.bodies[0].joints[index_of(JointId::HandLeft)].age = 0.1 + seconds(kFrameInterval);
+  const auto mid = resource::between(a, b, a.captured + kFrameInterval / 4);
+  const auto& joints = mid.bodies.at(0).joints;
+  EXPECT_NEAR(joints[index_of(JointId::Neck)].shares.of(0), 0.7, 1e-9);
+  EXPECT_FALSE(joints[index_of(JointId::Head)].shares.known()) << "b does not say";
+  EXPECT_NEAR(joints[index_of(JointId::HandLeft)].age.value(), 0.1 + seconds(kFrameInterval) / 4,
+              1e-9);
 }
 
 TEST(Between, LeavesOutBodiesThatOnlyOneOfThemHas) {
