@@ -155,6 +155,17 @@ struct Person {
   std::optional<Eigen::Vector3d> carried = {};
 };
 
+/// How a joint moves at the instant, according to the method's filter; all errors are alike on
+/// every axis.
+struct JointMotion {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+  double variance = 0.0;                               ///< Of the velocity, per axis [m^2/s^2].
+  double shared = 0.0;  ///< Covariance of position and velocity, per axis [m^2/s].
+  /// Spectral density of the white-noise acceleration, now and in the long run [m^2/s^3].
+  double density = 0.0;
+  double usual_density = 0.0;
+};
+
 struct FusedBody {
   PersonId id;
   Skeleton<WorldSpace> skeleton;
@@ -170,6 +181,8 @@ struct FusedBody {
   /// For how long no sensor has seen the person [s]; meanwhile they are where they are expected.
   /// None while they are seen.
   std::optional<double> carried_for = {};
+  /// For predictions (fusion/prediction.h); none: the method has no velocities.
+  std::optional<std::array<JointMotion, kJointCount>> motion = {};
 };
 
 /// The state of one sensor at this instant, for /sensors/ and the viewer.

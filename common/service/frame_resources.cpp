@@ -43,10 +43,16 @@ void FrameResources::publish(const FramePtr& frame) {
                                           resource::latest_options(*frame, serving_.run)));
 }
 
+Result<FramePtr> FrameResources::frame_of_time(const std::string& time) const {
+  if (time != "now" || !now_) return ring_.at(time);
+  if (auto frame = now_()) return frame;
+  return not_yet("/frame?at=now");
+}
+
 FrameResources::Answer FrameResources::frame_at(const Request& request) const {
   const std::string amendments = std::to_string(ring_.amendments());
   const auto at = request.query.find("at");
-  auto frame = ring_.at(at == request.query.end() ? std::string() : at->second);
+  auto frame = frame_of_time(at == request.query.end() ? std::string() : at->second);
   if (!frame) return pass(frame);
   DocumentOptions options;
   options.version =

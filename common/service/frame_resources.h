@@ -1,7 +1,8 @@
 // The resources for the frames of a service, the same for all services: /frame, /frames/{seq},
-// /frame?at=TIME, /skeletons/, /skeletons/{id}
+// /frame?at=TIME, /frame?at=now, /skeletons/, /skeletons/{id}
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -24,6 +25,11 @@ class FrameResources {
   /// Adds a better frame for an instant that has already been published.  Only /frame?at= shows it.
   void amend(FramePtr frame) { ring_.amend(std::move(frame)); }
 
+  /// What /frame?at=now answers: the frame expected at the present moment, null before the first
+  /// one.  Without it nothing is predicted.  Call it before the first request; `now` must be
+  /// thread-safe.
+  void predict_with(std::function<FramePtr()> now) { now_ = std::move(now); }
+
   /// The router keeps using this object, so the object must outlive it.
   void add_routes(http::Router& router);
 
@@ -31,12 +37,14 @@ class FrameResources {
   using Answer = Result<http::DocumentPtr>;
 
   [[nodiscard]] Answer frame_at(const http::Request& request) const;
+  [[nodiscard]] Result<FramePtr> frame_of_time(const std::string& time) const;
   [[nodiscard]] Answer frame_of(const std::string& sequence) const;
   [[nodiscard]] Answer skeletons() const;
   [[nodiscard]] Answer skeleton(const std::string& id) const;
 
   Serving serving_;
   FrameRing ring_;
+  std::function<FramePtr()> now_;
   std::shared_ptr<http::LiveDocument> live_;
 };
 

@@ -6,8 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/bone_lengths.h"
+#include "fusion-server/fusion/handover.h"
 #include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/misfit_size.h"
 #include "fusion-server/fusion/motion_filter.h"
@@ -21,6 +23,8 @@ constexpr double kUsualScale = 0.01;  // relative differences in size that noise
 constexpr double kFirstAgreement = 0.25;
 // [m]; shoulders that are closer together, seen from above, show no direction.
 constexpr double kNarrowShoulders = 0.1;
+// [rad]; shoulders of somebody who stands still waver by less than this.
+constexpr double kPlay = deg(4);
 
 /// A mean that follows new values slowly.
 struct Habit {
@@ -58,16 +62,19 @@ class BodyFilter final : public Estimator {
     sighted.settle(lengths_.held(model()), expected, misfits_.found(model()));
     misfits_.learn(sighted.misfits(), passed, model());
     lengths_.learn(sighted.placed(), passed, model());
-    const PlacedBody whole = held(sighted.placed(), expected);
+    if (model().handover > Duration{0}) handover_.take(sighted.pulls(), passed, model().handover);
+    const PlacedBody whole = held(handed_over(sighted.placed()), expected);
     if (model().bias_rate > 0) sighted.learn(biases_, whole, passed, turned(whole));
     agreement_.follow(sighted.disagreement(whole), passed);
     scale_square_.follow(sighted.scale_square(), passed);
     middle_ = middle_of(whole);
-    return joint_by_joint(person.id, [&](JointId joint) {
+    FusedBody body = joint_by_joint(person.id, [&](JointId joint) {
       return whole[index_of(joint)].placed
                  ? fused(sighted, joint, instant.at, whole[index_of(joint)])
                  : FusedJoint{};
     });
+    body.motion = motion_at(instant.at);
+    return body;
   }
 
   [[nodiscard]] std::unique_ptr<Estimator> clone() const override {
@@ -78,22 +85,38 @@ class BodyFilter final : public Estimator {
   [[nodiscard]] const BodyModel& model() const { return config_->body; }
 
   /// The angle by which the shoulders have turned since both were last placed [rad]; 0 if unknown.
+  /// Turns within kPlay do not count: otherwise the noise of every instant would add up, and a
+  /// still person would turn faster at higher frame rates.
   [[nodiscard]] double turned(const PlacedBody& body) {
     const PlacedJoint& left = body[index_of(JointId::ShoulderLeft)];
     const PlacedJoint& right = body[index_of(JointId::ShoulderRight)];
     if (!left.placed || !right.placed) return 0.0;
     const Eigen::Vector3d across = left.position - right.position;
     if (std::hypot(across.x(), across.z()) < kNarrowShoulders) return 0.0;  // no direction
-    const double before = std::exchange(yaw_, std::atan2(across.z(), across.x()));
-    return std::abs(wrap_angle(yaw_ - before));
+    const double off = wrap_angle(std::atan2(across.z(), across.x()) - yaw_);
+    const double beyond = std::max(0.0, std::abs(off) - kPlay);
+    yaw_ = wrap_angle(yaw_ + std::copysign(beyond, off));
+    return beyond;
+  }
+
+  [[nodiscard]] PlacedBody handed_over(PlacedBody body) const {
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      if (body[j].placed) body[j].position += handover_.offset(j);
+    }
+    return body;
   }
 
   /// The seen body, completed by what is expected, its bones held at the learned lengths.
   [[nodiscard]] PlacedBody held(PlacedBody body, const PlacedBody& expected) const {
+    const bool unseen = std::ranges::none_of(body, &PlacedJoint::placed);
     for (std::size_t j = 0; j < kJointCount; ++j) {
       if (!body[j].placed) body[j] = expected[j];
     }
-    return hold_bones(body, lengths_.held(model()));
+    PlacedBody whole = hold_bones(body, lengths_.held(model()));
+    // Somebody unseen walks elsewhere as a whole: their bones make no joint surer.
+    for (std::size_t j = 0; unseen && j < kJointCount; ++j)
+      whole[j].covariance = body[j].covariance;
+    return whole;
   }
 
   [[nodiscard]] FusedJoint fused(const SightedBody& sighted, JointId joint, Timestamp instant,
@@ -121,6 +144,14 @@ class BodyFilter final : public Estimator {
       body[j] = {motion->position, variance * Eigen::Matrix3d::Identity(), true};
     }
     return body;
+  }
+
+  [[nodiscard]] std::array<JointMotion, kJointCount> motion_at(Timestamp instant) const {
+    std::array<JointMotion, kJointCount> all;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      if (const auto point = filters_[j].at(instant)) all[j] = point->motion;
+    }
+    return all;
   }
 
   /// The joint after filtering; the filter takes only joints that views determined.
@@ -153,14 +184,14 @@ class BodyFilter final : public Estimator {
   BoneLengths lengths_;
   MisfitSize misfits_;
   Biases biases_;
+  Handover handover_;
   MotionFilters filters_;
   std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last determined [m^2].
   std::array<std::optional<Timestamp>, kJointCount> contributed_;  ///< When a sensor last did.
   Habit agreement_{kFirstAgreement};
   Habit scale_square_;
   std::optional<Eigen::Vector3d> middle_;  ///< Middle of the trunk.
-  double yaw_ = 0.0;                       ///< Yaw of the shoulders when both were last placed
-                                           ///< [rad].
+  double yaw_ = 0.0;                       ///< Yaw of the shoulders, to within kPlay [rad].
   std::optional<Timestamp> last_;
 };
 

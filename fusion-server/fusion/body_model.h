@@ -26,6 +26,9 @@ struct BodyModel {
   /// [rad], because a sensor errs differently about somebody whom it sees from another side.
   Duration bias_memory = std::chrono::milliseconds(300);
   double bias_turn = deg(15);
+  /// Time constant with which a joint follows after a view of it has begun, ended, or turned into a
+  /// guess or out of one (handover.h); 0: it follows at once.
+  Duration handover = std::chrono::milliseconds(70);
   /// For the weights of the views, the pose error (pose_error.h) of a tracked joint is multiplied
   /// by `pose`, that of an inferred joint by `inferred`, too.
   double pose = 0.5;

@@ -27,6 +27,7 @@ FusedBody carry(const FusedBody& last, Duration unseen, const Eigen::Vector3d& m
     put(body, static_cast<JointId>(i), carried);
   }
   body.slot.reset();
+  body.motion.reset();
   return body;
 }
 

@@ -9,12 +9,38 @@ namespace chorus::fusion {
 namespace {
 
 constexpr double kRests = 0.5;        // [s] mean time that a point stays at rest, or in motion
+constexpr double kSetsOff = 4.0;      // [s] the same of a point that nobody sees
 constexpr double kLeastShare = 1e-3;  // smallest probability of a model: neither is ever excluded
 constexpr double kReach = 3.5;        // [standard deviations] farther measurements are clipped
 constexpr double kDimensions = 3.0;
 constexpr double kSlowing = 0.4;  // [s] time constant of the decay of an unseen point's speed
 
+/// Mean fraction of the next `passed` seconds that a point will have spent in the other model.
+double changed_share(double passed) {
+  const double turns = 2.0 * passed / kSetsOff;
+  return turns > 0 ? 0.5 * (1.0 - (1.0 - std::exp(-turns)) / turns) : 0.0;
+}
+
 }  // namespace
+
+PointMotion later(const PointMotion& now, double passed) {
+  const double left = std::exp(-passed / kSlowing);
+  const double way = kSlowing * (1.0 - left);  // time to go as far at full speed [s]
+  const JointMotion& moving = now.motion;
+  const double usual = moving.usual_density - moving.density;
+  const double density = moving.density + 2.0 * changed_share(passed) * usual;
+  const double gone = passed - 2.0 * way + 0.5 * kSlowing * (1.0 - left * left);
+  PointMotion then = now;
+  then.position += way * moving.velocity;
+  then.variance +=
+      way * (2.0 * moving.shared + way * moving.variance) + density * kSlowing * kSlowing * gone;
+  then.motion.velocity *= left;
+  then.motion.shared = left * (moving.shared + way * moving.variance) + 0.5 * density * way * way;
+  then.motion.variance =
+      left * left * moving.variance + 0.5 * density * kSlowing * (1.0 - left * left);
+  then.motion.density += (1.0 - std::exp(-2.0 * passed / kSetsOff)) * usual;
+  return then;
+}
 
 MotionFilter::MotionFilter(const Densities& densities) {
   models_[0].density = densities.resting;
@@ -93,24 +119,31 @@ void MotionFilter::update(Timestamp instant, const Eigen::Vector3d& position, do
   updated_ = instant;
 }
 
-std::optional<MotionFilter::Motion> MotionFilter::at(Timestamp instant) const {
+/// Mean and spread of both models.
+PointMotion MotionFilter::updated_motion() const {
+  PointMotion all;
+  for (const Model& model : models_) {
+    all.position += model.share * model.position;
+    all.motion.velocity += model.share * model.velocity;
+    all.motion.density += model.share * model.density;
+    all.motion.usual_density += 0.5 * model.density;
+  }
+  for (const Model& model : models_) {
+    const Eigen::Vector3d apart = model.position - all.position;
+    const Eigen::Vector3d faster = model.velocity - all.motion.velocity;
+    const auto spread = [&](double own, double between) {
+      return model.share * (own + between / kDimensions);
+    };
+    all.variance += spread(model.covariance(0, 0), apart.squaredNorm());
+    all.motion.shared += spread(model.covariance(0, 1), apart.dot(faster));
+    all.motion.variance += spread(model.covariance(1, 1), faster.squaredNorm());
+  }
+  return all;
+}
+
+std::optional<PointMotion> MotionFilter::at(Timestamp instant) const {
   if (!updated_) return std::nullopt;
-  const double passed = std::max(0.0, seconds(instant - *updated_));
-  // Time that the predicted distance would take at full speed [s].
-  const double way = kSlowing * (1.0 - std::exp(-passed / kSlowing));
-  Motion motion;
-  for (const Model& model : models_) {
-    motion.position += model.share * (model.position + way * model.velocity);
-    motion.velocity += model.share * std::exp(-passed / kSlowing) * model.velocity;
-  }
-  for (const Model& model : models_) {
-    Model later = model;
-    predict(later, passed);
-    const Eigen::Vector3d place = model.position + way * model.velocity;
-    motion.variance += model.share * (later.covariance(0, 0) +
-                                      (place - motion.position).squaredNorm() / kDimensions);
-  }
-  return motion;
+  return later(updated_motion(), std::max(0.0, seconds(instant - *updated_)));
 }
 
 }  // namespace chorus::fusion

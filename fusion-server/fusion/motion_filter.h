@@ -11,8 +11,20 @@
 #include <Eigen/Core>
 
 #include "common/time/timestamp.h"
+#include "fusion-server/flow.h"
 
 namespace chorus::fusion {
+
+/// Where a point is and how it moves.
+struct PointMotion {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  double variance = 0.0;  ///< Of the position, per axis [m^2].
+  JointMotion motion;
+};
+
+/// The motion `passed` seconds later, if nothing is measured: the speed fades within about a
+/// second, and whoever rests may set off (docs/papers/body.md (14)).
+[[nodiscard]] PointMotion later(const PointMotion& now, double passed);
 
 class MotionFilter {
  public:
@@ -23,18 +35,12 @@ class MotionFilter {
     double resting;  ///< Density of the white-noise acceleration [m^2 / s^3].
     double moving;
   };
-  struct Motion {
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-    double variance = 0.0;  ///< Variance of the position, per axis [m^2].
-  };
-
   explicit MotionFilter(const Densities& densities);
 
   /// Takes a measurement at `instant`, later than all before, with `variance` per axis [m^2].
   void update(Timestamp instant, const Eigen::Vector3d& position, double variance);
-  /// Predicted motion; none before the first update.  Its speed decays within about a second.
-  [[nodiscard]] std::optional<Motion> at(Timestamp instant) const;
+  /// Predicted motion; none before the first update.
+  [[nodiscard]] std::optional<PointMotion> at(Timestamp instant) const;
   [[nodiscard]] const std::optional<Timestamp>& updated() const { return updated_; }
 
  private:
@@ -47,6 +53,7 @@ class MotionFilter {
   };
   using Models = std::array<Model, 2>;
 
+  [[nodiscard]] PointMotion updated_motion() const;
   void begin(Timestamp instant, const Eigen::Vector3d& position, double variance);
   static void mix(Models& models, double passed);
   static void predict(Model& model, double passed);

@@ -195,6 +195,22 @@ void SightedBody::learn(Biases& biases, const PlacedBody& body, double passed,
   }
 }
 
+std::vector<ViewPulls> SightedBody::pulls() const {
+  std::vector<ViewPulls> all;
+  for (const SensorView& view : person_.views) all.push_back({view.sensor, {}});
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (!determined(j)) continue;
+    for (std::size_t v = 0; v < sights_[j].views.size(); ++v) {
+      const JointView& view = sights_[j].views[v];
+      const Weighing& weighing = sights_[j].weighings[v];
+      if (!view.joint.seen()) continue;
+      all[view.view].joints[j] = {weighing.trust / weighing.variance, view.joint.state,
+                                  view.joint.position - placed_[j].position};
+    }
+  }
+  return all;
+}
+
 Eigen::Matrix3d SightedBody::stated(std::size_t joint) const {
   const Sights& sights = sights_[joint];
   if (!sights.round) return placed_[joint].covariance;

@@ -11,6 +11,7 @@
 #include "fusion-server/fusion/bone_tree.h"
 #include "fusion-server/fusion/estimator.h"
 #include "fusion-server/fusion/fusion_config.h"
+#include "fusion-server/fusion/handover.h"
 #include "fusion-server/fusion/joint_view.h"
 #include "fusion-server/fusion/view_misfit.h"
 
@@ -41,6 +42,8 @@ class SightedBody {
   /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last
   /// call, since when the person has turned by `turned` [rad].
   void learn(Biases& biases, const PlacedBody& body, double passed, double turned) const;
+  /// How the views take part in the means of placed().
+  [[nodiscard]] std::vector<ViewPulls> pulls() const;
   /// Mean squared residual between the points and `body`, per axis, in units of the points'
   /// variances; none if no joint is seen in two views.
   [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;

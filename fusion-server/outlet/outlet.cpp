@@ -51,7 +51,7 @@ void OutletSink::run() {
 void OutletSink::send(TrackerState& state, const Snapshot& snapshot) {
   TrackerFrame frame = state.advance(snapshot);
   if (timing_.latency == Latency::Predicted) {
-    frame = predicted(std::move(frame), timing_.clock->now());
+    frame = predicted(std::move(frame), snapshot, timing_.clock->now());
   }
   outlet_->send(frame);
   ++sent_;

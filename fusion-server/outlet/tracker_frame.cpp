@@ -8,6 +8,7 @@
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
 #include "common/sensor/limits.h"
+#include "fusion-server/fusion/prediction.h"
 
 namespace chorus::outlet {
 namespace {
@@ -28,6 +29,7 @@ TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
     to.position = from.position;
     to.tracked = from.seen() && from.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
     if (is_unit(from.orientation)) to.orientation = from.orientation.normalized();
+    if (fused.motion) to.velocity = (*fused.motion)[i].velocity;
   }
   for (const Bone& bone : kBones) {  // parents come first
     if (is_unit(fused.skeleton[bone.child].orientation)) continue;
@@ -36,12 +38,27 @@ TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
   return body;
 }
 
-void set_velocity(TrackerJoint& now, const TrackerJoint& before, double dt) {
+/// Sets the velocities from one snapshot to the next; `stated`: the joint's own is known.
+void set_velocity(TrackerJoint& now, const TrackerJoint& before, double dt, bool stated) {
   if (!now.tracked || !before.tracked) return;
   const Eigen::Vector3d linear = (now.position - before.position) / dt;
   const Eigen::Vector3d angular = log_map(now.orientation * before.orientation.conjugate()) / dt;
-  now.velocity = kNewest * linear + (1.0 - kNewest) * before.velocity;
+  if (!stated) now.velocity = kNewest * linear + (1.0 - kNewest) * before.velocity;
   now.angular_velocity = kNewest * angular + (1.0 - kNewest) * before.angular_velocity;
+}
+
+/// Moves the joints on; `fused` is the same body.
+void move_on(TrackerBody& body, const FusedBody* fused, Duration ahead) {
+  const double dt = seconds(ahead);
+  for (TrackerJoint& joint : body.joints) {
+    joint.position += dt * joint.velocity;
+    joint.orientation = (exp_map(dt * joint.angular_velocity) * joint.orientation).normalized();
+  }
+  if (fused == nullptr || !fused->motion) return;
+  const FusedBody later = fusion::predicted(*fused, ahead);
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    body.joints[i].position = later.skeleton.joints[i].position;
+  }
 }
 
 }  // namespace
@@ -73,7 +90,8 @@ TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
     const auto before = before_.find(fused.id);
     if (continues && before != before_.end()) {
       for (std::size_t i = 0; i < kJointCount; ++i) {
-        set_velocity(body.joints[i], before->second.joints[i], seconds(step));
+        set_velocity(body.joints[i], before->second.joints[i], seconds(step),
+                     fused.motion.has_value());
       }
     }
     before_[fused.id] = body;
@@ -85,15 +103,12 @@ TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
   return frame;
 }
 
-TrackerFrame predicted(TrackerFrame frame, Timestamp then) {
+TrackerFrame predicted(TrackerFrame frame, const Snapshot& snapshot, Timestamp then) {
   const Duration ahead = std::min<Duration>(then - frame.instant, kMaxPrediction);
   if (ahead <= Duration{0}) return frame;
-  const double dt = seconds(ahead);
   for (TrackerBody& body : frame.bodies) {
-    for (TrackerJoint& joint : body.joints) {
-      joint.position += dt * joint.velocity;
-      joint.orientation = (exp_map(dt * joint.angular_velocity) * joint.orientation).normalized();
-    }
+    const auto fused = std::ranges::find(snapshot.bodies, body.person, &FusedBody::id);
+    move_on(body, fused == snapshot.bodies.end() ? nullptr : &*fused, ahead);
   }
   frame.instant += ahead;
   return frame;

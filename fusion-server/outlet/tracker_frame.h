@@ -51,13 +51,14 @@ struct TrackerFrame {
 /// The body in this slot; null if there is none.
 [[nodiscard]] const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot);
 
-/// Computes joint velocities from successive snapshots.
+/// Completes snapshots by velocities: those that the method of fusion states (FusedBody::motion),
+/// and otherwise, as for all orientations, those from snapshot to snapshot.
 class TrackerState {
  public:
   explicit TrackerState(std::size_t slots) : slots_(slots) {}
 
   /// The next frame.  People without a slot, or in a slot too high, are left out.  If the instant
-  /// is that of the last snapshot or earlier, all velocities are zero.
+  /// is that of the last snapshot or earlier, velocities from snapshot to snapshot are zero.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:
@@ -66,8 +67,9 @@ class TrackerState {
   Timestamp instant_{};
 };
 
-/// The frame predicted for `then` at constant velocity, by at most 50 ms (farther ahead, limbs gain
-/// more error than they lose).  If `then` is earlier, the frame is unchanged.
-[[nodiscard]] TrackerFrame predicted(TrackerFrame frame, Timestamp then);
+/// The frame of `snapshot`, predicted for `then`, by at most 50 ms: bodies whose method states
+/// velocities by fusion::predicted(), all other poses at constant velocity (farther ahead, their
+/// limbs gain more error than they lose).  If `then` is earlier, the frame is unchanged.
+[[nodiscard]] TrackerFrame predicted(TrackerFrame frame, const Snapshot& snapshot, Timestamp then);
 
 }  // namespace chorus::outlet

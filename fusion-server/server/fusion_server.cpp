@@ -207,6 +207,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   control.undo = [this](std::uint64_t ticket) { loop->ask(Undo{ticket}); };
   frames.emplace(serving, service::FrameHistory{config.at_start.history});
   frame_sink.emplace(*frames);
+  frames->predict_with([this] { return frame_sink->predicted(clock->now()); });
   sensors.emplace(serving, ids_of(config.live.sensors));
   registration.emplace(serving, std::move(control));
   recordings.emplace(recordings_options(config.at_start, serving, clock));

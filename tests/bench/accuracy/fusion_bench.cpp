@@ -10,6 +10,7 @@
 #include "common/base/units.h"
 #include "tests/bench/accuracy/fusion_cases.h"
 #include "tests/bench/accuracy/fusion_cost.h"
+#include "tests/bench/accuracy/fusion_prediction.h"
 #include "tests/bench/methods/comparison.h"
 #include "tests/bench/methods/contest.h"
 #include "tests/bench/methods/over_draws.h"
@@ -208,6 +209,33 @@ void hold_to_ceiling(Report& report, const Comparison& found) {
                    found.spread_of(kOurs).median < kCeiling);
 }
 
+/// True if the case with this name is to be run; `quick`: it is part of the smoke run.
+bool is_chosen(const Report& report, const std::string& name, bool quick) {
+  return report.only().empty() ? !report.quick() || quick : name == report.only();
+}
+
+/// Runs the chosen cases; false if there are none.
+bool run_chosen(Report& report) {
+  bool any = false;
+  for (const FusionCase& each : all_cases()) {
+    if (!is_chosen(report, each.name, each.quick)) continue;
+    any = true;
+    const Comparison errors = measure(report, each);
+    if (each.name == kMainCase) hold_to_ceiling(report, errors);
+  }
+  for (const PredictionCase& each : prediction_cases()) {
+    if (!is_chosen(report, each.name, false)) continue;
+    any = true;
+    measure_prediction(report, each);
+  }
+  return any;
+}
+
+void list_cases() {
+  for (const FusionCase& each : all_cases()) std::cout << each.name << '\n';
+  for (const PredictionCase& each : prediction_cases()) std::cout << each.name << '\n';
+}
+
 void explain(Report& report) {
   report.note(
       "Medians over draws; every method gets the same views: same alignment, registration, facing "
@@ -236,23 +264,14 @@ void explain(Report& report) {
 
 Result<void> run_fusion(Report& report) {
   report.profile(described({"A", "B", "C", "D", "gauss"}));
-  const std::vector<FusionCase> cases = all_cases();
   if (report.list()) {
-    for (const FusionCase& each : cases) std::cout << each.name << '\n';
+    list_cases();
     return {};
   }
-  const auto chosen = [&](const FusionCase& each) {
-    return report.only().empty() ? !report.quick() || each.quick : each.name == report.only();
-  };
-  if (std::ranges::none_of(cases, chosen)) {
+  if (report.only().empty()) measure_gauss(report);
+  if (!run_chosen(report)) {
     return fail(ErrorCode::InvalidArgument, "--only",
                 "there is no case \"" + report.only() + "\"; --list shows all");
-  }
-  if (report.only().empty()) measure_gauss(report);
-  for (const FusionCase& each : cases) {
-    if (!chosen(each)) continue;
-    const Comparison errors = measure(report, each);
-    if (each.name == kMainCase) hold_to_ceiling(report, errors);
   }
   if (!report.only().empty()) return {};
   if (!report.quick()) {

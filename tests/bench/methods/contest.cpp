@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <tuple>
 #include <utility>
 
@@ -175,8 +176,18 @@ void confide(Stage& stage, const Period& period, const pipeline::PipelineConfig&
                   known.coloured.view_twice};
 }
 
+/// The draw, without the frames that a silent sensor does not send.
+Workshop workshop_of(const Contest& contest) {
+  Workshop workshop = draw_workshop(contest.setting);
+  if (!contest.silence) return workshop;
+  const Timestamp from = workshop.begin + contest.silence->after;
+  std::erase_if(workshop.tracks.at(contest.silence->sensor).frames,
+                [&](const SensorFrame& frame) { return frame.captured >= from; });
+  return workshop;
+}
+
 Stage stage_of(const Contest& contest, bool with_bound) {
-  Stage stage{draw_workshop(contest.setting), {}, {}, {}, {}, {}};
+  Stage stage{workshop_of(contest), {}, {}, {}, {}, {}};
   const Workshop& workshop = stage.workshop;
   stage.registration = contest.own_registration
                            ? solve(workshop.tracks, workshop.begin, {})
@@ -351,6 +362,18 @@ std::vector<Scored> hold(const Contest& contest, const std::vector<Contender>& c
     scores.push_back(score("arrival-kalman", answers_at_arrival(stage)));
   }
   return scores;
+}
+
+Course course_of(const Contest& contest) {
+  const auto stage = std::make_shared<const Stage>(stage_of(contest, false));
+  Course course;
+  for (std::size_t i = 0; i < stage->moments.size(); ++i) {
+    course.instants.push_back(stage->moments[i].instant);
+    course.given.push_back(given_at(*stage, i, {}));
+  }
+  course.exact = stage->exact;
+  course.truth_at = [stage](Timestamp instant) { return stage->truth_at(instant); };
+  return course;
 }
 
 Skeleton<WorldSpace> exchanged(const Skeleton<WorldSpace>& body) {

@@ -52,6 +52,12 @@ struct Contender {
 /// Ours and all methods that it is compared with.
 [[nodiscard]] std::vector<Contender> all_contenders();
 
+/// A sensor that sends nothing any more.
+struct Silence {
+  std::size_t sensor = 0;  ///< Its number, from 0.
+  Duration after{0};       ///< How long after the beginning.
+};
+
 struct Contest {
   Setting setting;
   /// True: registered from the frames themselves; false: the true registration.
@@ -59,7 +65,17 @@ struct Contest {
   /// Includes the best sensor and the filter at arrival, which are not of type Method.
   bool every_method = true;
   pipeline::PipelineConfig pipeline = {};
+  std::optional<Silence> silence = {};
 };
+
+/// What every contender gets in one draw, and the truth.
+struct Course {
+  std::vector<Timestamp> instants;
+  std::vector<std::optional<Person>> given;  ///< At each instant; none: the person was not found.
+  std::vector<Skeleton<WorldSpace>> exact;   ///< At each instant.
+  std::function<Skeleton<WorldSpace>(Timestamp)> truth_at;
+};
+[[nodiscard]] Course course_of(const Contest& contest);
 
 struct Scored {
   std::string method;

@@ -116,6 +116,17 @@ TEST(TrackerVelocity, IsZeroAcrossAGapAndForARepeatedInstant) {
   EXPECT_EQ(again.bodies.at(0)[JointId::Head].velocity.norm(), 0.0);
 }
 
+TEST(TrackerVelocity, IsThatOfTheMethodIfItStatesOne) {
+  TrackerState state(1);
+  FusedBody body = person(1);
+  body.motion.emplace();
+  (*body.motion)[index_of(JointId::Head)].velocity = {0, 0, 0.7};
+  for (int i = 0; i < 2; ++i) {
+    const TrackerFrame frame = state.advance(snapshot(milliseconds(33 * i), {body}));
+    EXPECT_EQ(frame.bodies.at(0)[JointId::Head].velocity.z(), 0.7) << i;
+  }
+}
+
 TrackerFrame moving() {
   TrackerFrame frame;
   frame.instant = kStart;
@@ -126,16 +137,30 @@ TrackerFrame moving() {
 }
 
 TEST(Prediction, MovesAndTurnsAtConstantVelocity) {
-  const TrackerFrame then = predicted(moving(), kStart + milliseconds(20));
+  const TrackerFrame then = predicted(moving(), {}, kStart + milliseconds(20));
   EXPECT_THAT(then.bodies[0].joints[0].position, VectorNear(Eigen::Vector3d(0.04, 0, 0), 1e-9));
   EXPECT_LT(angular_distance(then.bodies[0].joints[0].orientation, about_y(deg(1.8))), 1e-9);
   EXPECT_EQ(then.instant, kStart + milliseconds(20));
 }
 
+TEST(Prediction, IsTheMethodsOwnIfItStatesVelocities) {
+  Snapshot now = snapshot(milliseconds(0), {person(1)});
+  now.bodies[0].motion.emplace();
+  for (JointMotion& motion : *now.bodies[0].motion) {
+    motion.velocity = {0, 0, 1.0};
+    motion.variance = 0.01;
+  }
+  TrackerState state(1);
+  const TrackerFrame then = predicted(state.advance(now), now, kStart + milliseconds(50));
+  const double way = then.bodies.at(0)[JointId::Head].position.z() -
+                     now.bodies[0].skeleton[JointId::Head].position.z();
+  EXPECT_NEAR(way, 0.047, 0.001) << "the speed fades";
+}
+
 TEST(Prediction, GoesNoFurtherThanFiftyMillisecondsAndNeverBack) {
-  EXPECT_EQ(predicted(moving(), kStart + std::chrono::seconds(3)).instant,
+  EXPECT_EQ(predicted(moving(), {}, kStart + std::chrono::seconds(3)).instant,
             kStart + milliseconds(50));
-  EXPECT_EQ(predicted(moving(), kStart - milliseconds(5)).instant, kStart);
+  EXPECT_EQ(predicted(moving(), {}, kStart - milliseconds(5)).instant, kStart);
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+#include "fusion-server/fusion/handover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace chorus::fusion {
+namespace {
+
+/// The views of one sensor; null: it had none.
+struct Twice {
+  const ViewPulls* now = nullptr;
+  const ViewPulls* before = nullptr;
+};
+
+std::vector<Twice> matched(const std::vector<ViewPulls>& now,
+                           const std::vector<ViewPulls>& before) {
+  std::vector<Twice> sensors;
+  for (const ViewPulls& view : now) sensors.push_back({&view, nullptr});
+  for (const ViewPulls& view : before) {
+    const auto same = std::ranges::find_if(sensors, [&](const Twice& each) {
+      return each.now != nullptr && each.now->sensor == view.sensor;
+    });
+    if (same != sensors.end()) {
+      same->before = &view;
+    } else {
+      sensors.push_back({nullptr, &view});
+    }
+  }
+  return sensors;
+}
+
+/// From the mean over the present views to where the views that stay have moved the joint since an
+/// instant ago; zero if all of them stay, or none.
+Eigen::Vector3d step_back(std::size_t joint, const std::vector<Twice>& sensors) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weights = 0.0;
+  bool changed = false;
+  for (const Twice& each : sensors) {
+    const Pull now = each.now != nullptr ? each.now->joints[joint] : Pull{};
+    const Pull before = each.before != nullptr ? each.before->joints[joint] : Pull{};
+    if (now.state != before.state) {
+      changed = true;
+    } else {
+      sum += now.weight * (now.off - before.off);
+      weights += now.weight;
+    }
+  }
+  if (!changed || !(weights > 0)) return Eigen::Vector3d::Zero();
+  return sum / weights;
+}
+
+}  // namespace
+
+void Handover::take(std::vector<ViewPulls> now, double passed, Duration fading) {
+  const double kept = std::exp(-passed / seconds(fading));
+  const std::vector<Twice> sensors = matched(now, before_);
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    offsets_[j] = kept * (offsets_[j] + step_back(j, sensors));
+  }
+  before_ = std::move(now);
+}
+
+}  // namespace chorus::fusion

@@ -1,0 +1,16 @@
+// A fused body as it is expected to be a moment later.
+//
+// Each joint moves on as its filter expects (later() in motion_filter.h), and the bones keep the
+// lengths that they have.
+#pragma once
+
+#include "fusion-server/flow.h"
+
+namespace chorus::fusion {
+
+/// The body `ahead` later; the body itself if `ahead` is not positive.  Without FusedBody::motion,
+/// nothing is known of velocities: the pose stays as it is and its covariance grows as if they were
+/// kFirstSpeed.
+[[nodiscard]] FusedBody predicted(const FusedBody& body, Duration ahead);
+
+}  // namespace chorus::fusion

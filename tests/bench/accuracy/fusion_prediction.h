@@ -1,0 +1,31 @@
+// What fusion states about the time after its last instant, and what happens to a body when a
+// sensor falls silent.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/bench/methods/contest.h"
+#include "tests/bench/report/report.h"
+
+namespace chorus::bench {
+
+struct PredictionCase {
+  std::string name;
+  Contest contest;
+  /// One sensor falls silent in the middle of the draw; otherwise bodies are predicted.
+  bool silence = false;
+  std::size_t draws = 20;
+};
+
+/// "prediction-PROFILE", "silence-6-PROFILE", "silence-3-PROFILE".
+[[nodiscard]] std::vector<PredictionCase> prediction_cases();
+
+/// Predictions: mean joint error 50 and 100 ms after each instant, of the filter's prediction
+/// ("ours"), of the pose as it was ("hold") and of velocities from instant to instant ("steps");
+/// the error after 0.5 and 1 s in which nobody sees the person; nees of ours. Silence: the largest
+/// change of a joint from one instant to the next, within a second, beyond the true one (step_mm;
+/// "living": had the sensor gone on), and beyond the living body's (caused_mm).
+void measure_prediction(Report& report, const PredictionCase& each);
+
+}  // namespace chorus::bench

@@ -1,0 +1,74 @@
+// One body over time, while views come and go and frames are many or few.
+#include "fusion-server/fusion/body_filter.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/fusion/body_room.h"
+
+namespace chorus::fusion {
+namespace {
+
+using body_room::kFilterSteps;
+using body_room::kSensors;
+using body_room::kStart;
+using body_room::Room;
+using body_room::standing;
+using body_room::view_of;
+using enum JointId;
+
+/// A still person's shoulders waver by a degree from frame to frame; sensor 2 is wrong about the
+/// wrist and falls silent.
+TEST(BodyFilterViews, NoiseTurnsNobodyHoweverManyFramesThereAre) {
+  const auto left_after = [](int rate) {
+    Room room;
+    room.config.body.bone = 0.0;
+    room.config.body.resting = 0.0;
+    room.config.body.bias_memory = std::chrono::seconds(10);
+    room.config.body.handover = Duration{0};
+    const auto frame = [&](int i) {
+      auto body = standing();
+      for (const JointId id : {ShoulderLeft, ShoulderRight}) {
+        body[id].position = about_y(deg(i % 2 == 0 ? 0.5 : -0.5)) * body[id].position;
+      }
+      auto wrong = body;
+      wrong[WristLeft].position.y() += 0.04;
+      std::vector<SensorView> views{view_of(1, body), view_of(3, body)};
+      if (i < 2 * rate) views.push_back(view_of(2, wrong));
+      return room.memory.fuse({{PersonId{1}, std::move(views)}},
+                              {kStart + from_seconds(double(i) / rate), kSensors}, room.config)[0];
+    };
+    for (int i = 0; i < 2 * rate; ++i) (void)frame(i);
+    return frame(2 * rate).skeleton[WristLeft].position.y() - standing()[WristLeft].position.y();
+  };
+  const double usual = left_after(30);
+  EXPECT_GT(usual, 0.005);
+  EXPECT_NEAR(left_after(15), usual, 0.1 * usual);
+  EXPECT_NEAR(left_after(60), usual, 0.1 * usual);
+}
+
+TEST(BodyFilterViews, ASensorThatFallsSilentMovesNobodyAtOnce) {
+  const auto step = [](Duration handover) {
+    Room room;
+    room.config.body.handover = handover;
+    const auto exact = standing();
+    auto wrong = exact;
+    for (Joint& joint : wrong.joints) joint.position.y() += 0.05;
+    FusedBody before;
+    for (int i = 0; i < kFilterSteps; ++i)
+      before = room.at(i, {view_of(1, exact), view_of(2, wrong)});
+    const FusedBody after = room.at(kFilterSteps, {view_of(1, exact)});
+    return (after.skeleton[WristLeft].position - before.skeleton[WristLeft].position).norm();
+  };
+  EXPECT_LT(step(FusionConfig{}.body.handover), 0.5 * step(Duration{0}));
+}
+
+TEST(BodyFilterViews, SomebodyUnseenIsSaidToBeAnywhereSoon) {
+  Room room;
+  const double seen = room.settled(standing()).variance[index_of(SpineMid)];
+  FusedBody body;
+  for (int i = 1; i <= 15; ++i) body = room.at(kFilterSteps + i, {});
+  EXPECT_GT(body.variance[index_of(SpineMid)], 10.0 * seen);
+}
+
+}  // namespace
+}  // namespace chorus::fusion
