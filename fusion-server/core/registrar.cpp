@@ -8,6 +8,7 @@
 #include "fusion-server/core/accuracy.h"
 #include "fusion-server/core/awaited.h"
 #include "fusion-server/core/closure.h"
+#include "fusion-server/core/common_clock.h"
 
 namespace chorus::core {
 namespace {
@@ -249,6 +250,7 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
   if (!wanted || solution.given_up) return Outcome::Nothing;
   session_.solved_in(solution.cost);
   note_closure(solution.registration);
+  keep_near_ours(solution.registration);
   // Places of sensors that are no longer configured must not constrain the new registration.
   keep_configured(registration_, config_.sensors);
   if (before_) keep_configured(*before_, config_.sensors);
