@@ -112,6 +112,7 @@ TEST(SensorResources, TellsOfTheClockByWhomAndWhatBecameOfUntimelyFrames) {
   const auto text = body(ask(router, "/sensors/s1"), "application/json");
   for (const char* part :
        {"\"clockOffsetMilliseconds\": 200.15", "\"clockFromWalkMilliseconds\": 200",
+        "\"clockUncertaintyWithoutWalkMilliseconds\": 0.09", "\"clockUncertaintyMilliseconds\": 8",
         "\"hostSynchronised\": false", "\"framesLate\": 1", "\"framesDoubled\": 2",
         "\"framesEarly\": 3", "\"framesBackwards\": 4", "\"framesStale\": 5",
         "\"clockRestarts\": 6"})
