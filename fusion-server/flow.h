@@ -34,7 +34,7 @@ enum class Basis {
 struct AlignedSensor {
   SensorId sensor;
   Basis basis = Basis::Lost;
-  /// The `captured` of each is the common instant.  Empty unless the basis is Exact or
+  /// All of them have the common instant as their `captured`.  Empty unless the basis is Exact or
   /// Interpolated.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
@@ -45,7 +45,8 @@ struct Extrinsics {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
   double error = 0.0;           ///< Sum of the edge errors along the chain [m].
-  /// The best chain that ends with another edge, and its error; they show why `chain` was chosen.
+  /// The best chain whose last edge is another one, and its error; they show why `chain` was
+  /// chosen.
   std::vector<SensorId> next_chain = {};
   double next_error = 0.0;
   /// Covariance of (rotation vector, sensor position) in world axes, relative to the master [rad^2,
@@ -63,14 +64,16 @@ struct PairwiseRegistration {
   double icp_rms = 0.0;   ///< Residual after ICP refinement [m].
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
-  double spread = 0.0;  ///< RMS distance of the walk from its centroid, horizontally [m].
-  /// How far this pair alone would place a person in front of its source from where all pairs
-  /// together do [m]; none: not known.
+  double spread = 0.0;  ///< RMS distance of the walk from its centroid, along its two longest
+                        ///< principal axes [m].
+  /// Distance between where this pair alone and where all pairs together place a person in front of
+  /// the source [m]; none: not known.
   std::optional<double> apart = {};
   /// The worst closure error of the loops that the edge forms with two other edges [m]; none: it is
   /// in no such loop.
   std::optional<double> loop = {};
-  double inflation = 1.0;  ///< Because pairs are correlated: number of pairs per independent pair.
+  double inflation = 1.0;  ///< Number of pairs per independent pair; above 1 because pairs are
+                           ///< correlated.
   /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad
   /// m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -88,7 +91,7 @@ struct SensorVerdict {
 struct ClockOffset {
   Duration added{0};  ///< Common clock minus the sensor's: added to its capture times.
   Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
-  /// The SensorFrame::clock_sigma of the capture times that it was found from.
+  /// The SensorFrame::clock_sigma of the capture times from which the offset was found.
   Duration stated = from_seconds(kUnknownClock);
   /// The shortest time from capture, by the sensor's own stamp, to receipt during the walk; none:
   /// not known.
@@ -100,8 +103,9 @@ struct ClockOffset {
   return clock_sigma < 0.5 * kUnknownClock;
 }
 
-/// Whether the offset holds for capture times of this clock_sigma: it does not if the host has
-/// begun or ceased to answer with its time since, or if its own estimate has become the better one.
+/// Whether the offset holds for capture times of this clock_sigma.  It does not if the host has
+/// since begun or ceased to answer with its time, or if the host's own estimate is now the better
+/// one.
 [[nodiscard]] inline bool holds_for(const ClockOffset& clock, double clock_sigma) {
   return exchanges_time(clock_sigma) == exchanges_time(seconds(clock.stated)) &&
          clock_sigma > seconds(clock.sigma);

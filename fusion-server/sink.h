@@ -11,8 +11,8 @@ namespace chorus {
 
 /// Counters of one output for /metrics; all except `clients` only grow.
 struct SinkCounters {
-  std::uint64_t frames = 0;   ///< Handed over to the protocol.
-  std::uint64_t dropped = 0;  ///< Oldest frames, dropped because the output was too slow.
+  std::uint64_t frames = 0;   ///< Frames handed over to the protocol.
+  std::uint64_t dropped = 0;  ///< Frames dropped, oldest first, because the output was too slow.
   /// Sends that the operating system refused, and frames whose sending threw.
   std::uint64_t failed = 0;
   std::uint64_t refused = 0;  ///< Clients or messages turned away: malformed, or over a limit.

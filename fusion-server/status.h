@@ -14,19 +14,22 @@
 
 namespace chorus {
 
-/// What became of a sensor's frames whose time was not as it should be, since the start.
+/// Counts, since the start, of a sensor's frames that came late, twice or with a wrong time.
 struct FrameFates {
-  std::uint64_t late = 0;       ///< Came after a newer one; took its place all the same.
-  std::uint64_t doubled = 0;    ///< Had the capture time of one that was there; left out.
-  std::uint64_t early = 0;      ///< Came from the future; left out.
-  std::uint64_t backwards = 0;  ///< Numbered after the newest, captured before it; left out.
-  std::uint64_t stale = 0;      ///< Came too late to be of use; left out.
-  std::uint64_t restarts = 0;  ///< How often its clock was set back, as three frames in a row said.
+  std::uint64_t late = 0;       ///< Frames that came after a newer one; they were inserted before
+                                ///< it.
+  std::uint64_t doubled = 0;    ///< Frames with the capture time of an earlier frame; left out.
+  std::uint64_t early = 0;      ///< Frames with a time in the future; left out.
+  std::uint64_t backwards = 0;  ///< Frames numbered after the newest one but captured before it;
+                                ///< left out.
+  std::uint64_t stale = 0;      ///< Frames that came too late to be of use; left out.
+  std::uint64_t restarts = 0;   ///< How often the sensor's clock was set back, as three frames in a
+                                ///< row showed.
 
   bool operator==(const FrameFates&) const = default;
 };
 
-/// How many frames were left out because of their time, not counting doubles.
+/// The number of frames left out because of their time, not counting duplicates.
 [[nodiscard]] constexpr std::uint64_t refused(const FrameFates& fates) {
   return fates.early + fates.backwards + fates.stale;
 }
@@ -34,10 +37,11 @@ struct FrameFates {
 struct SensorStatus {
   SensorId id;
   std::string url;
-  std::string state;            ///< "live", "connecting", "lost", "refused"
-  std::string last_error;       ///< What is wrong at present; empty if nothing is.
-  bool streaming = false;       ///< True while its frames come by event stream instead of polling.
-  std::optional<Duration> age;  ///< Since its newest capture, by our clock; none: no frame yet.
+  std::string state;       ///< "live", "connecting", "lost", "refused"
+  std::string last_error;  ///< What is wrong at present; empty if nothing is.
+  bool streaming = false;  ///< True while its frames come by event stream instead of polling.
+  /// Time since the capture of its newest frame, by our clock; none: no frame yet.
+  std::optional<Duration> age;
   double rate_hz = 0.0;
   std::size_t bodies = 0;  ///< Number of bodies in its newest frame.
   double weight = 0.0;     ///< Largest Otto weight of its views; only "otto" methods use weights.
@@ -48,18 +52,22 @@ struct SensorStatus {
   /// Our clock minus the sensor's, as estimated from the answers of the sensor's host.
   std::optional<Duration> clock_offset;
   std::optional<Duration> clock_uncertainty;
-  bool clock_corrected = false;           ///< True if the offset is added to its capture times.
-  std::optional<Duration> walked_offset;  ///< Added beside that because a walk told so.
+  bool clock_corrected = false;  ///< True if the offset is added to its capture times.
+  /// Added to its capture times as well, because a walk showed that its clock is off.
+  std::optional<Duration> walked_offset;
   std::optional<Duration> walked_sigma;
   std::optional<NtpStatus> host;  ///< What the sensor's host says of its own clock.
-  std::uint64_t frames = 0;       ///< Delivered since start.
-  std::uint64_t missed = 0;       ///< Gaps in the sensor's frame numbers that were not filled.
-  std::uint64_t refused = 0;      ///< Frames that went back in time or had an implausible time.
-  FrameFates fates;               ///< Early, backwards and stale ones count as refused, too.
-  std::uint64_t failures = 0;     ///< Requests without a usable answer.
+  std::uint64_t frames = 0;       ///< Frames received from it since the start.
+  std::uint64_t missed = 0;       ///< Frames missing from the sensor's numbering: neither delivered
+                                  ///< nor filled in later.
+  std::uint64_t refused = 0;      ///< Frames left out because of their time, see refused() above.
+  /// What happened to frames with a wrong time; the early, backwards and stale ones are also in
+  /// `refused`.
+  FrameFates fates;
+  std::uint64_t failures = 0;  ///< Requests without a usable answer.
 
-  /// Distance between where this sensor and the others see the same people, less what is usual for
-  /// this sensor [m]; none until somebody has walked in view of it and of another one.
+  /// Distance between where this sensor and the others see the same people, minus the distance that
+  /// is usual for this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
   /// Says in a sentence for people that the sensor was moved; empty if it stands as registered.
   std::string alarm;
@@ -85,8 +93,9 @@ struct PairCoverage {
   SensorId first;
   SensorId second;
   std::size_t sightings = 0;  ///< Instants at which both saw the only person.
-  double spread = 0.0;        ///< rms radius of these about their centre [m].
-  /// 95 % radius to which one sensor would be placed relative to the other [m].
+  double spread = 0.0;        ///< RMS distance of the person's places at these instants from their
+                              ///< mean [m].
+  /// 95 % radius of the place of one sensor relative to the other, as it is to be expected [m].
   double expected = 0.0;
 
   bool operator==(const PairCoverage&) const = default;
@@ -101,11 +110,11 @@ struct CoveredCell {
   bool operator==(const CoveredCell&) const = default;
 };
 
-/// How well a session places one sensor so far.
+/// How accurately a session has placed one sensor so far.
 struct SensorAccuracy {
   SensorId sensor;
   /// 95 % radius of the sensor's place on the floor, relative to the master [m]; none: the last
-  /// provisional solve did not place the sensor.
+  /// solve did not place the sensor.
   std::optional<double> radius;
 
   bool operator==(const SensorAccuracy&) const = default;
@@ -150,13 +159,14 @@ struct SessionStatus {
   double target = 0.0;              ///< Length of the walk that is wanted [s].
   Verdict verdict = Verdict::None;  ///< The verdict of the last solve.
   bool adopted = false;  ///< True if its result is, or was, in use and was not withdrawn.
-  /// What the last solve lacked, and what became of its result.
+  /// What was wrong with the last solve, and what became of its result.
   std::vector<std::string> reasons;
-  double target_radius = 0.0;  ///< It ends by itself once all are placed this well [m]; 0: never.
-  bool reached = false;        ///< It has ended, or is ending, because they are.
-  std::vector<SensorAccuracy> accuracy;  ///< By its last solve, of all that took part.
-  std::vector<PairCoverage> pairs;       ///< What the walk has covered; by pairs of sensors ...
-  std::vector<CoveredCell> cells;        ///< ... and from above, once sensors have places.
+  /// The session ends by itself once all sensors are placed with this radius or less [m]; 0: never.
+  double target_radius = 0.0;
+  bool reached = false;                  ///< True once the session ends because of `target_radius`.
+  std::vector<SensorAccuracy> accuracy;  ///< One entry for each sensor of the last solve.
+  std::vector<PairCoverage> pairs;       ///< What each pair of sensors has seen together.
+  std::vector<CoveredCell> cells;        ///< Where people walked; empty until sensors have places.
 
   bool operator==(const SessionStatus&) const = default;
 };
@@ -182,11 +192,11 @@ struct RegistrationProgress {
   std::vector<SessionStatus> sessions;  ///< The last few, newest first.
   std::uint64_t next_session = 1;       ///< Id of the next one.
   std::vector<std::string> awaits;      ///< What is missing at present, as sentences for people.
-  std::optional<Registration> earlier;  ///< In use before this one; an undo goes back to it.
+  std::optional<Registration> earlier;  ///< The one in use before; an undo returns to it.
   std::optional<Proposal> proposal;     ///< Waits to be accepted or declined.
   std::vector<std::string> alarms;      ///< Sensors that were moved, as sentences for people.
   StorageStatus storage;
-  std::uint64_t commands = 0;  ///< Number of clients' commands that were carried out.
+  std::uint64_t commands = 0;  ///< How many commands of clients were carried out.
 };
 
 struct Counters {
@@ -194,7 +204,7 @@ struct Counters {
   /// Instants left out because the host was suspended or overloaded.
   std::uint64_t ticks_skipped = 0;
   std::uint64_t displaced = 0;       ///< How often a sensor lost its place because it was moved.
-  std::uint64_t frames_dropped = 0;  ///< Lost between poller and pipeline.
+  std::uint64_t frames_dropped = 0;  ///< Frames lost between poller and pipeline.
   std::uint64_t steps_failed = 0;    ///< Runs of the pipeline that threw an exception.
   std::uint64_t jobs_failed = 0;     ///< Jobs of the registration worker that threw an exception.
   double step_seconds = 0.0;         ///< Time spent fusing and handing over, by a steady clock.

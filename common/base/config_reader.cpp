@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
 /// Limits the length of arrays, and the array index in --set.
 constexpr std::size_t kMaxArrayLength = 4096;
-constexpr std::size_t kShownCharacters = 80;  ///< How much of a wrong value messages quote.
+constexpr std::size_t kShownCharacters = 80;  ///< Limit for quoting a wrong value [bytes].
 constexpr double kMillisecondsPerSecond = 1e3;
 
 /// What is wrong with a value; names the key that was given twice, if any.
@@ -32,7 +32,7 @@ std::string reason_of(const Error& error) {
 std::string shown(std::string_view text) {
   if (text.size() <= kShownCharacters) return std::string(text);
   std::size_t end = kShownCharacters;
-  // Cuts only between characters.
+  // Cuts only between characters of UTF-8.
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return std::string(text.substr(0, end)) + "...";
 }
@@ -51,13 +51,14 @@ std::string range_text(double least, double most) {
   return "from " + log::number_text(least) + " to " + log::number_text(most);
 }
 
-/// A non-negative array index, or none.
+/// The array index that `part` spells; none if it is no such number, or too large.
 std::optional<std::size_t> index_in(std::string_view part) {
   const auto index = parse_number<std::size_t>(part);
   return index && *index < kMaxArrayLength ? index : std::nullopt;
 }
 
-/// The place that a --set path names, created if missing; null when another value blocks the path.
+/// The place that a --set path names, created if missing; null if the path is malformed or too
+/// deep, or if it leads through a value that cannot contain the rest of it.
 json* place_at(json& root, std::string_view path) {
   json* at = &root;
   int depth = 0;
@@ -153,7 +154,8 @@ Result<void> ConfigReader::set(std::string_view assignment) {
   const std::string_view text = assignment.substr(equals + 1);
   auto parsed = parse_json(text, kLimits);
   if (!parsed) {
-    // 127.0.0.1 or a path may stand without quotes, but a broken list or object is a mistake.
+    // A text such as 127.0.0.1 needs no quotes, but a broken list, object or quoted text is a
+    // mistake.
     if (!text.empty() && std::string_view("[{\"").find(text.front()) != std::string_view::npos)
       return fail(ErrorCode::Malformed, context, reason_of(parsed.error()));
   }

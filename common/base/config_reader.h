@@ -7,8 +7,8 @@
 //   if (auto ok = root->finish(); !ok) return pass(ok);   // unknown keys, wrong types, ranges
 //
 // An absent key leaves the default unchanged.  finish() reports all problems at once: unknown keys
-// with their full path and the nearest known key, wrong types, values out of range.  The names of
-// keys end in their unit.
+// with their full path and the nearest known key, wrong types, values out of range.  The key of a
+// quantity ends in its unit ("best_distance_m").
 #pragma once
 
 #include <cstdint>
@@ -61,8 +61,8 @@ class ConfigReader {
   /// Adds a problem that the caller found with the value of this key ("must be below ...").
   void complain(std::string_view key, std::string message);
 
-  /// All problems in one Error (Malformed or InvalidArgument), or success.  Call it on the root,
-  /// once, after everything has been read.
+  /// All problems in one InvalidArgument error, or success.  Call it on the root, once, after
+  /// everything has been read.
   [[nodiscard]] Result<void> finish() const;
 
   struct Node;  ///< Private: the parsed tree and the problem list.

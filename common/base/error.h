@@ -1,4 +1,4 @@
-// Errors: why an operation failed that is expected to fail sometimes.
+// Errors: why an operation failed.  They are for operations that are expected to fail sometimes.
 //
 // An Error holds what went wrong (code), where (context: a URI, a config key path, a joint, a file
 // and line) and what to change (message: a full, human-readable sentence).  Every code maps to one
@@ -16,7 +16,7 @@ enum class ErrorCode {
   TooLarge,         ///< A stated limit was exceeded.
   NotFound,
   Gone,           ///< It existed, but has been discarded.
-  NotAcceptable,  ///< No representation that the client accepts.
+  NotAcceptable,  ///< We have no representation that the client accepts.
   Unsupported,    ///< Well-formed, but we lack this method, version or feature.
   Unauthorized,
   Forbidden,

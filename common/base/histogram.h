@@ -1,4 +1,4 @@
-// Counts how often a measured value fell below each of several bounds.
+// A histogram: counts how many measured values fell into each of several ranges.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,8 @@ namespace chorus {
 /// Counts values by bucket.  Any thread may call observe().
 class Histogram {
  public:
-  /// `bounds` are upper bounds, ascending and finite; a last bucket without a bound is added.
+  /// `bounds` are the buckets' upper bounds (inclusive), ascending and finite; a last bucket
+  /// without a bound is added.
   explicit Histogram(std::vector<double> bounds);
   /// Counts `value` in its bucket; ignores NaN.
   void observe(double value);

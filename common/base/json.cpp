@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kShownKey = 80;  // How much of a wrong key messages quote [bytes].
+constexpr std::size_t kShownKey = 80;  // Errors quote at most this much of a repeated key [bytes].
 
 /// Thrown by the parser's callback; never leaves this file.
 struct TooDeep : std::runtime_error {

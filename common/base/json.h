@@ -17,8 +17,8 @@ struct JsonLimits {
   bool comments = false;  ///< Whether // and /* */ are allowed, as in configurations.
 };
 
-/// The parsed document.  TooLarge beyond the limits.  Malformed when it is not JSON (the message
-/// says where), or when an object has a key twice (the context is that key).
+/// The parsed document.  TooLarge if the text exceeds the limits.  Malformed when it is not JSON
+/// (the message says where), or when an object has a key twice (the context is that key).
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text,
                                                 const JsonLimits& limits = {});
 

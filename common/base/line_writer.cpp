@@ -20,10 +20,10 @@
 namespace chorus {
 namespace {
 
-constexpr int kLookMs = 1000;  // [ms]; a stuck writer checks this often whether it is still needed.
+constexpr int kLookMs = 1000;  // Interval at which a blocked writer checks `ended` [ms].
 
-/// While this exists, new threads begin with all signals blocked: signals are meant for the
-/// program's own threads.
+/// While this exists, new threads start with all signals blocked, so that only the program's other
+/// threads handle signals.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -58,16 +58,16 @@ struct LineWriter::State {
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<Line> waiting;           ///< Guarded by mutex.
-  std::uint64_t missing_last = 0;      ///< Dropped after the last of `waiting`; guarded by mutex.
-  std::uint64_t untold = 0;            ///< Missing, not yet reported; writer's thread only.
-  std::atomic<std::size_t> bytes = 0;  ///< Waiting or being written.
+  std::uint64_t missing_last = 0;      ///< Lines dropped after `waiting`; guarded by mutex.
+  std::uint64_t untold = 0;            ///< Dropped lines not yet reported; writer's thread only.
+  std::atomic<std::size_t> bytes = 0;  ///< Bytes waiting or being written.
   std::atomic<std::uint64_t> dropped = 0;
-  /// Number of pieces that the reader has taken or that are lost for ever.
+  /// Grows whenever the reader takes some bytes, and whenever a line is finished or lost.
   std::atomic<std::uint64_t> progress = 0;
   std::atomic<bool> ended = false;
 };
 
-/// False when the reader is gone, or the writer is no longer needed.
+/// Writes everything; false if the reader is gone, or the writer is no longer needed.
 bool LineWriter::State::write_out(std::string_view rest) {
   while (!rest.empty() && !ended) {
     pollfd ready{options.descriptor, POLLOUT, 0};

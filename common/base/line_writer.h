@@ -34,7 +34,8 @@ class LineWriter {
   /// Waits until all queued lines are written; false if the reader takes nothing for `patience`.
   bool flush(std::chrono::milliseconds patience);
 
-  /// flush() for a signal handler: takes no lock and allocates nothing.
+  /// Like flush(), for a signal handler: takes no lock, allocates nothing, and waits at most
+  /// `patience` in all.
   void flush_in_signal_handler(std::chrono::milliseconds patience) const noexcept;
 
   [[nodiscard]] std::uint64_t dropped() const noexcept;

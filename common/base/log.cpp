@@ -118,8 +118,8 @@ std::string line_of(const LevelName& level, std::string_view name, Fields fields
                                 : text_line(level, name, fields);
 }
 
-/// Says how many lines were dropped.  It bypasses the queue, because it belongs where they are
-/// missing.
+/// The line that says how many lines were dropped.  It does not go through the queue: the writer
+/// puts it where they are missing.
 std::string gap_line(std::uint64_t lines) {
   const Format format = sink().format.load();
   const LevelName& level = row_of(Level::Warn);

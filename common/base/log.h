@@ -44,8 +44,8 @@ void configure(Level least, Format format);
 [[nodiscard]] Result<Level> parse_level(std::string_view text);
 [[nodiscard]] Result<Format> parse_format(std::string_view text);
 
-/// True if lines of this level are written.  Worth checking where the fields of a frequent line are
-/// costly to build.
+/// True if lines of this level are written.  Check this first where the fields of a frequent line
+/// are costly to build.
 [[nodiscard]] bool is_wanted(Level level);
 
 void event(Level level, std::string_view name, Fields fields = {});

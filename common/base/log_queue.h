@@ -2,8 +2,9 @@
 //
 // From log::configure() on, a separate thread writes queued lines to standard error.  Code that
 // logs never waits for the reader: when the pipe is full and 1 MiB is queued, lines are dropped and
-// counted, and the count is logged as soon as there is room.  At exit, and when a signal such as
-// SIGSEGV or SIGABRT ends the process, the queued lines are written as long as somebody reads them.
+// counted, and the count is logged as soon as there is room.  At exit, the queued lines are written
+// as long as somebody reads them; when a signal such as SIGSEGV or SIGABRT ends the process, for
+// half a second at most.
 #pragma once
 
 #include <chrono>

@@ -12,7 +12,7 @@
 namespace chorus {
 
 /// The number at the beginning of `text`, which is removed from `text`; none, and `text` unchanged,
-/// if it does not begin with a number.
+/// if it does not begin with a number that `Number` can hold.
 template <class Number>
 [[nodiscard]] std::optional<Number> take_number(std::string_view& text) {
   Number value{};

@@ -1,4 +1,5 @@
-// Result<T>: a value, or the Error that says why there is none.  std::expected until C++23.
+// Result<T>: a value, or the Error that says why there is none.  It stands in for std::expected,
+// which needs C++23.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Where the files are that come with the programs: the viewer, the runner, the capture page.
+// Finds the folders of files that come with the programs: the viewer, the runner, the capture page.
 #pragma once
 
 #include <string>

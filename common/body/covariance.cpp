@@ -9,7 +9,7 @@
 namespace chorus {
 namespace {
 
-constexpr double kWireRounding = 1e-7;  // six terms of 8 decimals each, rounded up generously
+constexpr double kWireRounding = 1e-7;  // bounds the rounding errors of six terms with 8 decimals
 
 /// Sylvester's criterion: all leading minors are positive.
 bool is_positive_definite(const Eigen::Matrix3d& c) {
@@ -45,7 +45,7 @@ bool Covariance::plausible() const {
       std::all_of(upper_.begin(), upper_.end(), [](float term) { return std::isfinite(term); });
   if (!finite) return false;
   const Eigen::Matrix3d full = matrix();
-  // Most matrices pass here without eigenvalues, which take longer than writing the joint.
+  // Most matrices pass here; computing eigenvalues would take longer than writing the joint does.
   if (is_positive_definite(full + kWireRounding * Eigen::Matrix3d::Identity())) return true;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(full, Eigen::EigenvaluesOnly);
   const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();

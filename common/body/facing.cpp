@@ -8,7 +8,8 @@
 namespace chorus {
 namespace {
 
-/// Unit vector in the x-z plane in which the body faces: its right-to-left line crossed with +y.
+/// The direction in which the body faces, as a unit vector in the x-z plane: the line from `right`
+/// to `left` crossed with +y.  None if a joint is not seen, or the line is vertical.
 std::optional<Eigen::Vector3d> forward_of(const Joint& left, const Joint& right) {
   if (!left.seen() || !right.seen()) return std::nullopt;
   Eigen::Vector3d to_left = left.position - right.position;

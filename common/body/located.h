@@ -11,7 +11,7 @@ namespace chorus {
 /// Positions of a person's joints [m], where known; in world space.
 using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
 
-/// The joints of the body that have a position.
+/// The positions of the joints that are seen as points.
 [[nodiscard]] Located points_of(const Skeleton<WorldSpace>& body);
 
 /// Mean of the core joints, or of all joints if no core joint is located; nothing if none is.

@@ -16,9 +16,10 @@
 namespace chorus {
 
 struct SensorSpace;  ///< Origin at the depth camera's focal point, +z into the scene.
-struct WorldSpace;   ///< y = 0 is the floor that the sensors see; yaw of the master sensor.
+struct WorldSpace;   ///< +y up, y = 0 on the common floor; yaw and origin of the master sensor.
 
-/// Joints in Kinect v2 order (Otto et al., Fig. 2); the value is its VRPN and DTrack number.
+/// Joints in Kinect v2 order (Otto et al., Fig. 2); a joint's value is its number in VRPN and
+/// DTrack.
 // clang-format off
 enum class JointId : std::uint8_t {
   SpineBase, SpineMid, Neck, Head,

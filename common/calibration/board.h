@@ -1,4 +1,5 @@
-// A calibration board: what it looks like, and where its inner corners are.  Pure.
+// A calibration board: what it looks like, and where its inner corners are.  All functions are
+// pure.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,8 @@
 namespace chorus::calibration {
 
 enum class BoardKind {
-  Charuco,    ///< Markers in the white squares: found even if only a part of it is visible.
-  Chessboard  ///< Without markers: must be entirely visible.
+  Charuco,    ///< Has markers in the white squares; found even if only a part is visible.
+  Chessboard  ///< Has no markers; must be entirely visible.
 };
 
 struct Board {
@@ -23,20 +24,22 @@ struct Board {
   int marker_bits = 4;      ///< 4 to 7, as in OpenCV's dictionaries DICT_4X4 to DICT_7X7.
 };
 
-/// InvalidArgument names the option to change.
+/// Refuses a board that cannot be made: an InvalidArgument error whose context is the option to
+/// change.
 [[nodiscard]] Result<void> check(const Board& board);
 
 /// Number of inner corners.
 [[nodiscard]] std::size_t corner_count(const Board& board);
 
-/// Size of the smallest predefined dictionary of OpenCV that suffices for the board.  (Each is the
-/// beginning of the next larger one.)
+/// Size of the smallest predefined dictionary of OpenCV that suffices for the board.  (Each begins
+/// with the markers of the next smaller one.)
 [[nodiscard]] int markers_in_dictionary(const Board& board);
 
-/// "charuco, 8 x 6 squares of 30 mm, markers of 22 mm (DICT_4X4_50)"
+/// "charuco, 8 x 6 squares of 30 mm, markers of 22.5 mm (DICT_4X4_50)"
 [[nodiscard]] std::string description(const Board& board);
 
-/// A black rectangle: x to the right and y up from the board's lower left corner [mm].
+/// A black rectangle [mm]: x and y of its lower left corner, to the right and up from that of the
+/// board.
 struct BlackPart {
   double x = 0.0;
   double y = 0.0;
@@ -44,7 +47,7 @@ struct BlackPart {
   double height = 0.0;
 };
 
-/// Everything that is black; parts that touch are joined.
+/// Everything that is black; neighbouring cells in a row of a marker make one part.
 [[nodiscard]] std::vector<BlackPart> black_parts(const Board& board);
 
 }  // namespace chorus::calibration

@@ -20,7 +20,8 @@ cv::Mat grey_of(const cv::Mat& picture) {
   return grey;
 }
 
-/// Whether the corners span an area: the smaller of their two extents is at least half a square.
+/// Whether the corners span an area: in the direction in which they vary least, their standard
+/// deviation is more than 0.3 squares.
 bool spread_out(const std::vector<Corner>& corners, double square) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Corner& corner : corners) mean += corner.on_board;
@@ -100,7 +101,7 @@ std::vector<Corner> BoardFinder::find(const cv::Mat& picture) const {
     corners = pattern_->board.kind == BoardKind::Charuco ? pattern_->find_charuco(grey)
                                                          : pattern_->find_chessboard(grey);
   } catch (const cv::Exception&) {
-    return {};  // a picture that is too small for its filters
+    return {};  // the picture is too small for OpenCV's filters
   }
   if (corners.size() < kLeastCorners) return {};
   return spread_out(corners, mm(pattern_->board.square_mm)) ? corners : std::vector<Corner>();

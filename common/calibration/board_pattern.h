@@ -1,4 +1,4 @@
-// The board in the types of OpenCV's markers.  Private to this folder's .cpp files.
+// The board as OpenCV's marker functions need it.  Private to this folder's .cpp files.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline constexpr std::array kDictionarySizes{50, 100, 250, 1000};
 
 [[nodiscard]] std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board);
 
-/// In metres.
+/// The board with its sizes in metres.
 [[nodiscard]] std::shared_ptr<cv::aruco::CharucoBoard> charuco_of(const Board& board);
 
 }  // namespace chorus::calibration

@@ -13,7 +13,7 @@
 namespace chorus::calibration {
 namespace {
 
-constexpr double kMargin = 8.0;    // [mm], which printers leave white
+constexpr double kMargin = 8.0;    // [mm]; printers leave it white
 constexpr double kRulerStrip = 9;  // [mm], below the board
 constexpr double kRuler = 100.0;   // [mm]
 constexpr double kInch = 25.4;     // [mm]
@@ -29,7 +29,8 @@ constexpr std::array kPages{Page{"A4", 210, 297}, Page{"A3", 297, 420}, Page{"A2
                             Page{"A1", 594, 841}, Page{"A0", 841, 1189}};
 constexpr std::array kLetter{Page{"Letter", 215.9, 279.4}};
 
-/// The smallest page that fits, in either orientation; none if none is large enough.
+/// The smallest page on which a drawing of this size fits, upright or turned; none if none is large
+/// enough.
 std::optional<Page> page_for(double width, double height, bool letter) {
   const auto holds = [&](const Page& page) {
     return width + 2 * kMargin <= page.width && height + 2 * kMargin + kRulerStrip <= page.height;
@@ -101,7 +102,7 @@ std::string big_endian(std::uint32_t value) {
   return out;
 }
 
-/// The chunk with the number of pixels per metre, so that programs print the true size.
+/// The PNG chunk (pHYs) that states the pixels per metre, so that programs print the true size.
 std::string resolution_chunk() {
   const auto per_metre = static_cast<std::uint32_t>(std::lround(kDots * 1000.0 / kInch));
   const std::string body = "pHYs" + big_endian(per_metre) + big_endian(per_metre) + '\1';
@@ -152,7 +153,7 @@ Result<std::string> board_png(const Board& board) {
   if (!cv::imencode(".png", picture, bytes))
     return fail(ErrorCode::Internal, "board", "the picture could not be encoded");
   std::string out(bytes.begin(), bytes.end());
-  constexpr std::size_t kBehindHeader = 33;  // signature, and the chunk IHDR
+  constexpr std::size_t kBehindHeader = 33;  // after the signature and the chunk IHDR
   return out.insert(kBehindHeader, resolution_chunk());
 }
 

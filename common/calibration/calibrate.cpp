@@ -119,7 +119,7 @@ std::vector<const View*> used_of(const Calibration& calibration) {
   return used;
 }
 
-/// Writes each used view's error and tilt to `out`.
+/// Copies the solution to `out`: the lens, and the error and tilt of each used view.
 void tell(const Solution& solution, Calibration& out) {
   std::size_t i = 0;
   for (SolvedView& each : out.views) {
@@ -132,7 +132,7 @@ void tell(const Solution& solution, Calibration& out) {
   out.error_px = solution.error;
 }
 
-/// Leaves out the odd views and returns their number.
+/// Leaves out the odd views, at most `most` of them, and returns how many.
 std::size_t leave_out(const Solution& solution, Calibration& out, std::size_t most) {
   const auto odd = odd_views(solution.view_errors, most);
   std::vector<SolvedView*> used;

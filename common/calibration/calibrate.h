@@ -23,7 +23,7 @@ struct Calibration {
   Intrinsics intrinsics;
   /// Standard deviations, in the intrinsics' units: fx, fy, cx, cy, k1, k2, p1, p2, k3.
   std::array<double, 9> sigma{};
-  double error_px = 0.0;  ///< Root mean square over all used views.
+  double error_px = 0.0;  ///< Root mean square reprojection error over all used views.
   std::vector<SolvedView> views;
 
   /// Standard deviation of the focal length, relative to it.

@@ -8,7 +8,7 @@ namespace chorus::calibration {
 namespace {
 
 constexpr std::string_view kExif("Exif\0\0", 6);
-constexpr std::uint32_t kExifFolder = 0x8769;   // tag: where the folder of Exif's own tags begins
+constexpr std::uint32_t kExifFolder = 0x8769;   // tag: offset of the directory of Exif
 constexpr std::uint32_t kFocalOn35mm = 0xA405;  // tag
 constexpr double kFilmWidth = 36.0;             // [mm]
 constexpr double kFilmHeight = 24.0;
@@ -28,7 +28,8 @@ class Tiff {
     return value;
   }
 
-  /// The value of a tag in the folder that begins there; none if it is absent.
+  /// The value of the tag `wanted` in the directory (IFD) that begins at the offset `folder`; none
+  /// if it is absent.
   [[nodiscard]] std::optional<std::uint32_t> tag(std::uint32_t folder, std::uint32_t wanted) const {
     constexpr std::size_t kEntry = 12;
     constexpr std::uint32_t kShort = 3;

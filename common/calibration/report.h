@@ -11,8 +11,8 @@ namespace chorus::calibration {
 /// device.camera.intrinsics.
 [[nodiscard]] std::string intrinsics_json(const Intrinsics& camera, double focal_sigma);
 
-/// A PNG as large as the pictures: every corner, green in used views and red in views that were
-/// left out, and lines between the thirds.
+/// A PNG as large as the pictures.  It shows every corner, green in used views and red in views
+/// that were left out, and lines between the thirds.
 [[nodiscard]] Result<std::string> coverage_png(const std::vector<SolvedView>& views,
                                                PictureSize size);
 

@@ -1,4 +1,4 @@
-// Whether a calibration is good enough, and what to do if it is not.  Pure.
+// Whether a calibration is good enough, and what to do if it is not.  All functions are pure.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace chorus::calibration {
 struct Demands {
   std::size_t views = 12;
   std::size_t tilted_views = 3;
-  double tilt = 0.35;          ///< A view counts as tilted from here [rad]: 20 degrees.
-  double share = 0.04;         ///< Share of all corners that each third of the picture must have.
-  double focal_sigma = 0.01;   ///< Relative.
-  double error_share = 0.001;  ///< Mean error, relative to the picture's longer side.
+  double tilt = 0.35;          ///< Least angle of a tilted view [rad]: 20 degrees.
+  double share = 0.04;         ///< Least share of all corners in each outer third of the picture.
+  double focal_sigma = 0.01;   ///< Largest standard deviation of the focal length, relative to it.
+  double error_share = 0.001;  ///< Largest error_px, relative to the picture's longer side.
 };
 
 /// One sentence for each weakness, saying what to do ("no board in the left third ..."); empty if

@@ -22,7 +22,8 @@ struct Affine {
   Eigen::Vector2d board = Eigen::Vector2d::Zero();  ///< Centre [m].
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   Eigen::Matrix2d pixel_from_board = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();  ///< Of the corners on the board [m^2].
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();  ///< Scatter matrix of the corners on the
+                                                      ///< board [m^2].
 };
 
 Affine affine_of(const View& view) {
@@ -58,7 +59,7 @@ Eigen::Vector2d fall_of(const View& view, const Affine& map) {
 }
 
 Look look_of(const View& view, PictureSize size) {
-  constexpr double kAcross = 4.0;  // a board's width relative to the deviation of its corners
+  constexpr double kAcross = 4.0;  // a board's width in standard deviations of its corners
   const Affine map = affine_of(view);
   const auto count = static_cast<double>(view.corners.size());
   const double extent = kAcross * std::sqrt(map.scatter.trace() / count);

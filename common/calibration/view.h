@@ -1,4 +1,5 @@
-// The corners of a board in one picture, and the choice among many pictures.  Pure.
+// The corners of a board in one picture, and the choice among many pictures.  All functions are
+// pure.
 #pragma once
 
 #include <string>
@@ -14,7 +15,7 @@ struct Corner {
 };
 
 struct View {
-  std::string name;  ///< The picture, for people.
+  std::string name;  ///< Names the picture in messages.
   std::vector<Corner> corners;
 };
 
@@ -26,7 +27,8 @@ struct PictureSize {
 };
 
 /// At most `most` views, as different from each other as possible in position, size and tilt of the
-/// board; in the original order.  A board that does not move counts once.
+/// board; in the original order.  Of views that hardly differ, as of a board that is not moved, one
+/// is taken.
 [[nodiscard]] std::vector<View> varied_views(const std::vector<View>& views, PictureSize size,
                                              std::size_t most);
 

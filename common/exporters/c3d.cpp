@@ -102,7 +102,8 @@ class Parameters {
   }
 
  private:
-  /// An entry: length of the name, number, name, offset to the next entry, content; no description.
+  /// Appends an entry: length of the name, number, name, offset to the next entry, content, and an
+  /// empty description.
   void entry(int number, std::string_view name, std::string_view content) {
     entries_ += static_cast<char>(name.size());
     entries_ += static_cast<char>(number);
@@ -168,7 +169,7 @@ std::string parameters_of(const Take& take, std::size_t data_start) {
   parameters.group("ANALOG");
   parameters.add("USED", word(0));
   parameters.add("GEN_SCALE", real(1.0));
-  // No analog samples; py-c3d compares this rate with the header's.
+  // There are no analog samples, so their rate is 0; py-c3d compares it with the header.
   parameters.add("RATE", real(0.0));
   for (const std::string_view name : {"LABELS", "DESCRIPTIONS", "UNITS"})
     parameters.add(name, {-1, {0, 0}, {}});
@@ -193,7 +194,7 @@ std::string header_of(const Take& take, std::size_t data_start) {
   append_word(header, 0);  // analog samples per frame
   append_word(header, 1);  // first frame
   append_word(header, std::min(take.frames, kMaxFrames));
-  append_word(header, 0);  // interpolated gap
+  append_word(header, 0);  // longest gap that was interpolated
   append_float(header, kFloatsInMillimetres);
   append_word(header, data_start);
   append_word(header, 0);  // analog samples per channel

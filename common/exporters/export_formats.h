@@ -38,7 +38,8 @@ struct ExportedFile {
 
 struct Exported {
   std::vector<ExportedFile> files;
-  std::vector<std::string> remarks;  ///< Human-readable: how well bones of constant length fit.
+  std::vector<std::string> remarks;  ///< For people: how well bones of constant length fit, and who
+                                     ///< was left out.
 };
 
 /// Several files result only if the format holds a single person and the take has several.

@@ -8,7 +8,7 @@
 namespace chorus::exporters {
 namespace {
 
-constexpr double kThickness = 0.08;  // Width of an octahedron, as a fraction of the bone's length.
+constexpr double kThickness = 0.08;  // Half an octahedron's width, relative to the bone's length.
 constexpr double kWaist = 0.2;       // Position of the widest part, as a fraction of that length.
 constexpr std::array<std::array<double, 3>, 6> kColours{{{0.90, 0.45, 0.13},
                                                          {0.16, 0.50, 0.73},
@@ -35,7 +35,8 @@ void add_bone(Mesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b, st
         Eigen::Vector3d(waist - side), Eigen::Vector3d(waist - other), b})
     mesh.places.push_back(place.cast<float>());
   mesh.joints.insert(mesh.joints.end(), 6, static_cast<std::uint8_t>(joint));
-  // Counter-clockwise from outside: a below, b above, and the waist turns from `side` to `other`.
+  // Triangles, counter-clockwise seen from outside.  Corner 0 is a, 5 is b; 1 to 4 go around the
+  // waist from `side` by `other`.
   for (const int corner : {0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 1, 4, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 1})
     mesh.corners.push_back(static_cast<std::uint16_t>(first + corner));
 }

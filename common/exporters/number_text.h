@@ -1,18 +1,18 @@
-// Writes numbers as every reader understands them: with a decimal point, independent of the locale,
-// and without an exponent, "-0" or "nan".
+// Writes numbers in a form that every program can read: with a decimal point, whatever the locale,
+// and without an exponent or "nan".
 #pragma once
 
 #include <string>
 
 namespace chorus::exporters {
 
-/// Of a time [s]: microseconds.
+/// The digits after the point of a time in seconds: microseconds.
 inline constexpr int kTimeDigits = 6;
 
-/// Appends a number with `digits` after the point; 0 if it is not finite.
+/// Appends a number with `digits` after the point, never "-0"; 0 if it is not finite.
 void append_fixed(std::string& text, double value, int digits);
 
-/// Appends the shortest string that reads back as the same number.
+/// Appends the shortest string that reads back as the same number; 0 if it is not finite.
 void append_exact(std::string& text, double value);
 
 }  // namespace chorus::exporters

@@ -1,12 +1,13 @@
-// A skeleton of constant bones that follows a person; BVH and glTF can express only such skeletons.
+// A skeleton with bones of constant length that follows a person; BVH and glTF can express only
+// such skeletons.
 //
 // Fused joints are points, and the distances between them vary by centimetres.  Files of skeletal
 // animation hold one rest pose and a rotation per joint and frame.  We derive from the whole track:
 //   bones    the median length of each (Kinect bones, kBones); a joint that is never seen is left
 //            out, and its children are attached to its parent;
 //   rest     a T-pose: facing +z, arms along +-x, every rotation identity.  Where a joint has
-//            several children (pelvis, chest, wrists) their rest directions are the mean shape,
-//            found by turning that shape into every frame and averaging (generalised Procrustes,
+//            several children (pelvis, chest, wrists), their rest directions are means over the
+//            frames, each turned to fit the rest shape found so far (generalised Procrustes,
 //            three rounds from the T-pose);
 //   frames   root position = SpineBase.  From the root down, a joint with one child turns by the
 //            shortest arc that points the bone at the fused child, seen from the joint's place in
@@ -14,8 +15,8 @@
 //            best (Kabsch), so pelvis and chest get their twist from the hip and shoulder lines,
 //            wrists from the thumb.  The points do not show the twist of arms, thighs and shins
 //            about themselves; it stays zero relative to the parent.
-// A joint that is not seen keeps its last local rotation; without SpineBase the whole pose is kept.
-// Frames before the first pose use the first pose.  Radians, metres, world space.
+// A joint of which no child is seen keeps its last local rotation; without SpineBase the whole pose
+// is kept.  Frames before the first pose use the first pose.  Radians, metres, world space.
 #pragma once
 
 #include <vector>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr Duration kSameInstant = std::chrono::microseconds(1);
-constexpr double kWholeHertz = 1e-6;  // Relative tolerance: instants are rounded to nanoseconds.
+constexpr double kWholeHertz = 1e-6;  // Relative tolerance for rounding a rate to whole hertz.
 constexpr double kUsualHz = 30.0;     // For a single sample.
 constexpr double kMaxRateHz = 1000.0;
 

@@ -45,7 +45,7 @@ struct PersonTrack {
 };
 
 struct Take {
-  Timestamp start;  ///< The earliest sample of all persons.
+  Timestamp start;  ///< The instant of the earliest sample of all persons.
   double rate_hz = 0.0;
   std::size_t frames = 0;
   std::vector<PersonTrack> persons;  ///< In order of their ids.
@@ -58,12 +58,12 @@ struct TakeOptions {
   std::optional<PersonId> person = {};  ///< Export only this person.
 };
 
-/// Limit for the poses of all persons together; one pose takes 2 kB.
+/// Limit for the poses of all persons together; one pose takes 2.6 kB.
 inline constexpr std::size_t kMaxPoses = 500'000;
 
-/// Puts the samples, which may come in any order, on the grid.  Refuses: no samples; an unknown
-/// person (the error names the known ones); two samples of a person at one instant; more than
-/// kMaxPoses.
+/// Puts the samples, which may come in any order, on the grid.  Refuses: no samples; a rate below 0
+/// or above 1000 Hz; an unknown person (the error names the known ones); two samples of a person at
+/// one instant; more than kMaxPoses.
 [[nodiscard]] Result<Take> make_take(std::vector<FusedSample> samples,
                                      const TakeOptions& options = {});
 

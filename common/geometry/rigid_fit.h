@@ -21,8 +21,8 @@ struct RigidFit {
                                          std::span<const Eigen::Vector3d> target,
                                          std::span<const double> weights = {});
 
-/// Like fit_rigid(), but rotates about +y only (both sides are levelled); two distinct pairs
-/// suffice.
+/// Like fit_rigid(), but rotates about +y only (both sides are levelled); two pairs that differ
+/// horizontally suffice.
 [[nodiscard]] Result<RigidFit> fit_yaw(std::span<const Eigen::Vector3d> source,
                                        std::span<const Eigen::Vector3d> target,
                                        std::span<const double> weights = {});

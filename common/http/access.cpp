@@ -66,19 +66,23 @@ bool is_reading(const RequestHead& head) {
   return head.method == Method::Get || head.method == Method::Head;
 }
 
-/// The token in the request.  Browsers attach Basic credentials to any request that any page makes,
-/// so these never allow writing, nor opening a WebSocket by GET.
-std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
+/// The token in the request.
+std::optional<std::string> secret_in(const RequestHead& head) {
   if (const auto bearer = credentials(head, "bearer")) return std::string(*bearer);
-  const bool reads = needed != Role::Control && is_reading(head);
-  const auto basic = reads ? credentials(head, "basic") : std::nullopt;
+  const auto basic = credentials(head, "basic");
   return basic ? password_in(*basic) : std::nullopt;
 }
 
-/// The role of the request's token; none without one of our tokens.  Every token is compared, so
-/// that the time does not reveal which one matched.
-std::optional<Role> role_of(const RequestHead& head, Role needed, const Guard& guard) {
-  const auto secret = secret_in(head, needed);
+/// The token, if it may allow what is needed.  Browsers attach Basic credentials to any request
+/// that any page makes, so these never allow writing, nor opening a WebSocket by GET.
+std::optional<std::string> usable_secret(const RequestHead& head, Role needed) {
+  const bool reads = needed != Role::Control && is_reading(head);
+  return reads || credentials(head, "bearer") ? secret_in(head) : std::nullopt;
+}
+
+/// The role of a token; none if it is none of ours.  Every token is compared, so that the time does
+/// not reveal which one matched.
+std::optional<Role> role_of(const std::optional<std::string>& secret, const Guard& guard) {
   if (!secret) return std::nullopt;
   std::optional<Role> best;
   for (const Token& token : guard.tokens) {
@@ -118,7 +122,7 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
 std::vector<std::string> host_names() { return net::names_of(net::host_name()); }
 
 bool from_own_page(const RequestHead& head) {
-  // If a proxy in front of us ends TLS, the page's origin is https.
+  // If a proxy in front of us terminates TLS, the page's origin is https.
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (is_present(head.origin) && head.origin.starts_with(scheme) &&
         equal_ignoring_case(head.origin.substr(scheme.size()), head.host))
@@ -145,7 +149,7 @@ std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer, Ro
   const bool trusts_local = reading ? !guard.knows_readers() : guard.tokens.empty();
   if (trusts_local && is_trusted_local(head, peer)) return std::nullopt;
   if (guard.tokens.empty()) return without_tokens(needed);
-  const auto role = role_of(head, needed, guard);
+  const auto role = role_of(usable_secret(head, needed), guard);
   if (role && *role >= needed) return std::nullopt;
   if (role) {
     return Error{ErrorCode::Forbidden, "Authorization",
@@ -159,7 +163,7 @@ std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer, Ro
 
 bool has_wrong_token(const RequestHead& head, const Guard& guard) {
   return is_present(head.authorization) && !guard.tokens.empty() &&
-         !role_of(head, Role::Read, guard);
+         !role_of(secret_in(head), guard);
 }
 
 std::string_view name_of(Role role) noexcept {

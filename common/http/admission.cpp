@@ -81,8 +81,8 @@ void ServerCore::welcome(net::Socket socket) {
 }
 
 /// Closes one idle connection.  With `of_its_address` it is one of the newcomer's address,
-/// otherwise one of the address with the most connections.  Among those, the one that has been idle
-/// longest.
+/// otherwise one of the address with the most connections.  Among those, it closes the one that has
+/// been idle longest.  False if none is idle.
 bool ServerCore::close_an_idle_one(const Connection* newcomer, bool of_its_address) {
   std::shared_ptr<Connection> least;
   std::size_t most = 0;

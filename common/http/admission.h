@@ -1,4 +1,4 @@
-// Which client a proxy's request is counted for.
+// Finds the client for which limits count a request that a proxy forwarded.
 #pragma once
 
 #include <optional>

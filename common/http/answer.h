@@ -27,7 +27,7 @@ struct Answer {
 
 /// The contents of an answer's first lines that are known only when it is sent.
 struct AnswerStamp {
-  Timestamp received;  ///< When the request was complete: t1 of the clock field.
+  Timestamp received;  ///< When the request's head was complete: t1 of the clock field.
   Timestamp sent;      ///< t2, and Date.
   bool close = false;
   bool keep_alive_http10 = false;     ///< Sends keep-alive, for HTTP/1.0.

@@ -7,7 +7,7 @@ namespace chorus::http {
 
 struct AnswerPolicy {
   /// The name of a header field that shows clients our clock, as "t1 t2" in UTC nanoseconds: when
-  /// the request was complete and when the answer left.  Empty: no such field.
+  /// the request's head was complete and when the answer left.  Empty: no such field.
   std::string clock_field = {};
   std::string resource_lines = {};  ///< Header lines, each with CR LF, for every known path.
   std::string lines = {};           ///< Header lines, each with CR LF, for every answer.

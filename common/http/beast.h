@@ -1,4 +1,4 @@
-// The only file that includes Boost.Beast's HTTP: its response parser, for the clients.
+// Includes what our clients use of Boost.Beast's HTTP: its response parser.
 //
 // The server reads requests itself (request_head.h), more strictly than Beast 1.74 does.
 #pragma once

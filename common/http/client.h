@@ -31,7 +31,7 @@ struct Url {
 /// else is InvalidArgument.
 [[nodiscard]] Result<Url> parse_url(std::string_view text);
 
-/// "https://host:port/path"
+/// "https://host:port/path", with `target` as the path.
 [[nodiscard]] std::string url_text(const Url& url, std::string_view target);
 
 struct ClientRequest {
@@ -63,9 +63,9 @@ struct ClientLimits {
 
 /// One kept-alive connection on the caller's io_context: one request at a time, callbacks on the
 /// io_context's thread.  Reconnects on demand; if the server has closed the connection meanwhile, a
-/// GET is repeated on a new one.  The destructor and close() cancel the request: its callback is
-/// then never called.  Call all functions and the destructor on the io_context's thread, or while
-/// the io_context does not run.
+/// GET or HEAD is repeated on a new one.  The destructor and close() cancel the request: its
+/// callback is then never called.  Call all functions and the destructor on the io_context's
+/// thread, or while the io_context does not run.
 class AsyncClient {
  public:
   using Callback = std::function<void(Result<ClientResponse>)>;

@@ -9,7 +9,7 @@
 
 namespace chorus::http {
 
-/// An answer with a longer head ends the connection.
+/// Limit for the status line and the fields of an answer; a longer head ends the connection.
 inline constexpr std::uint32_t kMaxAnswerHeadBytes = 16384;
 
 /// "127.0.0.1:8080", "[::1]:8080".

@@ -27,7 +27,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// True between requests: the connection may be closed to make room for others.
   [[nodiscard]] virtual bool idle() const { return false; }
 
-  /// The account that limits count this connection for: see net::account_of.
+  /// The account for which limits count this connection: see net::account_of.
   [[nodiscard]] const std::string& peer_address() const { return peer_address_; }
   void charge_to(std::string account) { peer_address_ = std::move(account); }
 

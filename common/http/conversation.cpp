@@ -194,7 +194,7 @@ std::string Conversation::handshake() const {
   return handshake_of(head_, unread().substr(request_size_));
 }
 
-/// True if this request is within the limits of its sender; beyond them, only if its path is vital.
+/// True if this request is within the limits of its sender, or if its path is vital.
 bool Conversation::may_ask() {
   if (peer_.proxy) {
     if (const auto account = forwarded_account(head_)) {

@@ -1,5 +1,5 @@
 // One client's requests and our answers, as a state machine without IO: it takes events and returns
-// orders to the shell.
+// orders (orders.h).
 //
 // Requests are read one after the other and answered in order; what a client sends ahead waits in
 // the buffer.  Long polls and event streams wait for publishes.  Time is an argument; the Asio
@@ -26,7 +26,7 @@ struct ConversationContext {
   const ServerConfig& config;
   const Responder& responder;
   AtomicCounters& counters;
-  const bool& stopping;  ///< The server is stopping: each answer is the last one of its connection.
+  const bool& stopping;  ///< While the server stops, each answer is the last one of its connection.
 };
 
 class Conversation {

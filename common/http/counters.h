@@ -21,7 +21,7 @@ inline void count(AtomicCounters::Count& counter, std::uint64_t by = 1) {
   counter.store(counter.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
 }
 
-/// Counts down the things that are open or under way.
+/// Subtracts 1 from a counter of things that are open or under way.
 inline void uncount(AtomicCounters::Count& counter) {
   count(counter, static_cast<std::uint64_t>(-1));
 }

@@ -19,7 +19,7 @@ struct Reply {
   bool over = false;
 };
 
-/// The dialogue can send messages only as replies of these calls.
+/// A dialogue can send messages only in what hear() and look() return.
 class Dialogue {
  public:
   virtual ~Dialogue() = default;  ///< Called when the client has left or has been disconnected.

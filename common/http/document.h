@@ -26,9 +26,11 @@ using Header = std::pair<std::string, std::string>;
 /// Document.
 struct Variant {
   std::string media_type;               ///< "text/turtle"; may have parameters, which are sent too.
-  std::function<std::string()> render;  ///< Pure and thread-safe; called at most once.
+  std::function<std::string()> render;  ///< Pure and thread-safe; not called again once it has
+                                        ///< returned.
   std::string profile = {};             ///< Chosen only by ?profile=NAME; empty is the default.
-  std::string_view lines = {};          ///< The variant's header lines, each with CR LF; constant.
+  std::string_view lines = {};          ///< The variant's header lines, each with CR LF; must
+                                        ///< outlive the document.
 };
 
 struct DocumentOptions {

@@ -185,7 +185,8 @@ void AsyncEventStream::Impl::arm(std::chrono::milliseconds time, std::string_vie
   timer.expires_after(time);
   timer.async_wait(
       [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
-        // Set again, or cancelled, after it expired but before this handler ran.
+        // The timer may have been cancelled or set again after it expired but before this handler
+        // ran.
         if (cancelled || !self->is(mine) || self->has_head()) return;
         if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
         self->end({ErrorCode::Timeout, self->authority,

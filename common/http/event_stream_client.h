@@ -36,11 +36,12 @@ class AsyncEventStream {
   AsyncEventStream(const AsyncEventStream&) = delete;
   AsyncEventStream& operator=(const AsyncEventStream&) = delete;
 
-  /// Opens a stream; ends the current one, if there is one.
+  /// Opens a stream.  If one is open, it ends without a call of its on_end.
   void open(const ClientRequest& request, Handlers handlers);
   void close();
 
-  /// Stops reading for `time`; meanwhile the server cannot send and may skip events.
+  /// Stops reading for `time` once the read under way is done; meanwhile the server cannot send and
+  /// may skip events.
   void pause(std::chrono::milliseconds time);
 
  private:

@@ -15,7 +15,7 @@ namespace chorus::http {
 /// length that it had at first.
 class FileBody {
  public:
-  /// NotFound if it is not a regular file.
+  /// NotFound if it is not a regular file or cannot be opened.
   [[nodiscard]] static Result<std::shared_ptr<const FileBody>> open(
       const std::filesystem::path& path);
   ~FileBody();

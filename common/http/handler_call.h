@@ -14,7 +14,8 @@
 
 namespace chorus::http {
 
-/// The Request for a handler; `path` must already be decoded.  Malformed: the query is.
+/// The Request for a handler; `path` must already be decoded.  Malformed if the query cannot be
+/// decoded.
 [[nodiscard]] Result<Request> request_of(const RequestHead& head, const Peer& peer,
                                          std::string_view path);
 

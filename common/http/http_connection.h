@@ -27,7 +27,8 @@ class HttpConnection final : public Connection {
   void expire() override;
   void stop() override;
   void close() override;
-  [[nodiscard]] bool idle() const override { return conversation_.idle(); }  // handshake included
+  /// True during the TLS handshake too.
+  [[nodiscard]] bool idle() const override { return conversation_.idle(); }
 
  private:
   using Beginning = Orders (Conversation::*)(SteadyTime);

@@ -20,8 +20,8 @@ namespace chorus::http {
 [[nodiscard]] std::optional<int> explicit_quality_of(std::string_view media_type,
                                                      std::string_view accept);
 
-/// Index of the best offer; of equally good ones, the first.  If `accept` contains no media range,
-/// 0. None when no offer is acceptable.
+/// Index of the best offer; of equally good ones, the first.  It is 0 if `accept` contains no media
+/// range, and none if no offer is acceptable.
 [[nodiscard]] std::optional<std::size_t> negotiate(std::span<const std::string_view> offers,
                                                    std::string_view accept);
 

@@ -1,4 +1,4 @@
-// What a conversation orders its Asio shell to do.
+// What a conversation orders its Asio shell (http_connection.h) to do.
 #pragma once
 
 namespace chorus::http {
@@ -7,7 +7,7 @@ namespace chorus::http {
 struct Orders {
   bool small_queue = false;   ///< Keep the kernel's send queue small from now on.
   bool stop_waiting = false;  ///< Stop waiting for the entry's next version.
-  bool upgrade = false;       ///< Hand the socket and unread() to the reaction's WebSocket.
+  bool upgrade = false;       ///< Hand the socket and handshake() to the reaction's WebSocket.
   bool close = false;
   bool half_close = false;  ///< Shut down sending; close() if that fails.
   bool read = false;        ///< Read some bytes into room(), then call received() or input_ended().

@@ -11,8 +11,8 @@
 
 namespace chorus::http {
 
-/// The buffer has a fixed size; further bytes stay in the kernel.  Bytes are not moved before
-/// compact(), so views of a head remain valid while its body is read.
+/// The buffer has a fixed size; further bytes stay in the kernel.  A head is not moved before
+/// compact(), so views of it remain valid while its body is read.
 class RequestBuffer {
  public:
   explicit RequestBuffer(std::size_t capacity);
@@ -42,7 +42,7 @@ class RequestBuffer {
   std::size_t capacity_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
-  std::size_t checked_ = 0;  ///< The length of the beginning of unread() in which no head ends.
+  std::size_t checked_ = 0;  ///< No head ends in the first `checked_` bytes of unread().
 };
 
 }  // namespace chorus::http

@@ -3,9 +3,8 @@
 //
 // Refuses everything that two readers of HTTP could understand differently, because request
 // smuggling relies on that: bare line feeds, folded lines, spaces before a colon, repeated Host or
-// Content-Length, Transfer-Encoding (411 when a length is missing), bodies on GET.  Boost.Beast
-// accepts every head that is accepted here, with the same meaning; tests/fuzz/http_request compares
-// the two.
+// Content-Length, Transfer-Encoding (chunked gets 411), bodies on GET.  Boost.Beast accepts every
+// head that is accepted here, with the same meaning; tests/fuzz/http_request compares the two.
 #pragma once
 
 #include <cstddef>

@@ -76,7 +76,8 @@ Result<Router::Match> named(const Router& router, std::string_view path) {
   return router.match(path.substr(0, path.size() - kJsonSuffix.size()));
 }
 
-/// The entry of the same path with or without a slash at the end; null if there is none.
+/// The entry of the path that differs from this one only by a slash at the end; null if there is
+/// none.
 const Router::Entry* other_slash(std::string_view path, const Router& router) {
   const bool slash = path.ends_with('/');
   const std::string other =
@@ -86,13 +87,15 @@ const Router::Entry* other_slash(std::string_view path, const Router& router) {
   return match ? match->entry : nullptr;
 }
 
-/// A redirection to that path, if it is known.
+/// For GET and HEAD, a redirection to the path that differs only by a slash at the end, if it is
+/// known.
 std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
                                  const Router& router) {
   if (head.method != Method::Get && head.method != Method::Head) return std::nullopt;
   if (other_slash(path, router) == nullptr) return std::nullopt;
   const bool slash = path.ends_with('/');
-  // Relative, so it is correct behind any proxy; left percent-encoded, so nothing is decoded twice.
+  // The Location is relative, so it is correct behind any proxy, and stays percent-encoded, so
+  // nothing is decoded twice.
   std::string_view last = head.path;
   if (slash) last.remove_suffix(1);
   last.remove_prefix(std::min(last.size(), last.rfind('/') + 1));

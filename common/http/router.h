@@ -40,7 +40,7 @@ using Getter = std::function<Result<DocumentPtr>(const Request&, const PathParam
 /// new document.
 struct ActionResult {
   int status = 200;
-  DocumentPtr document = {};  ///< May be null with 204.
+  DocumentPtr document = {};  ///< Null: the answer has no body.
   std::string location = {};
 };
 using Action = std::function<Result<ActionResult>(const Request&, const PathParams&)>;
@@ -66,16 +66,17 @@ class Router {
   /// WebSockets whose clients send messages too.  Opening one counts as writing: Role::Control.
   void dialogue(const std::string& pattern, DialogueRoute route);
   /// GET/HEAD of the files in `folder` and below, never outside it; media types by extension.  The
-  /// prefix ends in '/'.  `lines`: header lines for each of these files, each with CR LF; must be a
-  /// constant.
+  /// prefix ends in '/'.  `lines`: header lines for each of these files, each with CR LF; must
+  /// outlive the router and its documents.
   void files(std::string prefix, std::string folder, std::string_view lines = {});
 
   /// The pattern is answered without a token, even if everything else needs one.
   void for_everybody(const std::string& pattern);
   /// For monitors: the pattern is still answered when the limit of connections is reached.
   void vital(const std::string& pattern);
-  /// For pictures and recordings: a web page of another origin may read them only if exactly that
-  /// origin is allowed; "*" is not enough.
+  /// For pictures and recordings: where reading needs a token, these need one of role Images or
+  /// more; and a web page of another origin may read them only if exactly that origin is allowed
+  /// ("*" is not enough).
   void shows_people(const std::string& pattern);
 
   struct Match;

@@ -19,8 +19,8 @@
 namespace chorus::http {
 
 struct ServerLimits {
-  /// Lower if the system allows fewer descriptors.  A few connections beyond the limit are
-  /// accepted, only to answer with 503, or to serve a vital path (Router::vital).
+  /// The limit is lower if the system allows fewer descriptors.  A few connections beyond the limit
+  /// are accepted, only to answer with 503, or to serve a vital path (Router::vital).
   std::size_t max_connections = 2000;
   std::size_t max_per_address = 64;  ///< Does not apply to loopback and trusted proxies.
   std::size_t max_long_polls = 1500;
@@ -87,7 +87,8 @@ struct ServerCounters {
   std::uint64_t closed_for_room = 0;  ///< Idle connections closed to make room for others.
   /// TLS handshakes that were broken off, malformed, or refused by the client.
   std::uint64_t handshakes_failed = 0;
-  /// Largest number of simultaneous connections that the descriptors allow.
+  /// Largest number of simultaneous connections: max_connections, or fewer if the descriptors do
+  /// not suffice for as many.
   std::uint64_t connections_limit = 0;
 };
 

@@ -1,5 +1,5 @@
-// A folder of files as resources: serves nothing outside the folder, media types by extension,
-// limited size.
+// Serves the files of a folder as resources: nothing outside the folder and nothing larger than a
+// limit.  The extension of a file decides its media type.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,8 @@ namespace chorus::http {
 /// Thread-safe.
 class StaticFiles {
  public:
-  /// `lines`: header lines for the answers of all files, each with CR LF; must be a constant.
+  /// `lines`: header lines for the answers of all files, each with CR LF; must outlive the
+  /// documents.
   explicit StaticFiles(std::string folder, std::string_view lines = {},
                        std::size_t max_file_bytes = 16u << 20);
   ~StaticFiles();

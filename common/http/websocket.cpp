@@ -10,8 +10,8 @@ namespace chorus::http {
 namespace {
 
 constexpr std::size_t kMaxSaid = 4096;  ///< Limit of one message from a client.
-/// Beast ends a broken or closed conversation by waiting for the client to hang up.  At this
-/// interval we check whether the conversation is over, and then hang up ourselves.
+/// When a WebSocket has been closed or is broken, Beast waits for the client to hang up.  At this
+/// interval we check whether it is over, and then hang up ourselves.
 constexpr std::chrono::milliseconds kOverCheck{250};
 constexpr std::string_view kMediaType = "application/json";
 
@@ -47,7 +47,7 @@ class WebSocketConnection final : public Connection {
   State state_ = State::Opening;
   DocumentPtr shown_;  ///< The last version sent, or being sent.
   bool writing_ = false;
-  std::size_t sent_ = 0;  ///< How much of that version has been sent [bytes].
+  std::size_t sent_ = 0;  ///< Size of the message with `shown_` [bytes].
   bool pending_ = false;
 };
 

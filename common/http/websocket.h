@@ -2,6 +2,7 @@
 //
 // Messages from a client are read and ignored, up to a small size; ping and close are answered.  A
 // client that reads slowly misses versions and gets the newest one, as with event streams.
+// WebSockets that carry a dialogue (dialogue.h) are opened here too.
 #pragma once
 
 #include <memory>

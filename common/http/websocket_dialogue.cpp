@@ -48,7 +48,7 @@ class DialogueConnection final : public Connection {
   State state_ = State::Opening;
   std::deque<std::string> unsent_;  ///< The first is being sent.
   std::size_t unsent_bytes_ = 0;
-  bool over_ = false;  ///< Ends when everything in unsent_ has been sent.
+  bool over_ = false;  ///< The dialogue ends when everything in unsent_ has been sent.
   SteadyTime sending_until_{};
 };
 
@@ -125,7 +125,8 @@ void DialogueConnection::expire() {
   if (!over_) react([this] { return dialogue_->look(); });
 }
 
-/// Ends the dialogue with a close frame, once; a client that does not reply is cut off.
+/// Ends the dialogue with a close frame, and cuts the client off if it does not answer in time.  If
+/// no such frame can be sent now, closes the connection at once.
 void DialogueConnection::say_goodbye(Goodbye code) {
   if (state_ != State::Open || !unsent_.empty() || !stream_.say_goodbye(code)) return close();
   state_ = State::Closing;

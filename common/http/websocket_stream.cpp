@@ -96,8 +96,9 @@ void WebSocketStream::write(std::string_view text, Done done) {
       });
 }
 
-/// Does not use Beast's close, which waits for its read, while a read that meets a broken frame at
-/// that moment waits for the close, whatever happens to the socket (1.74: close.hpp, read.hpp).
+/// Writes the close frame itself, because Beast's close can hang for ever: it waits for the read
+/// under way, and a read that meets a broken frame at that moment waits for the close (Beast 1.74:
+/// close.hpp, read.hpp).
 bool WebSocketStream::say_goodbye(Goodbye code) {
   if (beast_->writing || !is_open()) return false;
   const auto number = static_cast<std::uint16_t>(code);

@@ -11,7 +11,7 @@
 namespace chorus::importers {
 namespace {
 
-/// How a body is made of landmarks.
+/// How a body is made from landmarks: of rays only, or of fitted points.
 struct Form {
   bool rays;
   Lateral lateral;

@@ -64,7 +64,8 @@ const ReaderRow& reader_of(FileFormat format) {
 constexpr std::string_view kCamerasFile = "cameras.json";
 constexpr std::string_view kTruthFile = "triangulated.json";
 
-/// The landmark files of a folder, in name order: one per calibrated camera and named after it.
+/// The landmark files of a folder: one per calibrated camera and named after it, in the order of
+/// cameras.json.
 Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
                                    const ImportOptions& options) {
   const auto cameras = read_cameras(folder / kCamerasFile, options.limits);
@@ -84,7 +85,8 @@ Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
   return set;
 }
 
-/// True if the input was written empty, which is no reason to refuse the others.
+/// True if the input is an empty file or a folder without a usable file; the other inputs are then
+/// imported without it.
 bool is_empty(const std::filesystem::path& input, const Error& why) {
   std::error_code ignored;
   if (std::filesystem::is_directory(input, ignored)) return why.code == ErrorCode::NotFound;
@@ -116,7 +118,7 @@ Duration boot_time_of(const record::FrameRecording& recording) {
 }
 
 /// Keeps the time between files whose times count from the start of one sensor; that is assumed if
-/// all of these times fit into one afternoon.  Files that state no times stay unchanged.
+/// all of these times fit into one afternoon.  All other files stay unchanged.
 void keep_common_counter(std::vector<record::FrameRecording>& recordings) {
   constexpr Duration kOneAfternoon = std::chrono::hours(6);
   std::vector<record::FrameRecording*> counted;

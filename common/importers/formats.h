@@ -73,7 +73,7 @@ struct ImportedSet {
                                                const std::vector<std::filesystem::path>& inputs,
                                                const ImportOptions& options = {});
 
-/// Reads the input with this index, and its floor.
+/// Reads `file`, the input with this index; `options.floor` is the floor of this input.
 using ReadRecording = std::function<Result<record::FrameRecording>(
     const std::filesystem::path& file, const ImportOptions& options, std::size_t index)>;
 

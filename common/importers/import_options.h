@@ -17,8 +17,8 @@ namespace chorus::importers {
 /// It is fixed, so that importing a file twice gives the same bytes.
 inline constexpr Timestamp kDefaultStart = from_unix_ns(1'577'836'800'000'000'000);
 
-/// Limits of one import.  Memory stays below about four times max_text_bytes: the densest format
-/// needs 24 bytes per joint, we need 64.
+/// Limits of one import.  Memory stays below about five times max_text_bytes: the densest text
+/// format has 24 bytes per joint, a Joint takes 96.
 struct ImportLimits {
   std::uintmax_t max_text_bytes = 256u << 20;
   /// A parsed JSON tree needs about twenty times the memory of its text.

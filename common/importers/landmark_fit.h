@@ -1,4 +1,4 @@
-// Places the landmarks of one image as a metric body in front of the camera: perspective-n-point.
+// Places the landmarks of one picture as a metric body in front of the camera: perspective-n-point.
 //
 // The detector gives the body in metres about its hips and, separately, the pixel of each landmark.
 // The pose that projects the body onto these pixels places it in front of the camera.  Its depth is

@@ -42,8 +42,8 @@ Result<DetectedLandmarks> read_detected(const nlohmann::json& image, const nlohm
   return detected;
 }
 
-/// The time of a frame.  The files round t_s to microseconds; if t_s is within that of a whole
-/// frame, the exact instant of that frame is used.
+/// The time of a frame.  The files round t_s to microseconds; if t_s is within 2 us of the instant
+/// of a whole frame, that instant is used.
 Duration frame_time(double t_s, int hz) {
   constexpr double kRounding = 2e-6;
   const double index = std::round(t_s * hz);

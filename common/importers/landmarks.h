@@ -16,13 +16,13 @@
 
 namespace chorus::importers {
 
-/// 0: nose, 11/12: shoulders, ...; odd numbers: left.
+/// 0: nose, 11/12: shoulders, ...; from 7 on, odd numbers are left.
 inline constexpr std::size_t kLandmarkCount = 33;
 
 /// A landmark with a lower MediaPipe visibility is a guess: Inferred.
 inline constexpr double kTrackedVisibility = 0.6;
 
-/// What the detector found in one image.
+/// What the detector found in one picture.
 struct DetectedLandmarks {
   std::array<Eigen::Vector2d, kLandmarkCount> pixel;
   std::array<Eigen::Vector3d, kLandmarkCount> in_body;  ///< Hip-centred, OpenCV axes [m].

@@ -18,7 +18,8 @@ namespace chorus::importers {
 enum class MotionFormat { C3d, Bvh, Mvnx };
 
 struct MotionRecording {
-  record::FrameRecording recording;  ///< Bodies 1, 2, ... in the order of the file's subjects.
+  record::FrameRecording recording;  ///< The bodies' ids are those in the names of the file's
+                                     ///< subjects ("P10"), or 1, 2, ... in their order.
   std::vector<TruthFrame> truth;     ///< The same in world space.
 };
 

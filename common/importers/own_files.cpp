@@ -34,7 +34,7 @@ Result<Timestamp> instant_of(const Table& row, const ImportOptions& options) {
   return options.start + from_seconds(**since);
 }
 
-/// The numbers in these columns; none if the fields are empty.
+/// The numbers in these columns; none if all these fields are empty.
 template <std::size_t Count>
 Result<std::optional<std::array<double, Count>>> numbers(
     const Table& row, const std::array<std::string_view, Count>& columns, double bound) {
@@ -152,7 +152,8 @@ Result<void> read_ndjson_lines(LineReader& lines, const ImportOptions& options,
 
 constexpr std::string_view kAzureLayout = "azure_kinect_32";
 
-/// Converts camera axes (x right, y down) in millimetres to ours.
+/// Reads a landmark, which the file states in millimetres along camera axes (x right, y down), as
+/// one in sensor space.
 Result<layout::Landmark> azure_landmark(const Table& row, const std::string& name,
                                         const layout::Layout& layout) {
   constexpr double kFarthest = 1e3 * kMaxImported;  // [mm]

@@ -1,5 +1,5 @@
-// Reads two simple formats, in which other trackers' data can be imported.  `chorus export --format
-// csv` and `chorus fuse --out X.ndjson` write them, too.
+// Reads two simple formats of ours, in which other trackers' data can be imported (`chorus export
+// --format csv` and `chorus fuse --out X.ndjson` write them, too), and PyMoCapViewer's log.
 //
 // CSV: one row per joint; the first row names the columns; docs/guide/recording.md explains them.
 // NDJSON: one /frame document per line (proto/README.md, section 3).

@@ -35,7 +35,8 @@ std::optional<std::uint64_t> number_of(const std::string& run) {
   return run.size() <= kLongestNumber ? parse_number<std::uint64_t>(run) : std::nullopt;
 }
 
-/// The run that numbers these names, which all have the same shape; none if no run does.
+/// The index of the run that numbers these names, which all have the same shape: the last run that
+/// differs in all of them, otherwise the longest one; none if no run is a number.
 std::optional<std::size_t> numbering_run(const std::vector<const Runs*>& names) {
   const Runs& first = *names.front();
   for (std::size_t run = first.size(); names.size() > 1 && run-- > 0;) {

@@ -21,7 +21,8 @@ using nlohmann::json;
 
 constexpr double kMaxConfidence = 1e3;  // some networks exceed 1, which then counts as 1
 constexpr std::uint64_t kMostId = 1'000'000'000;
-// [s] after the first picture: 115 days; more does not fit a Timestamp.
+// [s] after the first picture: 115 days.  A larger number is surely wrong, and could overflow a
+// Timestamp.
 constexpr double kLongest = 1e7;
 /// Standard deviation of a landmark, relative to the height of the person: about 8 px at 500 px.
 constexpr double kSigmaByHeight = 0.016;
@@ -46,7 +47,8 @@ struct Pictures {
   double rate_hz = 30.0;
   std::map<std::uint64_t, People> people = {};
 
-  /// Malformed: `number` is not that of a picture.  Conflict: another picture has that number.
+  /// Malformed: `number` is too large for the number of a picture.  Conflict: another picture has
+  /// that number.
   [[nodiscard]] Result<void> add(std::uint64_t number, People&& found, const std::string& at) {
     if (!(static_cast<double>(number) <= kLongest * rate_hz))
       return fail(ErrorCode::Malformed, at,

@@ -23,9 +23,10 @@ struct PoseCamera {
 };
 
 /// One camera.  A picture's number is in its file's name (picture_numbers.h), or its "frame_id";
-/// number 0 is at options.start.  Conflict when two pictures have the same number.  A damaged file
-/// yields no frame; the note "damage.1" counts them and names the first.  NotFound when no file can
-/// be used; InvalidArgument when the landmarks do not lie in pictures of the intrinsics' size.
+/// number 0 is at options.start.  Conflict when two pictures have the same number.  In a folder, a
+/// damaged file yields no frame; the note "damage.1" counts them and names the first.  NotFound
+/// when no file of a folder can be used; InvalidArgument when the landmarks do not lie in pictures
+/// of the intrinsics' size.
 [[nodiscard]] Result<record::FrameRecording> read_pose_frames(const std::filesystem::path& input,
                                                               const PoseCamera& camera,
                                                               const ImportOptions& options = {});

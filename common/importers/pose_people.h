@@ -16,15 +16,15 @@ struct PosePoint {
 
 struct PosePerson {
   std::vector<PosePoint> points;         ///< In the order of a layout.
-  std::optional<std::uint64_t> id = {};  ///< As stated in the file, if it is.
+  std::optional<std::uint64_t> id = {};  ///< The id in the file plus 1, if the file states one.
 };
 
 /// Numbers people consistently where a file numbers them from scratch in every picture: each gets
-/// the number of the nearest person of the pictures before, if that person is within half a body
-/// height.
+/// the number of the nearest person of the pictures before, if that person is within half the
+/// person's size (Known::size).
 class PeopleNumbers {
  public:
-  /// A different number for each; the file's ids, if all people have one.
+  /// A different number for each; the file's ids, if all people have different ones.
   [[nodiscard]] std::vector<std::uint64_t> number(const std::vector<PosePerson>& people);
 
  private:

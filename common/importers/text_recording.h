@@ -17,7 +17,8 @@ struct TextFormat {
   std::string device;  ///< The value of FrameRecording::device.
   /// Notes of the recording, to which the note "origin" is added.
   std::map<std::string, std::string> notes;
-  std::string unit;  ///< For the error message: what a file without frames does not contain.
+  std::string unit;  ///< What the format calls a frame, such as "row", for the error about a file
+                     ///< without frames.
   std::function<Result<void>(LineReader&, const ImportOptions&, record::FrameRecording&)> read;
 };
 

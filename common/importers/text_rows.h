@@ -30,7 +30,7 @@ class LineReader {
  public:
   LineReader(std::string_view text, std::string origin) : rest_(text), origin_(std::move(origin)) {}
 
-  /// The next line, without its line end; none at the end of the text.
+  /// The next line, without its line feed (a '\r' before that stays); none at the end of the text.
   [[nodiscard]] std::optional<std::string_view> next();
   /// The next line that is not blank.
   [[nodiscard]] std::optional<std::string_view> next_filled();
@@ -43,8 +43,8 @@ class LineReader {
   std::size_t line_ = 0;
 };
 
-/// The fields of one row.  A ',' separates exactly two fields, except that one at the end of the
-/// row is ignored (LabanotationSuite writes one); ' ' stands for any run of blanks.
+/// The fields of one row.  With the separator ',', every comma separates two fields, but one at the
+/// end of the row is ignored (LabanotationSuite writes one); with ' ', any run of blanks does.
 class Row {
  public:
   /// Refuses a row that does not have exactly `expected` fields, such as a truncated one.

@@ -10,7 +10,7 @@ namespace chorus::importers {
 /// Nominal rate of Kinect v1 and v2; real devices drop frames.
 inline constexpr int kKinectHz = 30;
 
-/// The note that recordings with such times get.
+/// The value of the note "time" in recordings with such times.
 inline constexpr const char* kUniformTimeNote =
     "no times in the file; an exact 30 Hz is assumed, dropped frames are invisible";
 

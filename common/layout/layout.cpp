@@ -19,8 +19,8 @@ const Landmark& landmark_at(std::span<const Landmark> landmarks, std::size_t ind
   return index < landmarks.size() ? landmarks[index] : missing;
 }
 
-/// Adds the landmark's part to the joint; false when the landmark is not tracked or of the other
-/// measurement.
+/// Adds the landmark's part to the joint; false when the landmark is not tracked, or when one of
+/// the two is a ray and the other a point.
 bool add(Joint& joint, const Share& share, const Landmark& landmark) {
   const bool other_kind = landmark.measurement != joint.measurement;
   if (landmark.state == JointState::NotTracked || !landmark.position.allFinite() || other_kind)

@@ -27,7 +27,7 @@ extern const Layout kKinectV2, kAzureKinect, kMediapipe, kCoco17, kCoco18, kBody
   return {JointId::Neck,
           {{{shoulder_a, 1.0 / 3}, {shoulder_b, 1.0 / 3}, {ear_a, 1.0 / 6}, {ear_b, 1.0 / 6}}}};
 }
-/// The neck for a tracker that has a landmark at the base of the neck.
+/// The neck for a tracker that has a landmark, `foot`, at the base of the neck.
 [[nodiscard]] constexpr Recipe neck(std::uint8_t foot, std::uint8_t ear_a, std::uint8_t ear_b) {
   return {JointId::Neck, {{{foot, 2.0 / 3}, {ear_a, 1.0 / 6}, {ear_b, 1.0 / 6}}}};
 }

@@ -5,8 +5,8 @@
 // x first: Rz Ry Rx),
 //   world_from_bone = world_from_parent * C * R * C^-1,
 //   end = parent end + length * world_from_bone * direction
-// (Lander, "Working with motion capture file formats"; checked against a second reader and by
-// tests: feet on the floor, left on the left).  In CMU files, lengths are inches times the unit
+// (Lander, "Working with motion capture file formats"; checked against another implementation and
+// by tests: feet on the floor, left on the left).  In CMU files, lengths are inches times the unit
 // `length` of the header.
 #pragma once
 

@@ -21,9 +21,9 @@ struct LabelRow {
   std::array<std::string_view, 4> labels{};  ///< The joint is their mean; '<' stands for L or R.
 };
 
-// In order of preference: a joint uses the first of its rows whose labels are all present.  Our own
-// names come first, then joint centres as OpenSim users name them, the segment origins of Plug-in
-// Gait, and the skin markers of the Plug-in Gait set.
+// The rows are in order of preference: a joint uses the first of its rows whose labels are all
+// present.  Our own names come first, then joint centres as OpenSim users name them, the segment
+// origins of Plug-in Gait, and the skin markers of the Plug-in Gait set.
 constexpr auto kSure = JointState::Tracked;
 constexpr auto kGuess = JointState::Inferred;
 // clang-format off
@@ -67,7 +67,7 @@ constexpr LabelRow kLabelRows[] = {
 
 constexpr std::size_t kFewestJoints = 2;
 constexpr std::size_t kShownLabels = 12;
-// The limit for all subjects together, which then need 800 MB.
+// The limit for all subjects together, which then need about 1 GB.
 constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;
 
 /// The index of each point, by its label without the subject.

@@ -234,7 +234,7 @@ Result<Motion> motion_from_bvh(const Bvh& bvh) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& source = (*sources)[j];
       if (!source) continue;
-      // Also refuses NaN, which numbers that overflow lead to.
+      // This also refuses NaN, which results where numbers overflow.
       if (!(positions[*source].norm() <= kMaxCoordinate))
         return fail(ErrorCode::Malformed, "frame " + std::to_string(i + 1),
                     "a joint is farther than 10 km; is the unit of lengths right?");

@@ -26,7 +26,8 @@ Eigen::Vector3d forward_of(const Skeleton<WorldSpace>& body) {
 Eigen::Quaterniond segment_frame(const Eigen::Vector3d& along, const Eigen::Vector3d& forward) {
   const Eigen::Vector3d y = along.stableNormalized();
   Eigen::Vector3d x = y.cross(forward);
-  // For a bone that points forward, this x is undefined; the other x makes the bone's back face up.
+  // For a bone that points forward, this x is undefined; the other x makes the segment's +z point
+  // up.
   if (x.norm() < 0.1) x = y.cross(Eigen::Vector3d::UnitY());
   if (x.norm() < kTiny || y.norm() < kTiny) return Eigen::Quaterniond::Identity();
   Eigen::Matrix3d world_from_segment;

@@ -30,9 +30,9 @@ inline constexpr double kCmuRateHz = 120.0;
                                              double rate_hz = kCmuRateHz);
 
 /// Finds joints by name: our own 25 names if the file has a SpineBase, otherwise the names of the
-/// usual BVH dialects.  A joint that the file lacks is not tracked or, in those dialects, inferred
-/// from its neighbours; a file in a dialect is refused unless it has hips, knees, shoulders, elbows
-/// and a neck.
+/// usual BVH dialects.  A joint that the file lacks is not tracked; but in those dialects spine,
+/// neck, hands and hand tips are inferred from their neighbours.  A file in a dialect is refused
+/// unless it has a pelvis, head, shoulders, elbows, wrists, hips, knees and ankles.
 [[nodiscard]] Result<Motion> motion_from_bvh(const Bvh& bvh);
 
 /// The skeleton at `time` [s] after the first frame: positions are interpolated linearly,
@@ -40,9 +40,9 @@ inline constexpr double kCmuRateHz = 120.0;
 /// If there are no frames, nothing is tracked.
 [[nodiscard]] Skeleton<WorldSpace> at(const Motion& motion, double time);
 
-/// Gives each joint the orientation of its segment: +y along the bone that ends there, +z as near
-/// to the body's forward direction as possible.  Head, hand tips, thumbs and feet stay all-zero, as
-/// with a Kinect v2.
+/// Gives each joint the orientation of its segment: +y along the bone that ends there (at
+/// SpineBase: along the bone to SpineMid), +z as near to the body's forward direction as possible.
+/// Head, hand tips, thumbs and feet stay all-zero, as with a Kinect v2.
 void orient_segments(Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::motion

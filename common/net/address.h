@@ -11,7 +11,8 @@ namespace chorus::net {
 [[nodiscard]] asio::ip::address unmapped(const asio::ip::address& address);
 
 /// The account that a connection is counted for: an IPv4 address, or the first 64 bits of an IPv6
-/// address, because one host may use any of the remaining bits.
+/// address, because one host may use any of the remaining bits.  Of the loopback address ::1 all
+/// bits count.
 [[nodiscard]] std::string account_of(const asio::ip::address& address);
 
 }  // namespace chorus::net

@@ -18,7 +18,8 @@ Bytes bytes_of(const asio::ip::address& address) {
   return asio::ip::make_address_v6(asio::ip::v4_mapped, plain.to_v4()).to_bytes();
 }
 
-/// The number of bits after the slash; all bits of the address when there is no slash.
+/// The length of the network prefix, counted in an IPv6 address (into which IPv4 is mapped): the
+/// number after the slash or, if there is no slash, all bits.  None if the number is not valid.
 std::optional<unsigned> bits_of(std::string_view length, bool is_v4) {
   const unsigned most = is_v4 ? 32 : 128;
   const auto bits = length.empty() ? most : parse_number<unsigned>(length.substr(1));

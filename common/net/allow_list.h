@@ -12,7 +12,7 @@
 
 namespace chorus::net {
 
-/// Contains this host itself and the listed addresses and networks.
+/// A list of addresses and networks that are allowed; this host itself always is.
 class AllowList {
  public:
   /// Parses "10.0.0.20", "10.0.0.0/24", "fd00::/8"; InvalidArgument names an entry of any other

@@ -17,7 +17,7 @@ struct Capacity {
 /// How many clients a server has when another one arrives.
 struct ClientCount {
   std::size_t all = 0;
-  std::size_t of_address = 0;  ///< From the newcomer's address.
+  std::size_t of_address = 0;  ///< Clients from the newcomer's address.
 };
 
 /// Why a client from `address` is refused, and the key to change; empty when there is room.

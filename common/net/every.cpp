@@ -14,7 +14,7 @@ void Every::ensure() {
     under_way_ = false;
     // Cancelling does not stop a handler that is already due.
     if (cancelled || stopped_) return;
-    ensure();  // First, so that an exception does not end the series.
+    ensure();  // Before work_(), so that an exception from it does not end the series.
     work_();
   });
   under_way_ = true;

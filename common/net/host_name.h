@@ -6,7 +6,7 @@
 
 namespace chorus::net {
 
-/// As configured in the system; empty when it has none.
+/// The name that is configured in the system; empty if there is none.
 [[nodiscard]] std::string host_name();
 
 /// The names by which clients may address a host of that name: the name, its first part, and that

@@ -6,7 +6,7 @@
 namespace chorus::net {
 namespace {
 
-// Pause before the next attempt when there are no descriptors.
+// Pause after a failed attempt to accept, for example because there are no descriptors left.
 constexpr std::chrono::milliseconds kPause{100};
 
 std::string text_of(const ListenAt& where) {

@@ -28,9 +28,9 @@ struct ListenAt {
 /// Opens, binds and listens; first closes what the acceptor had open.
 [[nodiscard]] Result<void> listen_on(Acceptor& acceptor, const ListenAt& where);
 
-/// Accepts connections until it is stopped.  When the system has no descriptors left, it logs that
-/// and tries again after a pause; an exception from `welcome` costs only that connection.  Runs on
-/// the io_context's thread.
+/// Accepts connections until it is stopped.  If accepting fails, for example because the system has
+/// no descriptors left, it logs that and tries again after a pause.  An exception from `welcome`
+/// costs only that connection.  Runs on the io_context's thread.
 class AcceptLoop {
  public:
   using Welcome = std::function<void(Socket)>;

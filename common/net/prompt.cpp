@@ -9,11 +9,11 @@ namespace {
 #ifdef TCP_RTO_MIN_US
 constexpr int kMinTimeout = TCP_RTO_MIN_US;
 #else
-constexpr int kMinTimeout = 45;  // linux/tcp.h, newer than the headers of this system
+constexpr int kMinTimeout = 45;  // From linux/tcp.h; the headers of this system are older.
 #endif
 
-/// Longer than the 40 ms by which receivers delay acknowledgements, or each of those would count as
-/// a loss.
+/// Receivers delay acknowledgements by up to 40 ms; with a shorter time, each delayed one would
+/// count as a loss.
 constexpr int kRepeatAfterUs = 60'000;
 
 }  // namespace

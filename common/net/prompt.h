@@ -5,10 +5,11 @@
 
 namespace chorus::net {
 
-/// Sends at once (TCP_NODELAY), and repeats a lost packet after 60 ms instead of 200, without
-/// doubling the time for as long as few packets are under way: an event stream that waits for a
-/// repetition holds up every frame behind it.  Longer round trips lengthen the time as always. What
-/// the kernel does not know (before Linux 6.15 the 60 ms) stays as it is.
+/// Makes the socket send at once (TCP_NODELAY) and repeat a lost packet after 60 ms instead of 200
+/// ms, without doubling that time as long as few packets are under way, because in an event stream
+/// a lost packet delays all frames behind it.  On connections with longer round trips the kernel
+/// still lengthens the time.  An option that the kernel does not know is ignored: before Linux 6.15
+/// the 60 ms.
 void make_prompt(Socket& socket);
 
 }  // namespace chorus::net

@@ -27,7 +27,8 @@ class Stream {
 
   /// The outcome of sealing, i.e. of setting up TLS.
   struct Sealing {
-    std::optional<Error> failure = {};  ///< With advice; the context is the host.
+    /// Why sealing failed, with advice; the context is the host.
+    std::optional<Error> failure = {};
     bool plain = false;  ///< The client does not speak TLS, so the stream stays unsealed.
   };
   using Sealed = std::function<void(Sealing)>;  ///< Called once, never before the call returns.

@@ -2,8 +2,8 @@
 // document may contain.
 //
 // Serd 0.30 reads nested brackets by recursion; 20 000 of them overflow its stack.  So this guard
-// first counts the depth, in one pass that recognises strings, IRIs and comments.  It refuses those
-// for which Serd might find another end than the guard.
+// first counts the depth, in one pass that recognises strings, IRIs and comments.  It refuses a
+// string, IRI or comment that Serd might take to end elsewhere.
 #pragma once
 
 #include <cstddef>

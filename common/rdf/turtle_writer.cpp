@@ -93,7 +93,7 @@ class Writing {
     for (const Term& subject : order_) {
       if (!inlined(subject)) describe(subject, 0, 0);
     }
-    for (const Term& subject : order_) {  // Rings of blank nodes to which nothing else refers.
+    for (const Term& subject : order_) {  // Cycles of blank nodes to which nothing else refers.
       if (!written_.contains(subject)) describe(subject, 0, 0);
     }
     serd_writer_finish(writer_.get());

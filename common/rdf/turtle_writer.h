@@ -1,6 +1,5 @@
-// Writes graphs as Turtle or N-Triples through Serd.  Meant for rare documents; frames are written
-// from a template.
-//
+// Writes graphs as Turtle or N-Triples through Serd.  Meant for documents that are rarely asked
+// for; frames have a faster writer of their own (common/resource/frame_turtle.cpp).
 #pragma once
 
 #include <cstddef>

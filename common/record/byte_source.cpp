@@ -11,7 +11,8 @@
 namespace chorus::record {
 namespace {
 
-// Enough for record heads and message indexes; their content is skipped.
+// Number of bytes that are read ahead: enough for the head of a record and a message index; the
+// content of records is skipped.
 constexpr std::size_t kAhead = 4096;
 
 class FileBytes final : public ByteSource {

@@ -64,7 +64,7 @@ Result<Timestamp> captured(const Message& message, const std::optional<Message>&
   return t;
 }
 
-/// Extends the time spans of the sensors in a file.
+/// Collects the time span of every sensor over all files.
 class Stays {
  public:
   Result<void> add(const CellLine& line, std::size_t number) {

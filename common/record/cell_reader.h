@@ -29,7 +29,7 @@ struct CellRecording {
 
 struct CellQuery {
   ReadLimits limits = {};
-  SensorId only = {};  ///< Of a cell's raw streams, read only this one; empty: all.
+  SensorId only = {};  ///< The only one of a cell's raw streams to read; empty: all.
   bool fused = false;  ///< Also read the fused frames.
   /// True: a frame that repeats a time or goes back in time is Malformed.  False: such frames are
   /// left out and noted, as a fusion server does.

@@ -91,7 +91,8 @@ void Sorting::begin_file(const fs::path& file, const std::vector<Channel>& chann
   source_.part = said("part");
 }
 
-/// False when this file belongs to another recording, or repeats a part.
+/// Adds the current file to the line.  Returns false if the file belongs to another recording or
+/// repeats a part.
 bool Sorting::begins_or_follows(Line& line) const {
   if (line.newest == files_) return true;  // This very file has been added before.
   if (line.files.empty()) line.recording = source_.recording;
@@ -239,7 +240,7 @@ Result<void> Sorting::check_order(const Stream& stream) const {
 }
 
 CellRecording Sorting::finish() {
-  // A recording of one sensor that saw nobody.
+  // A recording of one sensor that has no frames still yields that sensor.
   if (streams_.empty() && frames_ == 0 && out_.cell.empty()) {
     streams_[source_.description.sensor].recording = source_.description;
   }

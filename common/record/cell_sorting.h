@@ -68,13 +68,13 @@ class Sorting {
     std::string recording;
     std::set<std::string> parts;
     std::vector<std::filesystem::path> files;
-    std::size_t newest = 0;  ///< The number of the last of `files`, as counted by files_.
+    std::size_t newest = 0;  ///< Value of files_ when the last of `files` was added.
   };
   struct Stream {
     FrameRecording recording;  ///< Without frames.
     Line line;
     std::optional<FloorPlane> floor;
-    /// Time to add to capture times; none if they are already by our clock.
+    /// Time to add to capture times; none if they are already by the recorder's clock.
     std::optional<Duration> shift;
     double clock_sigma = kUnknownClock;
     std::size_t kept = 0;
@@ -101,7 +101,7 @@ class Sorting {
   std::size_t frames_ = 0;  ///< Number of frames so far, on all topics.
   std::map<SensorId, Stream> streams_;
   Line fused_;
-  std::string registration_;  ///< The newest one.
+  std::string registration_;  ///< The registration returned last, as JSON.
   CellRecording out_;
 };
 

@@ -29,7 +29,8 @@ std::string_view schema_text(std::string_view name) {
   return {};
 }
 
-/// Compares only `applied`, because estimate and uncertainty change all the time.
+/// Compares the applied shift, and whether the clock offset is known; its estimate and uncertainty
+/// change all the time.
 bool same(const ClockModel& a, const ClockModel& b) {
   return a.applied == b.applied && a.uncertainty.has_value() == b.uncertainty.has_value();
 }

@@ -36,7 +36,7 @@ struct ClockModel {
 struct RawFrame {
   SensorId sensor;
   std::shared_ptr<const resource::FrameResource> frame;
-  Timestamp received;  ///< By our clock.
+  Timestamp received;  ///< Time of receipt, by our clock.
   std::optional<FloorPlane> floor;
   ClockModel clock;
 };
@@ -95,7 +95,8 @@ class CellWriter {
 
   RecordingWriter writer_;
   bool single_sensor_;
-  std::map<std::string, std::uint16_t> channels_;  ///< By topic.
+  /// Channel numbers, by topic.
+  std::map<std::string, std::uint16_t> channels_;
   std::map<SensorId, Stream> streams_;
 };
 

@@ -26,7 +26,8 @@ struct FrameRecording {
 };
 
 /// Writes a recording; replaces `path` only after the whole file has been written.  A frame without
-/// a floor plane gets the one before it (the first frame gets `recording.floor`).
+/// a floor plane is read back with that of the frame before it, the first one with
+/// `recording.floor`.
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 

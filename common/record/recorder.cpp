@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How long a message may wait in an open chunk if no other follows; also the interval at which
-/// space, index and duration are checked.
+/// Interval at which the open chunk is written to the disk, the index is updated and the free space
+/// is checked.
 constexpr auto kRest = std::chrono::seconds(1);
 /// Events are taken in batches, because waking up for each one would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);
@@ -246,7 +246,7 @@ void Recorder::Impl::run() {
   finish(how);
 }
 
-/// Logs that the recording has ended; for a single file, the caller asks for the report.
+/// Logs that the recording has ended, except for a single file, whose report the caller asks for.
 void Recorder::Impl::tell_end() const {
   if (!rotates()) return;
   if (report.state == RecordingState::Failed)

@@ -28,7 +28,8 @@ struct RecorderLimits {
   Duration max_file_duration = std::chrono::minutes(10);
   /// The recording ends when the free space would fall below this.
   std::uintmax_t min_free_bytes = 200ull << 20;
-  std::size_t max_queue = 2048;  ///< A few seconds of ten sensors.
+  /// Largest number of queued events; ten sensors produce them in a few seconds.
+  std::size_t max_queue = 2048;
 
   bool operator==(const RecorderLimits&) const = default;
 };
@@ -52,8 +53,8 @@ using RecordedEvent = std::variant<RawFrame, FusedFrame, PlacesChanged>;
 
 class Recorder {
  public:
-  /// Opens the first file.  Io, Conflict (the file exists) and Unavailable (too little space) name
-  /// the file.
+  /// Opens the first file.  The errors Io, Conflict (the file or folder exists) and Unavailable
+  /// (too little space) name the file or folder.
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> start(RecorderOptions options);
   ~Recorder();  ///< Writes what is queued, closes the file, joins the thread.
 

@@ -87,7 +87,7 @@ struct Recording {
   std::vector<Channel> channels;
   std::map<std::string, std::map<std::string, std::string>> metadata;
   std::vector<Message> messages;  ///< In log-time order; equal times in file order.
-  bool truncated = false;         ///< No footer, or the tail was unreadable.
+  bool truncated = false;         ///< True if there is no footer, or the tail was unreadable.
   /// Human-readable: what was left out and why; at most kMaxNotes.
   std::vector<std::string> notes;
 };

@@ -9,7 +9,7 @@ namespace {
 using mcap::ByteReader;
 using mcap::Op;
 
-constexpr std::uint64_t kMaxRun = 1U << 20;  // Largest run of messages outside chunks [bytes].
+constexpr std::uint64_t kMaxRun = 1U << 20;  // Largest piece of messages outside chunks [bytes].
 
 class Scan {
  public:

@@ -33,7 +33,7 @@ struct Outline {
   Definitions definitions;  ///< The definitions outside chunks.
   std::map<std::string, std::map<std::string, std::string>> metadata;
   std::vector<Piece> pieces;  ///< In file order.
-  bool truncated = false;     ///< No footer, or the tail was unreadable.
+  bool truncated = false;     ///< True if there is no footer, or the tail was unreadable.
   std::vector<std::string> notes;
 };
 

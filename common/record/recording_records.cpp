@@ -10,8 +10,9 @@ namespace {
 
 using mcap::ByteReader;
 
-/// JSON of bodies is compressed to a tenth of its size, that of empty rooms to a fiftieth.  A
-/// thousandth must be an attack.
+/// Largest ratio of a chunk's unpacked to its packed size that is accepted, if its unpacked size
+/// exceeds kSmallAnyway [bytes].  JSON of bodies is packed to a tenth of its size, that of empty
+/// rooms to a fiftieth; beyond a thousandth it must be an attack.
 constexpr std::uint64_t kTightest = 1000;
 constexpr std::uint64_t kSmallAnyway = 1U << 16;
 

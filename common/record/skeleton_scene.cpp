@@ -123,7 +123,7 @@ std::string time_of(Timestamp t) {
 }
 
 bool drawable(const resource::JointResource& joint) {
-  return joint.state != JointState::NotTracked && joint.position.allFinite() &&
+  return joint.seen() && joint.position.allFinite() &&
          joint.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 

@@ -13,7 +13,7 @@
 namespace chorus::resource {
 namespace {
 
-constexpr double kMaxWritable = 1e15;  // Larger doubles have no decimals.
+constexpr double kMaxWritable = 1e15;  // Beyond it a double no longer holds one exact decimal.
 constexpr std::size_t kMostDecimals = 8;
 constexpr std::array<std::int64_t, kMostDecimals + 1> kPowersOfTen{
     1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};

@@ -1,5 +1,6 @@
 // Writes the frame in JSON and JSON-LD as fixed text with values put between.  `linked` means
-// JSON-LD: with @context, decimals as strings, and names by frame.
+// JSON-LD: with @context, with decimals as strings, and with IRIs of bodies and joints that contain
+// their frame's.
 #include <algorithm>
 
 #include "common/body/bones.h"

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads one object of the document into the facts about one subject; keeps the first complaint.
+/// Reads each object of the document into the facts about one subject; keeps only the first error.
 class Reading {
  public:
   Result<Facts> run(const json& root) {

@@ -21,7 +21,8 @@ inline constexpr int kVarianceDecimals = 8;
 inline constexpr int kConfidenceDecimals = 4;
 inline constexpr int kRayDecimals = 6;
 inline constexpr int kTimeDecimals = 3;
-inline constexpr double kLongestCarry = 3600.0;  ///< [s]
+/// Largest `carriedFor` that is written or accepted [s].
+inline constexpr double kLongestCarry = 3600.0;
 
 /// The terms of a covariance on the wire, in the order of Covariance::term().
 inline constexpr std::array<std::string_view, Covariance::kTerms> kCovarianceNames{

@@ -15,7 +15,7 @@ namespace {
 using rdf::TermKind;
 using rdf::TermView;
 
-/// Most subjects that a document may have; 64 bodies of 25 joints and the frame are 1 665.
+/// Largest number of subjects in a document; 64 bodies of 25 joints and the frame are 1 665.
 constexpr std::size_t kMaxSubjects = 4096;
 
 enum class Property : std::uint8_t {

@@ -45,15 +45,16 @@ struct FrameResource {
   std::string source;  ///< Sensor id, or "fusion".
   SpaceKind space = SpaceKind::Sensor;
   std::vector<std::string> sensors;  ///< Fused: the sensors of the contributor bits (at most 64).
-  std::vector<BodyResource> bodies;  ///< With distinct ids, at most kMaxBodies.
+  std::vector<BodyResource> bodies;  ///< At most kMaxBodies, with distinct ids.
 };
 
 /// How far the length of a ray's direction may be from 1.
 inline constexpr double kRayTolerance = 0.01;
 
-/// Writes the default (compact) profile.  A joint with numbers that are not finite or not plausible
-/// is written as not tracked, without a position.  Turtle and JSON come from templates; tests prove
-/// that their output is isomorphic to the Serd writer's.
+/// Writes the default (compact) profile.  A joint whose position is not finite or not plausible is
+/// written as not tracked, without a position; such an orientation, variance or covariance is left
+/// out.  Turtle and JSON come from templates; tests prove that their output is isomorphic to the
+/// Serd writer's.
 [[nodiscard]] std::string write(const FrameResource& frame, Format format, const Place& place = {});
 
 /// Writes the full ARVIDA pattern (proto/README.md, profile "arvida") in Turtle or N-Triples.

@@ -5,11 +5,13 @@
 namespace chorus {
 namespace {
 
-// Frames without the person: 5 s at 30 Hz.  Who counts people anew gives the id to somebody else.
+// A person who is missing in this many frames (5 s at 30 Hz) is forgotten, because a device that
+// starts counting people again gives the id to somebody else.
 constexpr std::uint64_t kRemembered = 150;
 constexpr std::size_t kMostPeople = 256;
 
-/// The joints of the shape that the camera sees; a model invents the others.
+/// The joints of the shape that the camera sees, which are those with a ray; the model invents the
+/// others.
 Skeleton<SensorSpace> in_view(Skeleton<SensorSpace> shape, const Skeleton<SensorSpace>& rays) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     if (!rays.joints[j].bears()) shape.joints[j] = {};

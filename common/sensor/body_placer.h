@@ -14,8 +14,9 @@ namespace chorus {
 /// Keeps the bone lengths of each person.  Not thread-safe.
 class BodyPlacer {
  public:
-  /// Makes points of the rays of each body that fits its shape (body_placing.h); `shapes` is as
-  /// long as `bodies`, and a shape without joints is none.  Other bodies stay as they are.
+  /// Turns the rays of each body into points if they fit the body's shape (body_placing.h); other
+  /// bodies stay as they are.  `shapes` is as long as `bodies`; a shape without joints means that
+  /// none is known.
   void place(std::span<BodyFrame> bodies, std::span<const Skeleton<SensorSpace>> shapes,
              const PlacingErrors& errors);
   /// Number of people who are remembered.

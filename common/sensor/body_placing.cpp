@@ -17,28 +17,33 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 constexpr std::size_t kFewest = 8;
-constexpr double kNearest = 0.3;    // [m]
-constexpr double kFarthest = 50.0;  // [m]
-constexpr double kHuber = 1.5;      // Of the standard deviation.
-constexpr double kCut = 4.0;        // Farther off, a joint does not count in the end.
-constexpr double kInferred = 2.0;   // How much more an inferred joint errs.
-constexpr int kRounds = 8;          // Of each part of the fit.
+// Limits of a joint's distance along its ray [m]; beyond them the fit is rejected.
+constexpr double kNearest = 0.3;
+constexpr double kFarthest = 50.0;
+constexpr double kHuber = 1.5;  // Threshold of Huber's loss [standard deviations].
+// Joints farther off their rays are left out of the last pass of the fit [standard deviations].
+constexpr double kCut = 4.0;
+// Factor on the standard deviation of the shape for inferred joints.
+constexpr double kInferred = 2.0;
+// Largest number of iterations in start() and in each pass of refine().
+constexpr int kRounds = 8;
 constexpr double kConverged = 1e-6;
-constexpr double kStartOff = 0.04;  // [m]
+// Distance from a ray above which start() gives a joint less weight [m].
+constexpr double kStartOff = 0.04;
 // Median distance from the rays [standard deviations] above which the rays are not of this body.
 constexpr double kUseless = 4.0;
-// Least determinant of the start's matrix, relative to its mean diagonal cubed; below it, all rays
-// are nearly parallel.
+// Least determinant of the normal matrix in start(), relative to its mean diagonal cubed; below it,
+// all rays are nearly parallel.
 constexpr double kLeastSpread = 1e-3;
 
-/// A joint of which both the ray and the place in the shape are known.
+/// A joint whose ray and position in the shape are both known.
 struct Sighting {
   std::size_t joint = 0;
   Eigen::Vector3d ray;
   Across across;  ///< Two axes perpendicular to the ray.
   Eigen::Vector3d shape;
-  double shape_variance = 0.0;  ///< Across the ray [m^2].
-  double ray_variance = 0.0;    ///< [rad^2]
+  double shape_variance = 0.0;  ///< Variance of the shape across the ray, per axis [m^2].
+  double ray_variance = 0.0;    ///< Variance of the ray's direction, per axis [rad^2].
 };
 
 struct Pose {
@@ -79,19 +84,20 @@ double variance_of(const Sighting& one, const Pose& pose) {
   return one.shape_variance + pose.of(one).squaredNorm() * one.ray_variance;
 }
 
-/// How far a joint is off its ray [standard deviations].
+/// A joint's distance from its ray [standard deviations].
 double off_the_ray(const Sighting& one, const Pose& pose) {
   return (one.across.transpose() * pose.of(one)).norm() / std::sqrt(variance_of(one, pose));
 }
 
-/// The turn that is expected: from a line of sight straight ahead to the one to the person.
+/// R_0 of body_placing.h: the rotation from straight ahead to the mean ray.
 Eigen::Quaterniond turn_to(const std::vector<Sighting>& seen) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Sighting& one : seen) sum += one.ray;
   return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), sum);
 }
 
-/// Moves the shape, turned as expected, to the rays: a linear problem but for the weights.
+/// First estimate: with the expected rotation, the shift that brings the shape to the rays, by
+/// iteratively reweighted least squares.  None if all rays are nearly parallel.
 std::optional<Pose> start(const std::vector<Sighting>& seen) {
   Pose pose{turn_to(seen)};
   std::vector<double> weights(seen.size(), 1.0);
@@ -114,7 +120,8 @@ std::optional<Pose> start(const std::vector<Sighting>& seen) {
   return pose;
 }
 
-/// How a joint moves with the turn (about the shape's origin) and the shift.
+/// Derivative of a joint's position with respect to the turn (about the shape's origin) and the
+/// shift.
 Eigen::Matrix<double, 3, 6> motion_of(const Sighting& one, const Pose& pose) {
   const Eigen::Vector3d v = pose.turn * one.shape;
   Eigen::Matrix<double, 3, 6> motion;
@@ -124,7 +131,7 @@ Eigen::Matrix<double, 3, 6> motion_of(const Sighting& one, const Pose& pose) {
 }
 
 struct Normal {
-  Matrix6d matrix = Matrix6d::Zero();  ///< Information about the turn and the shift.
+  Matrix6d matrix = Matrix6d::Zero();  ///< Information matrix of the turn and the shift.
   Vector6d right = Vector6d::Zero();
 };
 
@@ -135,7 +142,7 @@ double weight_of(double off, Loss loss) {
   return off > kHuber ? kHuber / off : 1.0;
 }
 
-/// How far the shape is turned from what was expected [rad].
+/// The rotation vector from the expected orientation to the shape's [rad].
 Eigen::Vector3d unexpected_turn(const std::vector<Sighting>& seen, const Pose& pose) {
   const Eigen::AngleAxisd turned(pose.turn * turn_to(seen).conjugate());
   return turned.angle() * turned.axis();
@@ -183,9 +190,9 @@ bool fits(const std::vector<Sighting>& seen, const Pose& pose) {
   return *middle < kUseless;
 }
 
-/// Sum of the squared distances of joints from their rays, in units of the assumed variance, per
-/// degree of freedom; never below 1.  As a prior, as many residuals of 1 as the fit has parameters
-/// are added.
+/// Sum of the squared distances of joints from their rays [variances] per degree of freedom, at
+/// least 1; joints beyond kCut do not count.  Six residuals of 1, as many as the fit has
+/// parameters, are added as a prior.
 double scale_of(const std::vector<Sighting>& seen, const Pose& pose) {
   double sum = 0.0;
   double count = 0.0;
@@ -229,7 +236,8 @@ void place(Joint& joint, const Sighting& one, const Fit& fit, const PlacingError
           : Eigen::Matrix3d(one.ray_variance * one.across * one.across.transpose());
   const Eigen::Matrix3d covariance =
       distance * distance * across + along * one.ray * one.ray.transpose();
-  // A wider one cannot be written, and without one the point would look precise.
+  // The joint stays a ray: a larger covariance cannot be written, and a point without one would
+  // look precise.
   if (!(covariance.diagonal().maxCoeff() < kMaxPointVariance)) return;
   joint.measurement = Measurement::Point;
   joint.position = distance * one.ray;

@@ -6,10 +6,11 @@
 namespace chorus {
 namespace {
 
-constexpr double kMemory = 300.0;  // Lengths; older ones fade.
+constexpr double kMemory = 300.0;  // Number of lengths that the mean covers; older ones fade.
 constexpr double kStep = 3.0;      // Largest step, relative to the mean absolute deviation.
 constexpr double kLeast = 1e-3;    // A shorter bone has no direction [m].
-// Relative to the length: a model that states the same lengths for long can still change its mind.
+// Lower limit of the mean absolute deviation, relative to the length.  With it, a length can still
+// change after a model has stated the same value for long.
 constexpr double kLeastDeviation = 0.005;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The lengths of a person's bones, learned over many images, although a model guesses the person's
-// shape from each image separately.
+// The lengths of a person's bones, learned over many pictures, although a model guesses the
+// person's shape from each picture separately.
 #pragma once
 
 #include <array>
@@ -9,14 +9,15 @@
 namespace chorus {
 
 /// A running mean with bounded steps for each bone, so that a wrong guess hardly counts.  Left and
-/// right learn apart: models err differently on the side that is turned away, and one length for
-/// both made depths worse.  What the model has wrong about a person all the time stays wrong.
+/// right are learned separately, because models err differently on the side that is turned away,
+/// and one length for both made depths worse.  Errors that the model always makes about a person
+/// remain.
 class LearnedBones {
  public:
-  /// Learns from the shape of one image.
+  /// Learns from the shape in one picture.
   void learn(const Skeleton<SensorSpace>& shape);
-  /// The shape with bones of the learned lengths, in the directions that they have.  Bones of
-  /// which one end is missing, or that were never seen, stay as they are.
+  /// Returns the shape with its bones scaled to the learned lengths; their directions stay.  Bones
+  /// of which one end is missing, or that were never seen, keep their lengths.
   [[nodiscard]] Skeleton<SensorSpace> applied(const Skeleton<SensorSpace>& shape) const;
 
  private:
@@ -25,7 +26,7 @@ class LearnedBones {
     double spread = 0.0;  ///< Mean absolute deviation [m].
     double count = 0.0;
   };
-  std::array<Learned, kJointCount> bones_;  ///< By the joint at the outer end.
+  std::array<Learned, kJointCount> bones_;  ///< Indexed by the joint at the bone's outer end.
 };
 
 }  // namespace chorus

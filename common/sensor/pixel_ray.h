@@ -21,7 +21,8 @@ namespace chorus {
 [[nodiscard]] Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& camera,
                                              double sigma);
 
-/// How a ray turns per relative error of the focal length [rad]: towards the camera's axis, z.
+/// Derivative of a ray with respect to the relative error of the focal length [rad]: with a larger
+/// focal length, the ray turns towards the camera's axis, +z.
 [[nodiscard]] Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray);
 
 /// Adds the effect of an uncertain focal length (relative standard deviation `focal_sigma`) to a

@@ -1,5 +1,5 @@
-// What would not work if a service started on this host now.  --check reports all of it; the start
-// reports what does not end the service anyway.
+// Finds what would not work if a service started on this host now.  `--check` reports all of it.
+// At the start, only those concerns are logged that do not end the service.
 #pragma once
 
 #include <optional>

@@ -23,8 +23,8 @@ struct FrameHistory {
   bool operator==(const FrameHistory&) const = default;
 };
 
-/// Thread-safe.  Frames must be pushed in order of sequence and capture time.  A capture time
-/// before the newest one (after the clock was set back) empties the ring first.
+/// Thread-safe.  Frames must be pushed in order of sequence and capture time.  A capture time that
+/// does not advance (because the clock was set back) empties the ring first.
 class FrameRing {
  public:
   explicit FrameRing(const FrameHistory& history) : history_(history) {}
@@ -43,7 +43,7 @@ class FrameRing {
   [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const;
 
   /// The frame at an instant (an xsd:dateTime, or nanoseconds since the epoch as an integer),
-  /// interpolated between its neighbours.
+  /// interpolated between its neighbours.  NotFound after the newest frame, Gone before the oldest.
   [[nodiscard]] Result<FramePtr> at(const std::string& time) const;
 
   [[nodiscard]] FramePtr newest() const;

@@ -107,7 +107,7 @@ std::string words_of(const CLI::App& app) {
   return out;
 }
 
-/// words_of() a command, followed by the names of its own commands, each with its words.
+/// words_of() a command, then for each of its own commands its name and its words.
 std::string all_words_of(const CLI::App& command) {
   std::string out = words_of(command);
   for (const CLI::App* below : commands_of(command))

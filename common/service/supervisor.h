@@ -20,7 +20,7 @@ class Supervisor {
   /// Sends "READY=1", "STOPPING=1", "WATCHDOG=1" or "STATUS=..."; false when it was not sent.
   bool tell(std::string_view message) const;
 
-  /// How often "WATCHDOG=1" is due: half of the unit's WatchdogSec; none if the unit has no
+  /// Interval at which "WATCHDOG=1" is due: half of the unit's WatchdogSec; none if the unit has no
   /// watchdog.
   [[nodiscard]] std::optional<std::chrono::microseconds> pulse() const { return pulse_; }
 

@@ -42,7 +42,8 @@ void add_changes(const json& a, const json& b, Path& at, std::vector<Path>& out)
   }
 }
 
-/// `base`, changed at `path` to what `wanted` has there; removed there if `wanted` has nothing.
+/// Returns `base` with the value that `wanted` has at `path`, or without any there if `wanted` has
+/// none.
 json with_one_change(json base, const Path& path, const json& wanted) {
   json* to = &base;
   const json* from = &wanted;

@@ -1,5 +1,5 @@
-// A small program, which runs on every host, runs the whole program instead where the whole
-// program's package is installed.
+// Lets the small program, which every host has, run the whole program instead where that one's
+// package is installed.
 #pragma once
 
 #include <string>

@@ -21,7 +21,7 @@ constexpr std::size_t kMinCycle = 100;  // [frames] at 120 Hz: 0.83 s
 constexpr std::size_t kMaxCycle = 150;  // [frames]: 1.25 s
 constexpr std::size_t kBlend = 24;      // [frames] cross-faded at the seam: 0.2 s
 
-/// How badly frame b continues frame a: the sum of the squared differences of their angles.
+/// How much two poses differ: the sum of the squared differences of their angles.
 double mismatch(const AmcFrame& a, const AmcFrame& b) {
   double sum = 0;
   for (std::size_t c = kRootTranslation; c < a.size(); ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
@@ -33,7 +33,7 @@ struct Cut {
   std::size_t length = 0;
 };
 
-/// The cycle whose ends, with the frames before them, fit together best.
+/// The cycle of which the end, with the frames before it, is most similar to the beginning.
 Cut best_cut(const std::vector<AmcFrame>& take) {
   Cut best;
   double least = std::numeric_limits<double>::infinity();

@@ -12,11 +12,12 @@
 
 namespace chorus::synthetic {
 
-inline constexpr double kToeHeight = 0.03;  ///< Of a standing foot joint over the floor [m].
+/// Height of the foot joint above the floor while standing [m].
+inline constexpr double kToeHeight = 0.03;
 
 class Gait {
  public:
-  /// Cuts out of a take of straight walking the cycle whose ends fit together best.
+  /// Cuts one cycle out of a take of straight walking, so that its ends fit together best.
   Gait(const motion::AsfSkeleton& skeleton, const std::vector<motion::AmcFrame>& take);
 
   /// The cycle of one of the built-in takes, which are cut once; `take` is taken modulo their
@@ -42,7 +43,8 @@ class Gait {
   motion::AmcFrame standing_;
   double stride_ = 0.0;
   double period_ = 0.0;
-  double heading_ = 0.0;  ///< Direction of the recorded walk, which is removed.
+  /// Yaw of the recorded walk [rad]; pose() turns it to +z.
+  double heading_ = 0.0;
 };
 
 }  // namespace chorus::synthetic

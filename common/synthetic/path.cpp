@@ -14,29 +14,31 @@ namespace chorus::synthetic {
 namespace {
 
 // Plausible estimates without a measured source; nothing depends on their exact values.
-constexpr double kAcceleration = 1.2;   // Mean, when starting and stopping [m/s^2].
-constexpr double kTurnRate = deg(110);  // Mean, when turning on the spot [rad/s].
+constexpr double kAcceleration = 1.2;   // Mean acceleration when starting and stopping [m/s^2].
+constexpr double kTurnRate = deg(110);  // Mean rate when turning on the spot [rad/s].
 constexpr double kTurnSettling = 0.3;   // Extra time of every turn [s].
-constexpr double kTurnStep = 0.35;      // Amplitude of the strides when turning on the spot.
-constexpr double kPauseShare = 0.35;    // Probability of a pause at a way-point of a random walk.
-constexpr double kMinPause = 0.5;       // [s]
-constexpr double kMaxPause = 3.0;       // [s]
-constexpr double kRandomLoop = 240.0;   // Shortest loop of a random walk [s].
-constexpr double kStandLoop = 60.0;     // [s]
-constexpr double kLinePause = 0.4;      // At each end, before turning [s].
+// Amplitude of the strides when turning on the spot, relative to that of walking.
+constexpr double kTurnStep = 0.35;
+constexpr double kPauseShare = 0.35;   // Probability of a pause at a way-point of a random walk.
+constexpr double kMinPause = 0.5;      // [s]
+constexpr double kMaxPause = 3.0;      // [s]
+constexpr double kRandomLoop = 240.0;  // Shortest loop of a random walk [s].
+constexpr double kStandLoop = 60.0;    // Loop of somebody who stands still [s].
+constexpr double kLinePause = 0.4;     // Pause at each end of a line, before turning [s].
 // Shortest leg, as a share of the reach; shorter ones are drawn again.
 constexpr double kMinLegShare = 0.5;
 constexpr double kMinAmplitude = 0.3;
 constexpr double kMaxAmplitude = 1.4;
 constexpr int kRedraws = 20;
-constexpr double kTurnPause = 1.5;    // Between full turns [s].
+constexpr double kTurnPause = 1.5;    // Pause between full turns [s].
 constexpr int kStations = 3;          // A workplace has this many stations, side by side.
-constexpr double kStationStep = 0.4;  // from one station to the next [m]
+constexpr double kStationStep = 0.4;  // Distance between neighbouring stations [m].
 constexpr int kReachesPerStation = 4;
-constexpr double kReachTime = 0.7;      // A hand needs this time each way [s].
-constexpr double kMinHold = 0.3;        // [s]
-constexpr double kMaxHold = 1.2;        // [s]
-constexpr double kAsideSpeed = 0.35;    // Mean, when stepping aside [m/s].
+constexpr double kReachTime = 0.7;  // Time that a hand needs each way [s].
+// Limits of the time for which a hand stays at its target [s].
+constexpr double kMinHold = 0.3;
+constexpr double kMaxHold = 1.2;
+constexpr double kAsideSpeed = 0.35;    // Mean speed when stepping aside [m/s].
 constexpr double kReachForward = 0.42;  // Targets are this far in front of the body [m].
 constexpr std::array kReachHeights{0.85, 1.10, 1.35, 1.60};  // [m]
 

@@ -38,7 +38,7 @@ struct PathPoint {
   double heading = 0.0;    ///< Direction of walking, as yaw about +y; 0: +z [rad]
   double phase = 0.0;      ///< Phase of the gait [cycles].
   double amplitude = 0.0;  ///< Amplitude of the strides, 0: standing, 1: as recorded.
-  Reach reach{};           ///< In the person's walk frame (see reach.h).
+  Reach reach{};           ///< What a hand reaches for, in the person's walk frame (see reach.h).
 };
 
 class Path {
@@ -52,11 +52,11 @@ class Path {
   enum class Move { Walk, Turn, Pause, Orbit, Aside, Reach };
   struct Leg {
     Move move = Move::Pause;
-    double start = 0.0;     ///< [s] in the loop
+    double start = 0.0;     ///< Time at which the leg starts, within the loop [s].
     double duration = 0.0;  ///< [s]
     Eigen::Vector2d from = Eigen::Vector2d::Zero();
     Eigen::Vector2d to = Eigen::Vector2d::Zero();
-    double heading = 0.0;  ///< At the start of the leg.
+    double heading = 0.0;  ///< Heading at the start of the leg [rad].
     double turn = 0.0;     ///< Total turn [rad].
     double speed = 0.0;    ///< Cruising speed of this leg [m/s].
     double ramp = 0.0;  ///< Time to reach that speed, and to stop; for a hand, time each way [s].
@@ -78,7 +78,7 @@ class Path {
   [[nodiscard]] PathPoint along(const Leg& leg, double time) const;
 
   PathScript script_;
-  double amplitude_ = 1.0;  ///< Of the strides at cruising speed.
+  double amplitude_ = 1.0;  ///< Amplitude of the strides at cruising speed.
   double cadence_ = 1.0;    ///< Gait cycles per second.
   double loop_ = 0.0;       ///< [s]
   /// Where the last leg ends, while the path is built.

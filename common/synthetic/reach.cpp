@@ -9,7 +9,8 @@ namespace {
 
 // Largest distance of wrist and shoulder, as a share of the arm's length: nobody locks the elbow.
 constexpr double kStraightest = 0.98;
-constexpr double kClosest = 0.35;  // Smallest distance of wrist and shoulder, likewise.
+// Smallest distance of wrist and shoulder, as a share of the arm's length.
+constexpr double kClosest = 0.35;
 
 struct Arm {
   JointId shoulder, elbow, wrist;

@@ -13,14 +13,14 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawDepth = 401;
-constexpr double kMaxDepthCode = 65535;  // largest 16-bit value
-constexpr double kTileSize = 0.5;        // of the floor pattern [m]
+constexpr double kMaxDepthCode = 65535;  // Largest 16-bit value.
+constexpr double kTileSize = 0.5;        // Of the floor pattern [m].
 constexpr std::uint16_t kNobody = 0;
 constexpr std::uint16_t kThing = 65535;
 constexpr int kMaxPixels = 4'000'000;
 
-/// What each pixel sees: the distance along its ray, and whose body it is (kNobody: floor or
-/// nothing; kThing).
+/// What each pixel sees: the distance along its ray, and whose body that is (kNobody: the floor or
+/// nothing; kThing: an occluder).
 struct RangeImage {
   int width = 0;
   int height = 0;
@@ -39,8 +39,8 @@ struct Box {
   int left, right, top, bottom;  ///< In pixels; right and bottom are exclusive.
 };
 
-/// The pixels that may see the capsule: those of the squares around its two end balls, or all
-/// pixels when the capsule is too near.
+/// The pixels that may see the capsule: a rectangle around its two end balls, or all pixels when
+/// the capsule is too near.
 Box box_of(const Capsule& capsule, const Intrinsics& camera) {
   Box box{camera.width, 0, camera.height, 0};
   for (const Eigen::Vector3d& end : {capsule.from, capsule.to}) {

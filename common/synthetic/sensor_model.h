@@ -40,7 +40,7 @@ struct FieldOfView {
 /// White noise along and across the line of sight.
 struct GaussianNoise {
   double along = 0.025;          ///< Standard deviation [m]
-  double across = 0.010;         ///< Per axis [m]
+  double across = 0.010;         ///< Standard deviation per axis [m]
   double inferred_factor = 2.5;  ///< Factor on the noise of Inferred joints.
   double turn = deg(4);          ///< Noise of orientations, per axis [rad]
 };

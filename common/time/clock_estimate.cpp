@@ -14,16 +14,19 @@ namespace {
 constexpr std::int64_t kMinNs = 1'000'000'000'000'000'000;
 constexpr std::int64_t kMaxNs = 9'000'000'000'000'000'000;
 
-constexpr double kTolerance = 50e-6;     // [s] by which stamps may contradict each other
-constexpr double kMostCounted = 1000.0;  // exchanges; older ones are forgotten gradually
-constexpr double kScatter = 4.0;  // the smallest delays err by about the mean excess / exchanges
+constexpr double kTolerance = 50e-6;  // Stamps may contradict each other by this much [s].
+// Number of exchanges that count; older ones are forgotten gradually.
+constexpr double kMostCounted = 1000.0;
+// Factor on the error of the smallest delays, which is about the mean excess delay divided by the
+// number of exchanges.
+constexpr double kScatter = 4.0;
 
 bool plausible(Timestamp t) {
   const std::int64_t ns = to_unix_ns(t);
   return ns >= kMinNs && ns <= kMaxNs;
 }
 
-/// False for an exchange that cannot have happened or that contains no information.
+/// False for an exchange that cannot have happened, or that is too uncertain to be of use.
 bool possible(const ClockExchange& exchange, Duration max_uncertainty) {
   if (!plausible(exchange.sent) || !plausible(exchange.received) ||
       !plausible(exchange.their_receipt) || !plausible(exchange.their_sending)) {
@@ -72,7 +75,8 @@ ClockFilter::Corridor ClockFilter::with(Corridor corridor, const ClockExchange& 
 /// The most likely rate under exponential delays and a Laplace prior on the rate.  The function to
 /// maximise is concave and piecewise linear, so its maximum is at a corner.
 double ClockFilter::widest(const Corridor& corridor) const {
-  const double least_mean = 1e-6;  // [s] so that equal delays do not switch the prior off
+  // Least mean excess delay [s], so that the prior has an effect even if all delays are equal.
+  const double least_mean = 1e-6;
   const double excess = std::max(least_mean, mean_delay_ - corridor.width(rate_));
   const double believed = excess / (limits_.usual_rate * std::max(1.0, exchanges_));
   const auto value = [&](double rate) { return corridor.width(rate) - believed * std::abs(rate); };
@@ -133,7 +137,7 @@ void ClockFilter::follow_step() {
 
 void ClockFilter::add(const ClockExchange& exchange) {
   if (!possible(exchange, limits_.max_uncertainty)) return;
-  if (last_ && exchange.received < *last_) {  // our clock was set
+  if (last_ && exchange.received < *last_) {  // Our clock was set back.
     pending_.clear();
     last_.reset();
   }
@@ -144,7 +148,7 @@ void ClockFilter::add(const ClockExchange& exchange) {
     accept(std::move(next), exchange);
     return;
   }
-  pending_.push_back(exchange);  // an outlier, until the next ones agree with it
+  pending_.push_back(exchange);  // An outlier, unless the next exchanges agree with it.
   if (static_cast<int>(pending_.size()) >= limits_.steps_to_restart) follow_step();
 }
 

@@ -42,8 +42,8 @@ inline constexpr double kUnknownClock = 0.5;
 
 struct ClockFilterLimits {
   Duration window = std::chrono::seconds(40);
-  /// No two clocks' rates differ by more: 500 ppm while one is being adjusted, and 390 ppm of a
-  /// device.
+  /// Larger than any difference between the rates of two clocks, such as 500 ppm while one is being
+  /// adjusted plus 390 ppm of a device's own.
   double max_rate = 1000e-6;
   double usual_rate = 100e-6;  ///< Larger rates need evidence.
   double wander = 10e-6;       ///< Growth of the uncertainty without exchanges [s/s].
@@ -95,7 +95,7 @@ class ClockFilter {
   Duration base_{0};  ///< Their clock minus ours, roughly.
   Corridor corridor_;
   double rate_ = 0.0;
-  double mean_delay_ = 0.0;  ///< Of both directions together [s].
+  double mean_delay_ = 0.0;  ///< Mean delay over both directions together [s].
   double exchanges_ = 0.0;   ///< Number of exchanges in mean_delay_.
   std::optional<Timestamp> last_;
   /// Contradictory exchanges, until it is clear what they mean.

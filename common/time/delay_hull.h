@@ -18,7 +18,8 @@ class DelayHull {
 
   /// Times should not decrease; an earlier time counts as equal to the last.
   void add(Point point);
-  /// Points above an edge were not kept, so forgetting one of its ends may lose some of them.
+  /// Forgets the points before `time`, except the last point.  Points above an edge of the hull
+  /// were not kept, so those between a forgotten point and the next one are lost, too.
   void forget_before(double time);
   /// Forgets the first half of the time that the hull spans, at least one point.
   void forget_half();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1u << 20;  // the system's authorities are 200 kB
 
-/// The error, with the file as the context of what is wrong in its text.
+/// The error with the file as its context.
 tl::unexpected<Error> in_file(const std::string& file, Error wrong) {
   wrong.context = file;
   return tl::unexpected<Error>(std::move(wrong));

@@ -32,7 +32,7 @@ class Identity {
   std::shared_ptr<ssl_ctx_st> context_;
 };
 
-/// The authorities that a client accepts.  A client cannot accept everyone.
+/// The authorities that a client accepts.  A client cannot accept every certificate.
 class Trust {
  public:
   Trust() = default;  ///< The authorities of the operating system.
@@ -43,7 +43,7 @@ class Trust {
   /// load() from a PEM text; `name` is used in messages.
   [[nodiscard]] static Result<Trust> of(std::string authorities, std::string name);
 
-  /// Never null; a default-constructed value creates the context when this is first called.
+  /// Never null.  All default-constructed values share one context, created on first use.
   [[nodiscard]] std::shared_ptr<ssl_ctx_st> context() const;
   /// For messages: "those in /etc/chorus/tls/ca.crt", "the authorities of this system".
   [[nodiscard]] std::string name() const;

@@ -1,4 +1,4 @@
-// The OpenSSL helpers that this room's files share; nothing else includes them.
+// The OpenSSL helpers that the files of common/tls share; nothing else includes them.
 #pragma once
 
 #include <memory>

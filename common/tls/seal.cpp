@@ -161,7 +161,7 @@ Seal::Step Seal::step_of(int result) {
   return Step::Failed;
 }
 
-/// Why the client refuses the certificate it was shown.
+/// Why the client refuses the certificate that it was shown; empty if it does not.
 std::string Seal::objection() const {
   const long verdict = SSL_get_verify_result(ssl_.get());
   if (!trust_ || verdict == X509_V_OK) return {};

@@ -70,9 +70,10 @@ class Seal {
   [[nodiscard]] Step step_of(int result);
   [[nodiscard]] std::string objection() const;
 
-  std::unique_ptr<CertificateFacts> refused_;  ///< For a client; outlives ssl_, which points to it.
+  /// Facts of the certificate that a client refused; declared before ssl_, which points to it.
+  std::unique_ptr<CertificateFacts> refused_;
   std::unique_ptr<ssl_st, Freeing> ssl_;
-  std::optional<Trust> trust_;  ///< For a client.
+  std::optional<Trust> trust_;  ///< What a client trusts; none for a server.
   std::string host_;
   Error failure_;
 };

@@ -26,7 +26,7 @@ struct Bracket {
 Bracket bracket(Timestamp instant, Timestamp now, const History& history,
                 const AlignConfig& config) {
   const auto& frames = history.frames();
-  const bool over = frames.empty() || frames.back().captured < instant;  // The most frequent case.
+  const bool over = frames.empty() || frames.back().captured < instant;  // True in most calls.
   const auto next =
       over ? frames.end()
            : std::lower_bound(frames.begin(), frames.end(), instant,

@@ -18,18 +18,20 @@ struct AlignConfig {
   /// Widest gap between two frames that is interpolated; it is wider for a sensor with a long
   /// period (widest_gap).
   Duration max_gap = std::chrono::milliseconds(120);
-  /// Age at which Pending becomes Lost; it is less if the sensor's recent delays are shorter
-  /// (longest_wait).
+  /// An instant older than this is Lost instead of Pending; earlier if the sensor's recent frames
+  /// arrived sooner (longest_wait).
   Duration patience = std::chrono::milliseconds(200);
-  /// A sensor is unsteady if its delay varies from frame to frame by more than this, and by more
-  /// than twice as much as is usual among the others.  Such a sensor is waited for no longer than
-  /// the others usually need, so that one bad link does not delay everybody's bodies.
+  /// A sensor is unsteady if its delay varies from frame to frame by more than this, by more than
+  /// twice the median over the sensors, and by more than half its period.  Such a sensor is waited
+  /// for no longer than the others usually need, so that one bad link does not delay everybody's
+  /// bodies.
   Duration unsteady = std::chrono::milliseconds(30);
-  /// Where most sensors are slow (cameras whose pictures take long), `max_gap` and `patience` grow
-  /// with their periods and delays, up to this.  If this is less than `max_gap` and `patience`,
-  /// they never grow.
+  /// How far `max_gap` may grow for a sensor with a long period, and `patience` where most sensors
+  /// are slow (cameras whose pictures take long).  Whichever of the two is larger than this does
+  /// not grow.
   Duration slowest = std::chrono::milliseconds(2000);
-  double max_speed = 6.0;  ///< Greatest speed of the mean of a body's core joints [m/s].
+  /// A body whose core joints move faster than this on average is left out [m/s].
+  double max_speed = 6.0;
 
   bool operator==(const AlignConfig&) const = default;
 };
@@ -44,15 +46,15 @@ struct AlignConfig {
                              const AlignConfig& config);
 
 /// Widest gap between two frames of this sensor that is interpolated: max_gap, or two of its
-/// periods.
+/// periods if that is longer, but then at most `slowest`.
 [[nodiscard]] Duration widest_gap(const History& history, const AlignConfig& config);
 
-/// The longest time that an instant waited for this sensor's next frame, according to its recent
-/// frames; none until there are enough frames with a time of receipt.
+/// The longest time that an instant waits for this sensor's next frame, judged by the recent
+/// frames, plus 15 ms; none until there are enough frames with a time of receipt.
 [[nodiscard]] std::optional<Duration> longest_wait(const History& history);
 
-/// The median of the times of which longest_wait() is the longest; a single frame that was delayed
-/// on a busy processor does not change it.
+/// Like longest_wait(), but for the median of the recent frames instead of the longest wait; a
+/// single frame that was delayed on a busy processor does not change it.
 [[nodiscard]] std::optional<Duration> usual_wait(const History& history);
 
 }  // namespace chorus::align

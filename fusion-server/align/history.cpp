@@ -7,9 +7,11 @@
 namespace chorus::align {
 namespace {
 
-constexpr std::size_t kHabit = 30;     ///< Newest frames that make up a habit: one second.
+constexpr std::size_t kHabit = 30;     ///< A habit is computed from this many newest frames, one
+                                       ///< second at 30 Hz.
 constexpr std::size_t kMinHabit = 10;  ///< With fewer there is no habit, except for a slow sensor.
-constexpr std::size_t kMinSlow = 4;    ///< A slow sensor needs only this many.
+constexpr std::size_t kMinSlow = 4;    ///< A slow sensor, whose frames span kSlow, needs only this
+                                       ///< many.
 constexpr Duration kSlow = std::chrono::seconds(1);
 
 /// Keeps only the first of several bodies with the same id, because they cannot be distinguished
@@ -46,7 +48,8 @@ std::optional<Habit> habit_of(const std::deque<SensorFrame>& frames) {
   if (count == 0) return std::nullopt;
   std::vector<Duration> waits;
   std::vector<Duration> delays;
-  Timestamp first_received = Timestamp::max();  // The earliest of this frame and later ones.
+  // Earliest receipt of this frame and all later ones.
+  Timestamp first_received = Timestamp::max();
   for (std::size_t i = 1; i <= count; ++i) {
     const SensorFrame& frame = frames[frames.size() - i];
     if (frame.received == Timestamp{}) return std::nullopt;
@@ -104,7 +107,7 @@ PushVerdict History::push(SensorFrame frame) {
   PushVerdict verdict = verdict_on(frame);
   if (verdict == PushVerdict::Future || verdict == PushVerdict::Duplicate) return verdict;
   const bool refused = verdict == PushVerdict::Backwards || verdict == PushVerdict::Stale;
-  // A queue that drains delivers many old frames at once: what is received together counts once.
+  // A queue that drains delivers many old frames at once; frames received together count once.
   const bool same_burst =
       steps_back_ > 0 && frame.received != Timestamp{} && frame.received == last_step_;
   if (refused) last_step_ = frame.received;

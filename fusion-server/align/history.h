@@ -15,12 +15,13 @@ namespace chorus::align {
 enum class PushVerdict {
   Added,
   Duplicate,  ///< There already is a frame with this capture time (polled faster than captured).
-  Late,       ///< Its sequence is before that of the newest frame; inserted at its place.
-  Stale,      ///< The same, but too late to be of use; refused.
-  Backwards,  ///< Its sequence is later, but it was captured before the newest frame; refused.
+  Late,       ///< Its sequence is lower than the newest frame's; inserted at its place.
+  Stale,      ///< Like Late, but too old to be of use; refused.
+  Backwards,  ///< Its sequence is not lower, but it was captured before the newest frame; refused.
   Future,     ///< Captured implausibly long after it was received; refused.
-  /// The third in a row that was captured before the newest frame: the sensor's clock was set back,
-  /// its device restarted, or the newest frame was from the future.  The history was cleared.
+  /// The last of `steps_to_restart` frames in a row that would have been refused as Stale or
+  /// Backwards: the sensor's clock was set back, its device restarted, or the newest frame was from
+  /// the future.  The history was cleared.
   Restarted,
 };
 
@@ -30,17 +31,17 @@ struct HistoryLimits {
   /// A frame is refused if captured - received exceeds this; a frame without `received` is
   /// accepted.
   Duration max_future = std::chrono::seconds(2);
-  /// A late frame that was captured this long before the newest one is of no use any more.
+  /// A late frame that was captured longer than this before the newest one is Stale.
   Duration latest = std::chrono::milliseconds(1500);
-  /// This many frames in a row that were captured before the newest one are believed: the history
-  /// restarts with them.
+  /// The history restarts with the last of this many frames in a row that would be refused as Stale
+  /// or Backwards; frames that were received at the same time count as one.
   int steps_to_restart = 3;
 };
 
 /// How a sensor's recent frames arrived.
 struct Habit {
-  /// The longest time that an instant just after a capture, which waits longest, had to wait until
-  /// a frame captured at or after it arrived.  Frames that arrived after later ones do not count.
+  /// An instant just after a capture waits longest: until the next frame arrives.  This is the
+  /// longest such wait among the recent frames.  Frames that arrived after later ones do not count.
   Duration longest_wait{0};
   Duration usual_wait{0};   ///< The median time that such instants had to wait.
   Duration least_delay{0};  ///< The shortest time from capture to receipt.
@@ -74,7 +75,7 @@ class History {
 
   HistoryLimits limits_;
   std::deque<SensorFrame> frames_;
-  int steps_back_ = 0;   ///< Refused in a row as captured before the newest one.
+  int steps_back_ = 0;   ///< Number of frames in a row refused as Stale or Backwards.
   Timestamp last_step_;  ///< When the last of these was received.
   std::optional<Habit> habit_;
   std::optional<Duration> period_;

@@ -5,11 +5,11 @@
 namespace chorus::align {
 namespace {
 
-constexpr int kWorse = 2;  // A spread of more than this many times the median sensor's is unsteady.
+constexpr int kWorse = 2;  // A sensor with more than this many times the median spread is unsteady.
 /// Number of cameras without depth that are needed for a body.
 constexpr std::size_t kCameras = 2;
 
-/// Factor for differences between sensors, and between the frames of one.
+/// Factor between slowness and patience; it allows for differences between sensors and frames.
 constexpr int kSlack = 2;
 
 /// The inherent slowness of a sensor: its period plus its least delay.  A busy computer, which
@@ -18,9 +18,9 @@ Duration slowness(const History& history) {
   return history.period().value_or(Duration{0}) + history.habit()->least_delay;
 }
 
-/// Index, in order of slowness, of the slowest sensor that is always waited for: the median; of
-/// two, the faster one.  If no sensor has depth it is at least the second, because one camera alone
-/// does not yield a body.
+/// Index, in order of slowness, of the slowest sensor that is always waited for: the median, or for
+/// an even count the faster of the two in the middle.  If no sensor has depth it is at least the
+/// second, because one camera alone does not yield a body.
 std::size_t middle(std::size_t count, bool rays) {
   const std::size_t least = rays ? std::min(count, kCameras) - 1 : 0;
   return std::max((count - 1) / 2, least);

@@ -26,9 +26,10 @@ class Patience {
  private:
   AlignConfig config_;
   Duration patience_;        ///< The patience for steady sensors.
-  Duration common_;          ///< The median of what the sensors usually need.
+  Duration common_;          ///< Median over the sensors of how long an instant usually waits for
+                             ///< each.
   Duration steady_;          ///< A sensor with a wider spread is unsteady.
-  bool all_needed_ = false;  ///< True if a body needs all of them.
+  bool all_needed_ = false;  ///< True if a body needs the rays of every sensor.
 };
 
 }  // namespace chorus::align

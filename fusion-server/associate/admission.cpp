@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kTooNear = 0.8;  // [m]; nobody is tracked nearer than this.
 constexpr double kGirth = 0.4;    // [m]; a person this close to a line of sight blocks it.
-// If more sensors than this miss the track, per sensor that sees it, the track is not admitted.
+// A track is not admitted if this many sensors miss it, or more, for each sensor that sees it.
 constexpr std::size_t kMostMissing = 2;
 constexpr double kOtherSide = 0.5;  // Cosine of the least angle between sensors on different sides.
 
@@ -88,14 +88,15 @@ bool Admission::seen_through(const Track& track, const Eigen::Vector3d& place) c
   return false;
 }
 
-/// True if the observer looks at the place where the track is expected, but sees no body that could
+/// True if the observer looks at `place`, where the track is expected, but sees no body that could
 /// belong to it.
 bool Admission::misses(const Observer& observer, const Track& track,
                        const Eigen::Vector3d& place) const {
   if (!looks_at(observer, place)) return false;
   const bool sees_somebody =
       std::ranges::any_of(bodies_of(observer.sensor), [&](const Assigned& body) {
-        const bool here = (on_floor(body.core) - on_floor(place)).norm() <= config_.gate;
+        const bool here =
+            horizontal_distance(body.core, place, body.error, config_.gate) <= config_.gate;
         return here && (body.track == track.id || !body.settled);
       });
   return !sees_somebody && !hidden_from(observer, place);

@@ -12,10 +12,11 @@
 
 namespace chorus::associate {
 
-/// A body at the instant, and the track to which it was assigned.
+/// A body seen at the present instant, and the track to which it was assigned.
 struct Assigned {
   SensorId sensor;
   Eigen::Vector3d core = Eigen::Vector3d::Zero();  ///< World [m].
+  PlanError error = PlanError::Zero();             ///< Of `core`, as the sensor states it.
   PersonId track;
   bool settled = false;  ///< True if the track is already published.
 };
@@ -26,12 +27,12 @@ class Admission {
   Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
             Duration elapsed, const AssociationConfig& config);
 
-  /// Sets `admitted` in three cases: a second sensor sees the track, and not more than twice as
-  /// many sensors miss it; or the track is confirmed, and no sensor that looks there has missed it;
-  /// or one sensor alone has seen it for config.alone.  That time runs n times slower while the
-  /// sensor has n such bodies.  It stops while the sensor misses a person whom others see where it
-  /// looks (then the body is taken for that person, misplaced), and while others see through the
-  /// body.
+  /// Sets `admitted` in three cases: several sensors see the track, and fewer than twice as many
+  /// miss it; or the track is confirmed, and no sensor that looks there has missed it; or one
+  /// sensor alone has seen it for config.alone.  That time runs n times slower while this sensor
+  /// has n new bodies that only it sees.  The time stops while the sensor misses a person whom
+  /// several others see where it looks (the body is then taken for that person, misplaced), and
+  /// while others see through the body.
   void judge(Track& track) const;
 
   /// True if sensors on different sides look at `place` and see nobody there who could be the

@@ -58,8 +58,8 @@ class Hungarian {
     }
   }
 
-  /// Visits `column`, updates the distances of the others, and returns the nearest unvisited
-  /// column.
+  /// Visits `column`, updates the slack of all columns, and returns the unvisited column with the
+  /// least slack.
   std::size_t step(std::size_t column) {
     visited_[column] = true;
     const std::size_t row = row_of_[column];

@@ -8,7 +8,7 @@
 
 namespace chorus::associate {
 
-/// Costs, row by row; a pair that costs more than `gate` (or NaN) is never made.
+/// Costs, row by row; a pair whose cost exceeds `gate`, or is NaN, is never made.
 struct CostTable {
   std::size_t rows = 0;
   std::size_t columns = 0;

@@ -12,7 +12,7 @@ struct AssociationConfig {
   double gate = 0.6;
   double gate_growth = 0.3;  ///< The gate grows by this for every second without a view [m/s].
   double cluster = 0.4;  ///< New bodies of different sensors closer than this are one person [m].
-  /// Rays of different cameras can found a new person if they pass each other closer than this [m].
+  /// Rays of different cameras can start a new person if they pass each other closer than this [m].
   double ray_cluster = 0.15;
   int confirm_frames = 3;  ///< Number of instants with a view before a new person is published.
   Duration coast = std::chrono::seconds(3);  ///< How long an unseen person is looked for.
@@ -24,8 +24,8 @@ struct AssociationConfig {
   Duration remember = std::chrono::seconds(60);
   /// How long a newcomer is observed before it is decided which missing person, if any, they are.
   Duration recognise = std::chrono::seconds(1);
-  /// If a person is seen again after at least this long, their build is compared with the build
-  /// from before.
+  /// The build of a person who was unseen for longer than this is compared with the build from
+  /// before.
   Duration question = std::chrono::milliseconds(200);
   /// Two confirmed tracks merge after this many instants at the same spot without a common sensor.
   int merge_frames = 15;

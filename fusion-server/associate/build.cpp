@@ -34,8 +34,10 @@ constexpr double kOwnLength = 0.010;
 constexpr double kOwnInOneView = 0.036;
 constexpr double kOthersSize = 0.050;
 constexpr double kOthersLength = 0.020;
-constexpr double kSizeShare = 0.5;  // Share of the variance of a mean over independent lengths.
-constexpr double kSlowly = 0.3;     // [s] in view; with less, the variance grows.
+// Variance of the mean over all lengths, relative to its value if the errors were independent.
+constexpr double kSizeShare = 0.5;
+// A length that was in view for this time only [s] has twice the variance.
+constexpr double kSlowly = 0.3;
 
 double squared(double value) { return value * value; }
 

@@ -13,11 +13,11 @@
 namespace chorus::associate {
 namespace {
 
-constexpr int kRounds = 3;  // After each round, sensors use each other's matches.
+constexpr int kRounds = 3;  // Rounds in which sensors use each other's matches.
 // Weight of the track's expected place; one sensor's view of the person has weight 1.
 constexpr double kOwnWeight = 1.0;
 constexpr double kSizeReach = 0.5;    // [m]; cost of a body that is larger by a factor of e.
-constexpr double kInformative = 1.0;  // [s] of sight, from which on a build is informative.
+constexpr double kInformative = 1.0;  // Time in view [s] from which a learned length is used.
 constexpr double kDoubtful = 0.3;     // Cost added for unpublished tracks, as a share of the gate.
 
 /// A view while it is being matched.
@@ -41,7 +41,7 @@ double size_difference(const Spans& spans, const Build& build) {
   return count > 0 ? sum / count : 0.0;
 }
 
-/// Where the tracks are: as expected, and as the other sensors see them.
+/// For each track, the weighted mean of its expected place and of its places in the sensors' views.
 class Places {
  public:
   explicit Places(const std::vector<Candidate>& candidates) {
@@ -63,14 +63,16 @@ class Places {
   std::vector<Sum> sums_;
 };
 
-/// Distance of a body from a track, in units of the track's gate; NaN when it cannot be computed.
+/// Cost of assigning a body to a track: their distance in units of the track's gate, more for a
+/// track that is not admitted; NaN when it cannot be computed.
 double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
   const PlacedView& body = loose.view;
   if (!body.rays) {
     const Track& track = candidate.track;
     const Build& known = track.before ? *track.before : track.build;
-    return std::hypot(horizontal_distance(body.core, place),
-                      kSizeReach * size_difference(loose.spans, known)) /
+    return std::hypot(
+               horizontal_distance(body.core, place, body.error + track.error, candidate.gate),
+               kSizeReach * size_difference(loose.spans, known)) /
                candidate.gate +
            (candidate.track.admitted ? 0.0 : kDoubtful);
   }
@@ -127,11 +129,13 @@ void assign_all(BySensor& sensors, const std::vector<Candidate>& candidates) {
 
 /// Complete linkage: distance of the view to the farthest member; none when its sensor already has
 /// a member.
-std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& view) {
+std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& view,
+                              double limit) {
   if (has_sensor(cluster, view.view.sensor)) return std::nullopt;
   double farthest = 0.0;
   for (const PlacedView& member : cluster) {
-    farthest = std::max(farthest, horizontal_distance(member.core, view.core));
+    farthest = std::max(
+        farthest, horizontal_distance(member.core, view.core, member.error + view.error, limit));
   }
   return farthest;
 }
@@ -157,7 +161,7 @@ std::vector<std::vector<PlacedView>> cluster(std::vector<PlacedView> views, doub
     std::vector<PlacedView>* nearest = nullptr;
     double least = limit;
     for (auto& members : clusters) {
-      const auto distance = linkage(members, view);
+      const auto distance = linkage(members, view, limit);
       if (!distance || *distance > least) continue;
       nearest = &members;
       least = *distance;

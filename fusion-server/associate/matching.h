@@ -1,10 +1,10 @@
 // Matches the bodies of all sensors with tracks, and clusters across sensors the bodies that no
 // track explains.
 //
-// Minimises the total cost over all sensors.  An unmatched body costs as much as the farthest
-// allowed match, so that forcing an extra pair never pays.  Each sensor's bodies are assigned
-// one-to-one, by their distance from where the track is expected and from where the other sensors
-// see it; the sensors take turns until nothing changes.
+// Each sensor's bodies are assigned to tracks one-to-one at the lowest total cost, by their
+// distance from where the track is expected and from where the other sensors see it.  The sensors
+// take turns until nothing changes, for a few rounds at most.  An unmatched body costs as much as
+// the farthest allowed match, so that forcing an extra pair never pays.
 #pragma once
 
 #include "fusion-server/associate/association_config.h"

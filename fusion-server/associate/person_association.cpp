@@ -26,8 +26,9 @@ std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
   for (SensorView& view : views) {
     const auto core = middle_of(points_of(view.skeleton));
     const bool rays = has_rays_alone(view.skeleton.joints) && view.eye.allFinite();
-    if (core || rays)
-      sights.push_back({std::move(view), core.value_or(Eigen::Vector3d::Zero()), rays});
+    if (!core && !rays) continue;
+    const PlanError error = rays ? PlanError::Zero() : stated_error(view.skeleton);
+    sights.push_back({std::move(view), core.value_or(Eigen::Vector3d::Zero()), error, rays});
   }
   std::sort(sights.begin(), sights.end(), [](const PlacedView& a, const PlacedView& b) {
     return std::tie(a.view.sensor, a.view.body) < std::tie(b.view.sensor, b.view.body);
@@ -65,7 +66,8 @@ void drop_rivals(std::vector<std::vector<PlacedView>>& newcomers,
   std::erase_if(newcomers, [&](const std::vector<PlacedView>& members) {
     return members.size() == 1 && std::ranges::any_of(candidates, [&](const Candidate& each) {
              return each.sights.size() > 1 && has_sensor(each.sights, members[0].view.sensor) &&
-                    horizontal_distance(each.predicted, members[0].core) <= limit;
+                    horizontal_distance(each.predicted, members[0].core,
+                                        each.track.error + members[0].error, limit) <= limit;
            });
   });
 }
@@ -78,17 +80,18 @@ bool share_a_sensor(const Candidate& a, const Candidate& b) {
 /// True if both candidates are seen at one spot at this instant, but by different sensors.
 bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
   return !a.sights.empty() && !b.sights.empty() && !share_a_sensor(a, b) &&
-         horizontal_distance(a.track.core, b.track.core) <= limit;
+         horizontal_distance(a.track.core, b.track.core, a.track.error + b.track.error, limit) <=
+             limit;
 }
 
-/// Orders published tracks first; within each group the older first (ids only grow).
+/// Puts published tracks before the others, and in each group older tracks first (ids only grow).
 void seniors_first(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
     return is_settled(candidate.track, config);
   });
 }
 
-/// Merges tracks on one spot; the first in seniors_first() keeps the person.
+/// Merges tracks on one spot; of each two, the first in the order of seniors_first() is kept.
 void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   seniors_first(candidates, config);
   for (std::size_t i = 1; i < candidates.size(); ++i) {
@@ -108,7 +111,7 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
   }
 }
 
-/// Removes people who are not where several sensors look, because they have left.
+/// Removes people who have left: several sensors have seen through their places for kGone.
 void leave(std::vector<Candidate>& candidates, const Admission& admission, Duration elapsed,
            Tracks& tracks) {
   std::erase_if(candidates, [&](Candidate& candidate) {
@@ -128,7 +131,7 @@ void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& obse
   for (const Candidate& candidate : candidates) {
     const bool settled = is_settled(candidate.track, config);
     for (const PlacedView& sight : candidate.sights)
-      bodies.push_back({sight.view.sensor, sight.core, candidate.track.id, settled});
+      bodies.push_back({sight.view.sensor, sight.core, sight.error, candidate.track.id, settled});
   }
   const Admission admission(observers, bodies, elapsed, config);
   for (Candidate& candidate : candidates) admission.judge(candidate.track);
@@ -159,7 +162,7 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
   std::vector<Person> people;
   for (Candidate& candidate : candidates) {
     const Track& track = candidate.track;
-    // A single ray body does not determine a position.
+    // `seen` is unchanged by a single ray body, which does not determine a position.
     const bool placed = instant - track.seen <= config.carry;
     if (placed && track.named && is_settled(track, config)) people.push_back(person_of(candidate));
   }

@@ -1,6 +1,7 @@
 // A view of a body with the position of its core.
 #pragma once
 
+#include "fusion-server/associate/stated_place.h"
 #include "fusion-server/flow.h"
 
 namespace chorus::associate {
@@ -11,7 +12,8 @@ struct PlacedView {
   /// Mean of the core joints, world [m]; for a ray body, the core of the track to which it was
   /// assigned.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();
-  bool rays = false;  ///< True for a ray body: it has no place by itself.
+  PlanError error = PlanError::Zero();  ///< Covariance of the core as the sensor states it.
+  bool rays = false;                    ///< True for a ray body: it has no place by itself.
 };
 
 }  // namespace chorus::associate

@@ -12,7 +12,7 @@ namespace chorus::associate {
 struct BodyLimits {
   double max_range = 12.0;  ///< From the sensor to the middle of the body [m].
   double max_reach = 2.0;   ///< From the middle of the body to any of its joints [m].
-  /// The farthest joint is at least this far from the middle, if there are ten or more [m].
+  /// If ten or more joints are seen, the farthest is at least this far from the middle [m].
   double min_reach = 0.15;
   /// How long a body may keep exactly the same coordinates; a real sensor never measures the same
   /// coordinates twice.

@@ -35,7 +35,7 @@ std::optional<double> apart(const SensorView& a, const SensorView& b) {
   return median_of(std::move(distances));
 }
 
-/// True if the body is not farther from a camera and not larger than a person can be.
+/// True if a person can be that far from each camera, and can be of that size.
 bool is_plausible(const Located& body, std::span<const PlacedView> views,
                   const BodyLimits& limits) {
   const auto core = middle_of(body);
@@ -52,7 +52,7 @@ bool is_plausible(const Located& body, std::span<const PlacedView> views,
 
 /// Two views that may show the same person, and all other views that agree with them.
 struct Hypothesis {
-  std::vector<std::size_t> views;  ///< One per sensor.
+  std::vector<std::size_t> views;  ///< Indices of the views, at most one per sensor.
   double misfit = 0.0;             ///< Mean over the views [m].
 };
 

@@ -24,7 +24,8 @@ namespace chorus::associate {
 [[nodiscard]] std::optional<double> misfit(const SensorView& view, const Located& body,
                                            const Eigen::Vector3d& shift);
 
-/// The misfit to a track of which only the core is known.
+/// The same for a track of which only the core is known: the distance of the mean ray of the view's
+/// core joints; none if it has none.
 [[nodiscard]] std::optional<double> misfit(const SensorView& view, const Eigen::Vector3d& core);
 
 /// Groups ray views that show the same person: at least two views, at most one per sensor.

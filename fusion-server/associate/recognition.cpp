@@ -17,11 +17,11 @@ constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
 constexpr double kContinuity = 1.5;
 // Log odds below which a person who was lost and found loses the id.
 constexpr double kUnlikely = -0.5;
-// A decision waits for a newcomer's build no longer than this.
+// A newcomer not recognised within this time plus config.recognise is taken for a new person.
 constexpr Duration kNoBones = std::chrono::seconds(2);
 
-/// True if the candidate's person is missing.  A candidate without an id has given it back, and is
-/// about to be erased.
+/// True if the candidate's person is missing.  A candidate without an id passed it on in become(),
+/// and is about to be erased.
 bool has_left(const Candidate& candidate) {
   return candidate.track.id != PersonId{} && candidate.sights.empty() &&
          (candidate.track.named || candidate.track.before);
@@ -31,7 +31,7 @@ Missing missing_of(const Track& track) {
   return {track.id, track.before ? track.lost : track.seen, track.before.value_or(track.build)};
 }
 
-/// The missing people who may be the person of a track that was found at this time.
+/// The people who were already missing at `found`, when a track was found that may be one of them.
 std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate>& candidates,
                                     const Tracks& tracks) {
   std::vector<Missing> all = tracks.missing;
@@ -78,8 +78,8 @@ void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Track
   track.id = id;
 }
 
-/// Gives a newcomer the id of the missing person if the newcomer is one.  True once that is
-/// settled: the newcomer was recognised, is new, or it takes too long.
+/// Gives a newcomer the id of the missing person whom the build shows them to be.  True once it is
+/// decided who they are: recognised, new to all, or taken for new after a time.
 bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& tracks,
           const AssociationConfig& config) {
   Track& track = candidate.track;

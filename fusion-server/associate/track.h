@@ -24,6 +24,7 @@ struct Track {
   Timestamp seen;                                      ///< Last instant with a view.
   int hits = 0;                                        ///< Number of instants with a view.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
+  PlanError error = PlanError::Zero();                 ///< Of `core`, as far as sensors state it.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
   /// The bodies that sensors showed when the person was last seen.
   std::vector<Footprint> footprints = {};

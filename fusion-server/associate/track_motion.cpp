@@ -15,18 +15,13 @@ constexpr double kFastest = 4.0;        // [m/s], a sprint; limits the effect of
 constexpr double kKnown = 0.5;          // [s] in view above which builds can be compared.
 constexpr double kLongest = 0.1;        // [s]; one instant counts for at most this time.
 
-/// Mean of the views that have a place or, if there are none, the point where the rays meet; none
-/// for a single ray body.
-std::optional<Eigen::Vector3d> centre_of(const Candidate& candidate) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  for (const PlacedView& s : candidate.sights) {
-    if (s.rays) continue;
-    sum += s.core;
-    count += 1.0;
+/// Mean of the views that have a place.
+MeanPlace mean_of(const std::vector<PlacedView>& sights) {
+  MeanPlace mean;
+  for (const PlacedView& each : sights) {
+    if (!each.rays) mean.add(each.core, each.error);
   }
-  if (count == 0.0) return middle_of(candidate.track.joints);
-  return Eigen::Vector3d(sum / count);
+  return mean;
 }
 
 Footprint footprint_of(const SensorView& view) {
@@ -76,7 +71,7 @@ void turn_velocity(Track& track, const Eigen::Vector3d& seen) {
 void update_velocity(Track& track, std::vector<Footprint> prints, const Eigen::Vector3d& centre,
                      double elapsed) {
   auto way = way_between(track.footprints, prints);
-  // Both instants have rays only.
+  // If both instants have rays only, the points where they meet are compared.
   if (prints.empty() && track.footprints.empty()) way = centre - track.core;
   if (track.hits > 0 && elapsed > 0 && way) turn_velocity(track, *way / elapsed);
   track.footprints = std::move(prints);
@@ -94,10 +89,6 @@ void question(Track& track, Timestamp instant, const AssociationConfig& config) 
 
 }  // namespace
 
-double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::hypot(a.x() - b.x(), a.z() - b.z());
-}
-
 Candidate predict(const Track& track, Timestamp instant, const AssociationConfig& config) {
   const double age = seconds(instant - track.seen);
   const double slow = seconds(config.slow_down);
@@ -112,7 +103,9 @@ void update(Candidate& candidate, Timestamp instant, const AssociationConfig& co
   const bool rays = std::ranges::any_of(candidate.sights, &PlacedView::rays);
   const Located before = std::exchange(track.joints, {});
   if (rays) track.joints = locate(candidate.sights);
-  const auto found = centre_of(candidate);
+  const MeanPlace mean = mean_of(candidate.sights);
+  // Without a view that has a place: where the rays meet; nothing for a single ray body.
+  const auto found = mean.empty() ? middle_of(track.joints) : std::optional(mean.place());
   for (PlacedView& sight : candidate.sights) {
     if (sight.rays) sight.core = found.value_or(candidate.predicted);
   }
@@ -127,6 +120,7 @@ void update(Candidate& candidate, Timestamp instant, const AssociationConfig& co
   track.build.add(spans_of(candidate.sights, track.joints),
                   track.hits == 0 ? 0.0 : std::clamp(elapsed, 0.0, kLongest));
   track.core = *found;
+  track.error = mean.error();
   track.seen = instant;
   track.through = Duration{0};
   ++track.hits;

@@ -10,10 +10,6 @@
 
 namespace chorus::associate {
 
-/// Horizontal distance [m].  Height is ignored: people do not stand on each other, and an occluded
-/// hip must not move a body away from its track.
-[[nodiscard]] double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-
 [[nodiscard]] Candidate predict(const Track& track, Timestamp instant,
                                 const AssociationConfig& config);
 

@@ -179,7 +179,7 @@ class Listening {
     count_.take(frame->sequence);
   }
 
-  /// Gives up at once if the server cannot be reached, or refuses from the start.
+  /// Gives up if no frame has come yet, unless the server says that it has none yet (503).
   void failed(const Error& error, int status) {
     count_.fail(error);
     if (count_.frames > 0 || status == http::status::kUnavailable) return;

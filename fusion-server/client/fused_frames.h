@@ -20,11 +20,11 @@ struct FusedFrames {
   std::vector<std::string> notes;
 };
 
-/// Reads all fused frames of `source`.  http://... is a fusion server, or anything else with a
-/// /frame in world space, which is read for `listen`; "-" is NDJSON on standard input; a file that
-/// begins like MCAP, or a folder of .mcap files, is a recording; any other file is NDJSON.  Frames
-/// in sensor space are refused: they must be fused first.  If a server fails later on, the frames
-/// received before are kept.
+/// Reads all fused frames of `source`.  An http:// or https:// address is a fusion server, or
+/// anything else with a /frame in world space, and is read for the time `listen`; "-" is NDJSON on
+/// standard input; a file that begins like MCAP, or a folder of .mcap files, is a recording; any
+/// other file is NDJSON.  Frames in sensor space are refused: they must be fused first.  If a
+/// server fails after its first frame, the frames received until then are kept.
 [[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
                                                     std::chrono::milliseconds listen);
 

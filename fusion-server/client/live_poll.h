@@ -14,7 +14,7 @@ namespace chorus::client {
 /// Counts for a resource whose answers are numbered frames.
 struct StreamCount {
   std::uint64_t frames = 0;
-  std::uint64_t missed = 0;      ///< Gaps in the sequence.
+  std::uint64_t missed = 0;      ///< Frames that are missing in the sequence.
   std::uint64_t failed = 0;      ///< Requests that were refused or not answered.
   std::uint64_t unreadable = 0;  ///< Answers that are not a frame.
   std::uint64_t last = 0;
@@ -28,7 +28,7 @@ struct StreamCount {
 class LivePoll {
  public:
   struct Options {
-    std::string target;  ///< "/frame"
+    std::string target;  ///< Such as "/frame".
     std::string accept = "text/turtle";
     /// Polls at this interval; zero: long polling instead.
     std::chrono::milliseconds every{0};

@@ -31,8 +31,8 @@ class LiveRecording {
   /// Ends polling and waits until everything is written.
   [[nodiscard]] record::RecordingReport stop();
 
-  /// The counts of each topic, such as "/frame" or "/sensors/s1/frame"; contains from the beginning
-  /// all topics that the service has announced.
+  /// The counts of each topic, such as "/frame" or "/sensors/s1/frame"; from the start there is an
+  /// entry for every topic that the service announced.
   [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
   /// The last errors in reading resources other than frames (clocks, registration), by path.
   [[nodiscard]] const std::map<std::string, std::string>& troubles() const { return troubles_; }

@@ -11,8 +11,8 @@
 
 namespace chorus::client {
 
-/// The files that are named, and those of the folders that are named, each folder's sorted by name.
-/// An error if none is found.
+/// The files that are named, and those in the folders that are named, sorted by name within each
+/// folder.  Errors: an input does not exist or cannot be read, or there is no file.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
 

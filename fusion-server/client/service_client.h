@@ -23,8 +23,8 @@ namespace chorus::client {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
 /// The authorities that are accepted for an https:// server: those in the file that CHORUS_CA
-/// names; otherwise the workshop's, if this host has its certificate and the user may read it
-/// (/etc/chorus/tls/ca.crt); otherwise those of the operating system.
+/// names; otherwise the workshop's own (/etc/chorus/tls/ca.crt), if this host has its certificate
+/// and the user may read it; otherwise those of the operating system.
 [[nodiscard]] Result<tls::Trust> authorities();
 
 /// http::fetch() with authorities().
@@ -35,10 +35,10 @@ namespace chorus::client {
 /// Where the certificates of this host are, if it has any.
 inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
 
-/// True if services of this host use TLS, which `chorus init` configures where host.crt exists.
+/// True if services of this host use TLS: `chorus init` configures it where there is a host.crt.
 [[nodiscard]] bool host_has_tls(const std::string& folder = kTlsFolder);
 
-/// The fusion server of this host.
+/// The address of the fusion server on this host.
 [[nodiscard]] std::string default_server(const std::string& tls_folder = kTlsFolder);
 
 class ServiceClient {
@@ -68,7 +68,7 @@ class ServiceClient {
                                   std::string fallback = "-");
 /// NaN if there is no such number.
 [[nodiscard]] double number_at(const nlohmann::json& object, const char* key);
-/// The member if it is an object or array; otherwise an empty one.
+/// The member if it is an object or array; otherwise an empty object.
 [[nodiscard]] const nlohmann::json& part_at(const nlohmann::json& object, const char* key);
 
 }  // namespace chorus::client

@@ -14,7 +14,8 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more were moved
+// Held sensors whose places differ by more than this were moved [m].
+constexpr double kMisfit = 0.3;
 
 int rank(Verdict verdict) {
   switch (verdict) {
@@ -55,7 +56,7 @@ std::set<SensorId> newcomers(const Registration& current, const Registration& ca
   return found;
 }
 
-/// The sensor itself, and points in front of, next to and above the walk as the sensor sees it.
+/// Adds the sensor's position, and points in front of, next to and above the walk as it sees it.
 void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& marks) {
   const Eigen::Vector3d walk = kReach * Eigen::Vector3d::UnitZ();
   for (const Eigen::Vector3d& mark : {Eigen::Vector3d(Eigen::Vector3d::Zero()), walk,
@@ -65,8 +66,8 @@ void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& mark
   }
 }
 
-/// From the candidate's world to ours, computed from the held sensors that both registrations
-/// place.
+/// The transform from the candidate's world to ours, computed from the held sensors that both
+/// registrations place.
 std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
                                                 const Registration& candidate,
                                                 const std::set<SensorId>& moving) {
@@ -83,7 +84,7 @@ std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
   return fit->target_from_source;
 }
 
-/// Recomputes chain and error from our master, whatever the candidate's master was.
+/// Makes the place's chain and error start at our master, whatever the candidate's master was.
 void lead_from_master(const Registration& current, Extrinsics& place) {
   if (place.chain.empty() || place.chain.front() == current.master) return;
   const auto known = current.sensors.find(place.chain.front());
@@ -147,7 +148,7 @@ void add_once(std::vector<std::string>& reasons, const std::vector<std::string>&
   }
 }
 
-/// The candidate's reasons that name no sensor.
+/// The registration's reasons that are not those of a single sensor.
 std::vector<std::string> common_reasons(const Registration& registration) {
   std::vector<std::string> reasons = registration.reasons;
   for (const auto& [sensor, own] : registration.verdicts) {
@@ -156,7 +157,7 @@ std::vector<std::string> common_reasons(const Registration& registration) {
   return reasons;
 }
 
-/// Replaces the verdict on one sensor.
+/// Replaces the verdict on one sensor, and its reasons among those of the whole registration.
 void take_verdict(Registration& registration, const SensorId& sensor, SensorVerdict verdict) {
   const auto shared = common_reasons(registration);
   registration.verdicts[sensor] = std::move(verdict);

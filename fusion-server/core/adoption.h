@@ -16,8 +16,8 @@ namespace chorus::core {
 [[nodiscard]] Verdict verdict_of(const Registration& registration, const SensorId& sensor);
 
 /// Whether the candidate should replace the whole registration: never if it is refused, has a worse
-/// verdict or has fewer sensors.  A `Final` candidate that is equally good replaces it, so that a
-/// new walk has an effect.
+/// verdict or lacks one of the sensors.  An equally good candidate replaces it if it is `Final`, so
+/// that a new walk has an effect, or if both are provisional.
 [[nodiscard]] bool should_replace(const Registration& current, const Registration& candidate,
                                   SolveKind kind);
 

@@ -68,8 +68,9 @@ bool say_walker(const Situation& s, std::vector<std::string>& out) {
 
 /// Reports which pairs need more of the walk, once it has lasted for a while.
 void say_uncovered(const Situation& s, std::vector<std::string>& out) {
-  constexpr double kAWhile = 6.0;     // [s]
-  constexpr std::size_t kAtOnce = 2;  // sentences; the rest comes when these are done
+  constexpr double kAWhile = 6.0;  // [s]
+  // At most this many sentences at once; the others follow when these needs are met.
+  constexpr std::size_t kAtOnce = 2;
   if (s.session->elapsed < kAWhile) return;
   std::set<SensorId> seeing = s.last_seen.seeing(s.now);
   for (const PairCoverage& pair : s.session->pairs) seeing.insert({pair.first, pair.second});

@@ -14,7 +14,7 @@ using EdgeMap = std::map<std::pair<SensorId, SensorId>, const PairwiseRegistrati
 /// A point in front of a sensor, where people walk: at the best distance by Otto Eq. (1).
 const Eigen::Vector3d kWalk(0.0, 0.0, 2.5);
 
-/// x_in_a = (.) x_in_b by the pair's own registration; none: there is no such edge.
+/// a_from_b according to the edge between the two; none if there is no such edge.
 std::optional<Eigen::Isometry3d> between(const EdgeMap& edges, const SensorId& a,
                                          const SensorId& b) {
   if (const auto found = edges.find({a, b}); found != edges.end())
@@ -37,7 +37,7 @@ std::optional<double> worst_loop(const PairwiseRegistration& edge, const EdgeMap
   return worst;
 }
 
-/// Notes the best chain to the sensor whose last edge is not that of the chosen chain.
+/// Notes the best chain that reaches the sensor by another last edge than the chosen chain.
 void note_next_chain(Registration& registration, const SensorId& sensor, Extrinsics& place) {
   place.next_chain.clear();
   if (place.chain.size() < 2) return;

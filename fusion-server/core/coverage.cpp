@@ -12,10 +12,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Duration kTogether = milliseconds(40);  // between the receipts of one common view
-constexpr double kCell = 0.5;                     // [m]
-constexpr std::size_t kMostCells = 400;           // per sensor, 10 x 10 m
-constexpr double kRate = 30.0;                    // common views a second, of most sensors
+// Two sensors saw somebody together if their frames were received within this time.
+constexpr Duration kTogether = milliseconds(40);
+constexpr double kCell = 0.5;            // [m]
+constexpr std::size_t kMostCells = 400;  // per sensor, 10 x 10 m
+// Common views per second, at the frame rate of most sensors.
+constexpr double kRate = 30.0;
 
 /// The neck of the only body; none if there are several, or if it is not seen.
 std::optional<Eigen::Vector3d> neck_of(const SensorFrame& frame) {
@@ -27,7 +29,7 @@ std::optional<Eigen::Vector3d> neck_of(const SensorFrame& frame) {
 
 int cell_of(double coordinate) { return static_cast<int>(std::floor(coordinate / kCell)); }
 
-/// The sensors that are connected with `first` by pairs as good as the target.
+/// The sensors that are connected with `first` by pairs whose expected radius is within the target.
 std::set<SensorId> linked_with(const SensorId& first, const std::vector<PairCoverage>& pairs,
                                double target) {
   std::set<SensorId> linked{first};

@@ -1,7 +1,7 @@
 // What the walk of a session has covered so far: which sensors saw somebody together, and where.
 //
-// Needs no extrinsics: whether two sensors saw somebody together is judged by the time of receipt;
-// how far the person walked is measured in the space of one of the two.
+// No extrinsics are needed for the pairs: whether two sensors saw somebody together is judged by
+// the time of receipt, and how far the person walked is measured in the space of one of the two.
 #pragma once
 
 #include <map>
@@ -18,31 +18,35 @@ namespace chorus::core {
 class Coverage {
  public:
   void clear();
-  /// Takes a frame with one body or none; others cannot be matched.
+  /// Takes a frame.  A frame with several bodies is treated as an empty one, because the bodies
+  /// cannot be matched.
   void add(const SensorFrame& frame);
 
-  /// All pairs that saw somebody together, ordered by names.
+  /// All pairs that saw somebody together, ordered by the sensors' names.
   [[nodiscard]] std::vector<PairCoverage> pairs() const;
-  /// The squares of the floor in which somebody walked, and by how many sensors each was seen.
+  /// The squares of the floor in which somebody walked, each with the number of sensors that saw
+  /// somebody there.
   [[nodiscard]] std::vector<CoveredCell> cells(const Registration& registration) const;
 
  private:
   struct Sight {
     Timestamp received;
-    Eigen::Vector3d place;       ///< Of the neck, in the sensor's space [m].
-    std::set<SensorId> counted;  ///< The sensors with which it was counted.
+    Eigen::Vector3d place;       ///< Position of the neck in the sensor's space [m].
+    std::set<SensorId> counted;  ///< The sensors with which this view was already counted.
   };
   struct Common {
     std::size_t sightings = 0;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< In the first sensor's space [m].
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< Sum of the neck's positions in the first
+                                                    ///< sensor's space [m].
     double squares = 0.0;
-    double distance = 0.0;  ///< Sum over both sensors' distances / 2 [m].
+    double distance = 0.0;  ///< Sum of the mean distances from both sensors [m].
   };
   using Cell = std::pair<int, int>;
 
   std::map<SensorId, Sight> newest_;
   std::map<std::pair<SensorId, SensorId>, Common> common_;
-  std::map<SensorId, std::map<Cell, Eigen::Vector3d>> seen_;  ///< In each sensor's own space.
+  std::map<SensorId, std::map<Cell, Eigen::Vector3d>> seen_;  ///< The last neck in each cell, in
+                                                              ///< each sensor's own space.
 };
 
 /// The 95 % radius [m] to which the place of one sensor will be known relative to the other's, for

@@ -24,8 +24,8 @@ constexpr std::string_view kStaleFrame =
 constexpr std::string_view kFrozen =
     "a body is left out: its coordinates are repeated to the last digit under new stamps";
 
-/// True if some sensor has nearly the same place in both registrations, so that people can be
-/// matched: both use the same world.
+/// True if some sensor has nearly the same place in both registrations: then they use the same
+/// world, and people can be matched.
 bool share_a_place(const Registration& one, const Registration& other) {
   constexpr double kSamePlace = 0.3;  // [m]
   const Eigen::Vector3d mark = kReach * Eigen::Vector3d::UnitZ();
@@ -67,7 +67,7 @@ void FusionCore::take(SensorFrame frame) {
   if (count(frame, verdict)) registrar_.take(frame);
 }
 
-/// Counts what became of the frame; true if it was taken.
+/// Counts what became of the frame; true if it was added to the history.
 bool FusionCore::count(const SensorFrame& frame, align::PushVerdict verdict) {
   using align::PushVerdict;
   FrameFates& fates = refused_[frame.sensor].fates;
@@ -106,7 +106,7 @@ SensorFrame FusionCore::in_step(SensorFrame frame) {
   return frame;
 }
 
-/// Removes bodies that cannot be a person's; the frame's other bodies stay.
+/// Removes bodies that cannot be a person's, or that are frozen; the frame's other bodies stay.
 void FusionCore::sift(SensorFrame& frame) {
   const associate::BodyLimits& limits = config_.pipeline.association.bodies;
   std::string_view why;

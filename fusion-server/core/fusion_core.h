@@ -80,7 +80,7 @@ class FusionCore {
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);
   }
-  /// How many frames had a time that was not as it should be, and what became of them.
+  /// How many frames came late, twice or with a wrong time, and what became of them.
   [[nodiscard]] FrameFates fates(const SensorId& sensor) const;
   /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
@@ -102,13 +102,13 @@ class FusionCore {
   /// How often a sensor lost its place because it was moved.
   [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
-  /// No person has had this id or a higher one so far.
+  /// All persons so far have lower ids.
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:
   struct Refusals {
     FrameFates fates;
-    Timestamp last;  ///< When the last frame with something refused was received.
+    Timestamp last;  ///< When the last frame was received that was refused, or lost a body.
     std::string_view why;
   };
 
@@ -132,7 +132,7 @@ class FusionCore {
   std::map<SensorId, associate::FrozenBodies> frozen_;
   pipeline::Waiting awaited_;           ///< The sensors to wait for at the pending instant.
   std::uint64_t awaited_by_ = 0;        ///< Sequence of that instant; zero: none.
-  std::vector<SensorId> last_awaited_;  ///< Sensors waited for until the last answer was given.
+  std::vector<SensorId> last_awaited_;  ///< Sensors that the pending instant was still waiting for.
   Hindsight hindsight_;
   Shares shares_;
   std::vector<SensorReport> reports_;

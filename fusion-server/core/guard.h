@@ -12,9 +12,9 @@
 
 namespace chorus::core {
 
-/// A sensor does not stand where it was registered.
+/// The finding that a sensor does not stand where it was registered.
 struct SensorAlarm {
-  double shift = 0.0;  ///< How far from where the others see them it sees people [m].
+  double shift = 0.0;  ///< Distance between where it and where the others see people [m].
   Timestamp since;
   bool drifted = false;  ///< True if it happened gradually, false if at once.
   /// Set if either the sensor itself or this other one was moved: two sensors do not show which.
@@ -44,7 +44,8 @@ class Guard {
 
   /// Call this when the sensor has lost its place; its alarm lasts until it has a new one.
   void displaced(const SensorId& sensor);
-  /// Forgets what was learned if any place has changed.
+  /// Drops the current finding, and the alarms of sensors that have a place again.  If any place
+  /// has changed, what was learned about shifts is forgotten, too.
   void replaced(const Registration& before, const Registration& now);
   /// Forgets sensors that are no longer configured.
   void keep(const std::set<SensorId>& sensors);

@@ -16,22 +16,22 @@ namespace chorus::core {
 using Parts = std::map<SensorId, double>;
 [[nodiscard]] Parts parts_of(const Snapshot& snapshot);
 
-/// An instant that was fused, with the data that the result was based on.
+/// An instant that was fused, with what is needed to fuse it again.
 struct Answered {
   Tick tick;
   pipeline::Memory before;        ///< The memory before this instant.
   std::vector<SensorId> without;  ///< Registered sensors whose frames did not arrive in time.
   Parts parts;
-  Duration extension{0};  ///< How much longer than usual it may have waited.
+  Duration extension{0};  ///< How much longer than usual the instant may have waited.
 };
 
 class Hindsight {
  public:
   explicit Hindsight(Duration delay) : delay_(delay) {}
 
-  /// Instants fused with all sensors need not be added.
+  /// Instants that were fused with all sensors are ignored.
   void remember(Answered answered);
-  /// The oldest instant for which late frames must have arrived by now.
+  /// Removes and returns the oldest instant if its late frames must have arrived by now.
   [[nodiscard]] std::optional<Answered> due(Timestamp now);
   void forget() { waiting_.clear(); }
 
@@ -44,7 +44,7 @@ class Hindsight {
 struct Share {
   double in_time = 0.0;     ///< Fraction of all joints that it contributed to.
   double afterwards = 0.0;  ///< The same including its late frames, as /frame?at= shows it.
-  double awaited = 0.0;     ///< Fraction of instants that waited for it to the last.
+  double awaited = 0.0;     ///< Fraction of instants that still waited for it when they were fused.
 };
 
 /// The shares of all sensors, updated at each instant.

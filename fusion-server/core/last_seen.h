@@ -12,7 +12,7 @@
 
 namespace chorus::core {
 
-/// A frame counts for this long after its receipt.
+/// A frame counts as recent for this long after its receipt.
 inline constexpr Duration kSeenLately = std::chrono::seconds(2);
 
 class LastSeen {

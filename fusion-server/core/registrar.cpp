@@ -196,7 +196,7 @@ void Registrar::start_by_itself(Timestamp now) {
 
 std::optional<SolveJob> Registrar::due_job(Timestamp now) {
   if (solving_) {
-    // A provisional result for half of the walk is no longer useful.
+    // The final solve is due, so a provisional result for a part of the walk is no longer useful.
     if (solving_kind_ == SolveKind::Provisional && session_.final_due()) stop_solve_.request_stop();
     return std::nullopt;
   }

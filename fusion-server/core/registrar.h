@@ -37,7 +37,8 @@ struct Solution {
   SolveKind kind = SolveKind::Provisional;
   Registration registration;
   Duration cost{0};       ///< How long the solve took.
-  bool given_up = false;  ///< It was stopped before the end: no result.
+  bool given_up = false;  ///< True if the solve was stopped before its end: then there is no
+                          ///< result.
 };
 
 struct RegistrarConfig {
@@ -64,12 +65,13 @@ class Registrar {
   /// when the running one was started by hand.
   [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now,
                                             Adoption adoption = Adoption::AtOnce);
-  /// Cancels this session and all its effects; NotFound when it is not running.
+  /// Cancels this session and withdraws what it changed; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
-  /// Cancels the session and forgets the registration, but not its world.
+  /// Cancels the session and forgets the registration; the next one is moved into the same world.
   void forget();
-  /// Goes back to the previous registration; a second call changes nothing.  Conflict while a
-  /// session is running; NotFound when there is no previous one.
+  /// Exchanges the registration in use with the previous one, so a second call undoes the first.
+  /// Conflict while a session is running; NotFound when there is no previous one, or when none of
+  /// its sensors is configured any more.
   [[nodiscard]] Result<void> undo();
   /// Puts the proposed registration into use.  Conflict while a session is running; NotFound when
   /// none is proposed.
@@ -95,7 +97,7 @@ class Registrar {
 
   [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
   [[nodiscard]] const LastSeen& last_seen() const noexcept { return last_seen_; }
-  /// Newest first.
+  /// The last sessions, newest first.
   [[nodiscard]] std::vector<SessionStatus> sessions() const;
   [[nodiscard]] std::uint64_t next_session() const noexcept { return next_session_; }
   /// What is missing for a (better) registration, as sentences for people.
@@ -134,9 +136,11 @@ class Registrar {
   LastSeen last_seen_;
   std::uint64_t next_session_;
   std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
-  std::optional<Registration> before_;  ///< Set while the session's own registration is in use.
-  std::optional<Registration>
-      earlier_;  ///< The registration in use before; provisional ones of sessions do not count.
+  /// The registration from before the session; set while the session's own provisional one is in
+  /// use.
+  std::optional<Registration> before_;
+  /// What undo() goes back to; never a provisional registration of a session.
+  std::optional<Registration> earlier_;
   std::optional<Proposal> proposal_;
   /// True if `earlier_` is from before a sensor was displaced; the session that registers the
   /// sensor again keeps `earlier_`.
@@ -146,7 +150,7 @@ class Registrar {
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;
   std::map<SensorId, Retry> retries_;
-  Timestamp not_before_{};  ///< No automatic session before this.
+  Timestamp not_before_{};  ///< No session starts by itself before this time.
 };
 
 }  // namespace chorus::core

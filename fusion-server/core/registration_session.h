@@ -19,7 +19,8 @@
 namespace chorus::core {
 
 struct SessionConfig {
-  bool automatic = true;  ///< Start by itself when a sensor that sees a body has no place yet.
+  bool automatic = true;  ///< Sessions start by themselves when a sensor that sees a body has no
+                          ///< place yet.
   Adoption adoption = Adoption::AtOnce;        ///< Of sessions that clients start without saying.
   Duration target = std::chrono::seconds(30);  ///< Length of walk until the final solve.
   Duration first_solve = std::chrono::seconds(6);  ///< The same until the first provisional one.
@@ -55,17 +56,18 @@ class RegistrationSession {
   void cancel();
   /// Changes the length of walk that is wanted; keeps what was collected.
   void retarget(Duration target) { target_ = target; }
-  /// The final solve is due at once.
+  /// Makes the final solve due at once.
   void finish() { target_ = std::min(target_, elapsed_); }
 
   /// Adds a frame; one without bodies only shows that nobody is in view.
   void add(const SensorFrame& frame);
 
-  /// The kind of solve of walk() that should run now; at most one per step of the walk.  After
-  /// Final the session no longer collects.
+  /// The kind of solve of walk() that should run now; a solve that is due is returned only once.
+  /// After Final the session no longer collects.
   [[nodiscard]] std::optional<SolveKind> due();
   [[nodiscard]] bool final_due() const noexcept { return collecting_ && elapsed_ >= target_; }
-  /// Takes the duration of the last solve: the next provisional one waits three times as long.
+  /// Takes the duration of the last solve; the next provisional one waits at least three times as
+  /// long.
   void solved_in(Duration cost) { cost_ = cost; }
 
   [[nodiscard]] bool collecting() const noexcept { return collecting_; }

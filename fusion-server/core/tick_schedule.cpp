@@ -16,7 +16,7 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 std::int64_t grid_index(Timestamp t, int rate_hz) {
   const std::int64_t ns = to_unix_ns(t);
   const std::int64_t second = floor_div(ns, kSecond);
-  // Inverts the rounding up in grid_instant: the last k with k * 1e9 / rate <= fraction.
+  // grid_instant() rounds down, so the index computed from the fraction may be one too small.
   const std::int64_t fraction = ns - second * kSecond;
   std::int64_t index = second * rate_hz + fraction * rate_hz / kSecond;
   if (grid_instant(index + 1, rate_hz) <= t) ++index;

@@ -8,15 +8,18 @@ namespace {
 constexpr Duration kAgeWindow = std::chrono::seconds(40);
 constexpr Duration kBeforeTrust = std::chrono::seconds(3);
 constexpr Duration kSilence = std::chrono::seconds(1);
-constexpr Duration kJitter = std::chrono::milliseconds(20);  // a younger frame is no mere luck
+// A frame may be younger than all before by less than this through chance.
+constexpr Duration kJitter = std::chrono::milliseconds(20);
 constexpr Duration kSetBack =
-    std::chrono::milliseconds(100);  // more delay than a link takes on for seconds
+    std::chrono::milliseconds(100);  // ages that grow by more show that the clock was set back
 constexpr int kBelieved = 3;         // younger frames in a row
-constexpr Duration kWorthIt = std::chrono::milliseconds(2);  // half of what a walk tells a clock to
+// A smaller change of the correction is not applied.  The clock offsets found from a walk are
+// accurate to twice this.
+constexpr Duration kWorthIt = std::chrono::milliseconds(2);
 
-/// The offset now, after it has been followed since the walk.
+/// The walk's clock offset, plus the change of the least age since the walk.
 Duration followed(const ClockOffset& clock, const std::optional<Duration>& least_age) {
-  if (exchanges_time(seconds(clock.stated))) return clock.added;  // follows by itself
+  if (exchanges_time(seconds(clock.stated))) return clock.added;  // polling follows this clock
   if (!clock.least_age || !least_age) return clock.added;
   return clock.added + (*least_age - *clock.least_age);
 }

@@ -37,7 +37,7 @@ class LeastAge {
   void forget_until(Timestamp received);
   void note_stamp(Timestamp received, Timestamp stamp);
 
-  std::deque<Entry> entries_;  ///< Later ones are older in age: the first is the least.
+  std::deque<Entry> entries_;  ///< Ages increase from front to back, so the first is the least.
   std::optional<Timestamp> last_;
   Timestamp since_;  ///< Received without a pause since then.
   std::optional<Duration> value_;

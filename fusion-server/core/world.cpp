@@ -11,7 +11,8 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kSame = 0.3;  // [m] marks differ by more: the sensor was moved
+// If the marks of a sensor differ by more than this, it was moved [m].
+constexpr double kSame = 0.3;
 
 /// A sensor that both worlds have: its position and a point in front of it.
 struct Common {

@@ -3,7 +3,7 @@
 // A solve puts the origin of the world below its master, with +z in the master's viewing direction.
 // All users of the output (a VRED scene, marks on the floor) rely on the previous world, so a new
 // registration is moved into that one: only about +y and along the floor, because each solve
-// determines the floor anew.
+// estimates the floor again.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace chorus::core {
 
-/// [m] sensor to walk: rotation errors are judged at this range.
+/// Distance [m] from a sensor to the walk, at which rotation errors are judged.
 inline constexpr double kReach = 2.5;
 
 using Places = std::map<SensorId, Extrinsics>;
@@ -30,14 +30,15 @@ struct Origin {
 /// The place in another world; its covariance is rotated accordingly.
 [[nodiscard]] Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& new_from_old);
 
-/// The registration, moved into the world in which sensors stand as in `before`.  Among the sensors
-/// that both place, the majority decides (within 0.3 m), so a moved sensor moves the world only if
-/// there is no other.  Unchanged if they have no sensor in common.
+/// The registration, moved into the world in which sensors stand as in `before`.  This is decided
+/// by the largest group of sensors whose relative places are the same in both (within 0.3 m), so a
+/// sensor that was moved changes the world only if there is no other.  Unchanged if they have no
+/// sensor in common.
 [[nodiscard]] Registration in_world_of(const Places& before, Registration candidate);
 
+inline constexpr double kMaxOrigin = 1000.0;  ///< Along x and along z [m].
 /// The registration in the world whose origin is `origin`.  Errors: NotFound (no sensor has a
 /// place), InvalidArgument (not finite, or beyond kMaxOrigin).
-inline constexpr double kMaxOrigin = 1000.0;  ///< Along x and along z [m].
 [[nodiscard]] Result<Registration> with_origin(Registration registration, const Origin& origin);
 
 }  // namespace chorus::core

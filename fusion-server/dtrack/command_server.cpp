@@ -23,7 +23,8 @@ using net::error_code;
 using net::tcp;
 
 constexpr std::size_t kMaxWaiting = 4096;  ///< Bytes of answers that a client has not read.
-constexpr std::size_t kMaxRefused = 64;    ///< In commands.
+constexpr std::size_t kMaxRefused = 64;    ///< Commands of one client that are unknown or not
+                                           ///< permitted.
 constexpr std::chrono::milliseconds kSweep{250};
 
 struct Connection {
@@ -47,7 +48,7 @@ using ConnectionPtr = std::shared_ptr<Connection>;
 struct CommandServer::Impl {
   explicit Impl(CommandServerOptions settings) : options(std::move(settings)) {}
 
-  /// Starts each asynchronous operation that must always be pending, unless it is pending.
+  /// Starts each asynchronous operation that must always be pending, unless it already is.
   void ensure();
   void welcome(net::Socket socket);
   /// Why a further connection from this host is refused; empty if it is accepted.

@@ -1,6 +1,6 @@
 // DTrack's command channel (TCP 50105) without the network: takes bytes, gives answers.
 //
-// A command, and an answer, is one ASCII string of at most 200 bytes that ends with NUL.  Known:
+// A command, and an answer, is one ASCII string of at most 200 bytes that ends with NUL.  Commands:
 //   dtrack2 get system access          -> dtrack2 set system access full | none
 //   dtrack2 tracking start | stop      -> dtrack2 ok
 //   dtrack2 get status active          -> dtrack2 set status active mea | none

@@ -16,7 +16,8 @@ namespace chorus::dtrack {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:5000"};
-  /// The port that we send from; clients behind firewalls write to it to open them.  0: any.
+  /// The port from which we send; clients write to it so that their firewalls let our datagrams in.
+  /// 0: any port.
   int source_port = 50107;
   outlet::Multicast multicast;
   Room room = Room::Normal;

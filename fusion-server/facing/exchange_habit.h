@@ -57,7 +57,7 @@ class ExchangeHabit {
   void learn(const Passage& passage, const HabitPrior& prior);
 
  private:
-  static constexpr std::size_t kAngles = 12;  // of 15 deg
+  static constexpr std::size_t kAngles = 12;  // of 15 deg each
   /// Number of changes, and the time in which they could have happened.
   struct Count {
     double events = 0.0;

@@ -14,7 +14,7 @@ constexpr double kMaxAgree = 4.0;  // Limit on the log odds of one instant, beca
 /// The state of a two-state chain after one more observation.
 struct Chain {
   double likelihood = 0.0;  ///< Likelihood of the observation.
-  double exchanged = 0.0;   ///< Probability afterwards.
+  double exchanged = 0.0;   ///< Probability afterwards that the labels are swapped.
 };
 
 /// Advances the chain and adds an observation; `odds`: its log odds for "swapped".
@@ -37,8 +37,12 @@ Passage passage(const Labels& now, double before, double after) {
 
 }  // namespace
 
+double shown_log_odds(const Spans& view, const Spans& held) {
+  return 2.0 * agreement(view, held) / (kSpanSigma * kSpanSigma);
+}
+
 double agreement_log_odds(const Spans& view, const Spans& held) {
-  return std::clamp(2.0 * agreement(view, held) / (kSpanSigma * kSpanSigma), -kMaxAgree, kMaxAgree);
+  return std::clamp(shown_log_odds(view, held), -kMaxAgree, kMaxAgree);
 }
 
 LabelStep step_labels(const std::optional<Exchanged>& before, const Labels& now,

@@ -33,7 +33,11 @@ struct LabelStep {
   Passage passage;  ///< What happened if the held sides are right; all zero for a new view.
 };
 
-/// Log odds that the spans of a view agree with the held ones rather than oppose them.
+/// Log odds that the spans of a view agree with the held ones rather than oppose them, as if all
+/// errors were of this instant.
+[[nodiscard]] double shown_log_odds(const Spans& view, const Spans& held);
+
+/// The same as evidence: limited, because errors persist.
 [[nodiscard]] double agreement_log_odds(const Spans& view, const Spans& held);
 
 /// One step of the forward filter; if there is no `before`, the view is new.

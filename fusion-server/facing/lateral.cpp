@@ -1,5 +1,6 @@
 #include "fusion-server/facing/lateral.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/body/bones.h"
@@ -9,12 +10,14 @@ namespace chorus::facing {
 namespace {
 
 constexpr double kGuessedPair = 0.3;  // Weight of a pair with an inferred joint.
+// [m]; longer spans count as this long: a kick must not outweigh shoulders and hips.
+constexpr double kMaxSpan = 0.4;
 constexpr std::size_t kTrunkPairs = 2;
 constexpr int kRounds = 3;  // One or two rounds are enough for agreement.
 
 struct Joined {
   Spans spans;          ///< Mean of the views, each with the sign that makes it agree.
-  double agreed = 0.0;  ///< [m^2]
+  double agreed = 0.0;  ///< Sum of |agreement()| of the views with the mean [m^2].
 };
 
 Joined join(const std::vector<Spans>& views, const Spans& start) {
@@ -48,7 +51,8 @@ Spans spans_of(const Skeleton<WorldSpace>& body) {
     const Joint& right = body[mirror(kSidePairs[i])];
     if (!left.seen() || !right.seen()) continue;
     const bool tracked = left.state == JointState::Tracked && right.state == JointState::Tracked;
-    spans[i] = (tracked ? 1.0 : kGuessedPair) * (left.position - right.position);
+    const Eigen::Vector3d apart = left.position - right.position;
+    spans[i] = (tracked ? 1.0 : kGuessedPair) * std::min(1.0, kMaxSpan / apart.norm()) * apart;
   }
   return spans;
 }

@@ -39,8 +39,8 @@ inline constexpr double kMinSpan = 0.05;  ///< [m]; shorter spans have no direct
 [[nodiscard]] std::optional<double> facing_of(const SensorView& view,
                                               const Eigen::Vector3d& forward);
 
-/// The spans on which the views agree when there are no earlier ones: each view is tried as the
-/// start, and the one with which the others agree best wins.
+/// The spans on which the views agree when there are no earlier spans: each view is tried as the
+/// start, and the start that leads to the best agreement wins.
 [[nodiscard]] Spans agreed_spans(const std::vector<Spans>& views);
 
 }  // namespace chorus::facing

@@ -49,7 +49,7 @@ std::vector<Sight> sights_of(const Person& person, JointId left) {
   return sights;
 }
 
-/// The mean of all sights except that of index `self`.
+/// The mean of all views except that of index `self`.
 Places mean_of_others(const std::vector<Sight>& sights, std::size_t self) {
   Places mean;
   for (std::size_t i = 0; i < sights.size(); ++i) {

@@ -16,10 +16,10 @@ struct LimbLimits {
   bool operator==(const LimbLimits&) const = default;
 };
 
-/// Call this after each view's labels have been corrected as a whole.  Swaps a pair of joints, with
-/// what hangs on it, if that fits the mean of the other views much better, where two or more show
-/// the pair.  With fewer, a pair that clearly contradicts `held`, the recently agreed spans,
-/// becomes Inferred.
+/// Call this after each view's labels have been corrected as a whole.  If two or more other views
+/// show a pair of joints, the pair is swapped, together with the joints beyond it (such as hands),
+/// if that fits the mean of these views much better.  If fewer do, a pair that clearly contradicts
+/// `held`, the recently agreed spans, becomes Inferred.
 void mend_limbs(Person& person, const Spans& held, const LimbLimits& limits);
 
 }  // namespace chorus::facing

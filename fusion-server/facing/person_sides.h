@@ -28,13 +28,13 @@ struct Spell {
 /// Evidence of one instant that the held sides are right, in log odds.
 struct Evidence {
   double news = 0.0;     ///< From labels and posture; only what earlier instants have not shown.
-  double walking = 0.0;  ///< That the person walks forwards.
+  double walking = 0.0;  ///< Log odds that a person whose held sides are right walks forwards.
   double share = 1.0;    ///< Share of `walking` that is new, in [0, 1].
 };
 
 struct PersonPrior {
   Spell backwards{0.15, 3.0};
-  double slip = 0.0001;  ///< Rate at which the held sides become wrong without being noticed [1/s].
+  double slip = 0.0001;  ///< Rate at which the held sides become wrong unnoticed [1/s].
   double lost = 0.5;     ///< The same rate while no view shows left and right [1/s].
 
   bool operator==(const PersonPrior&) const = default;

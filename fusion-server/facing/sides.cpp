@@ -11,8 +11,9 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kClear = 2.0;  // Log odds from which on one view alone counts as certain.
-constexpr double kBlind = 1.0;  // Log odds of all views together; with less, they show nothing.
+constexpr double kClear = 2.0;  // Log odds above which one view alone counts as certain.
+// Sum of the views' |log odds|; with less, no view shows left and right.
+constexpr double kBlind = 1.0;
 constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame count as one observation.
 
 /// Everything that the model computes for one person at one instant.
@@ -50,22 +51,29 @@ void keep_lost(Spans& spans, const Spans& before) {
 }
 
 /// True if the view opposes the held sides.  A view that clearly shows left and right is trusted;
-/// for an unclear one the last decision is kept.
-bool opposes(const SensorView& view, double agree, const Sides& sides) {
+/// for an unclear one the last decision is kept.  A sensor that tells front from rear seldom
+/// exchanges them, so that its view must show it the more clearly.
+bool opposes(const SensorView& view, const Spans& spans, const Sides& sides,
+             const SidesMemory& memory, const SidesConfig& config) {
+  const auto telling = memory.telling.find(view.sensor);
+  const double usually =
+      telling == memory.telling.end() ? 0.0 : usual_log_odds(telling->second, config.telling);
+  const double agree = usually + shown_log_odds(spans, sides.spans);
   if (std::abs(agree) > kClear) return agree < 0;
   const auto before = sides.views.find(view.sensor);
   return before != sides.views.end() && before->second.exchanged.held > 0.5;
 }
 
-void look_at_views(Instant& now, const Person& person, const Sides& sides) {
+void look_at_views(Instant& now, const Person& person, const Sides& sides,
+                   const SidesMemory& memory, const SidesConfig& config) {
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     now.agree.push_back(agreement_log_odds(now.views[v], sides.spans));
-    now.exchanged.push_back(opposes(person.views[v], now.agree[v], sides));
+    now.exchanged.push_back(opposes(person.views[v], now.views[v], sides, memory, config));
   }
 }
 
-/// The weighted mean of the views; a view that opposes the held sides is reversed, and one whose
-/// spans have become much shorter counts less.
+/// The mean of the views, weighted by the size of their spans; a view that opposes the held sides
+/// is reversed.
 Spans joined(const Instant& now) {
   Spans spans = no_spans();
   double weights = 0.0;
@@ -115,7 +123,7 @@ LabelStep step_of_view(const SensorView& view, double agree, double facing, cons
                      config.habit);
 }
 
-/// True if the view counts: from the instant when it first clearly shows left and right.
+/// True if the view counts: it does so once it has clearly shown left and right.
 bool counts(const SensorView& view, double agree, const Sides& sides) {
   return std::abs(agree) > kClear || sides.views.contains(view.sensor);
 }
@@ -139,16 +147,32 @@ bool nobody_tells(const Instant& now) {
   return sum < kBlind;
 }
 
+/// Log odds that the held sides are right, from the labels of all sensors that tell front from
+/// rear.
+double sight_of_all(const Instant& now, const Person& person, const SidesMemory& memory,
+                    const TellingPrior& prior) {
+  double sum = 0.0;
+  for (std::size_t v = 0; v < person.views.size(); ++v) {
+    const auto telling = memory.telling.find(person.views[v].sensor);
+    if (telling != memory.telling.end())
+      sum += sight_log_odds(now.agree[v], telling->second, prior);
+  }
+  return sum;
+}
+
 /// The evidence of an instant.  A view's first evidence counts in full, later evidence only as far
 /// as it is new.
 Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, const Spans& spans,
-                     const SidesConfig& config) {
+                     const SidesMemory& memory, const SidesConfig& config) {
   const Eigen::Vector3d forward = forward_of(spans);
   const double posture = posture_log_odds(person.views, forward, config.posture);
   Evidence evidence;
   evidence.news =
-      now.first ? posture : posture_news(posture, sides.posture, now.elapsed, config.posture.same);
+      now.first ? posture : news(posture, sides.posture, now.elapsed, config.posture.same);
   for (const LabelStep& step : now.steps) evidence.news += step.log_ratio;
+  const double sight = sight_of_all(now, person, memory, config.telling);
+  if (!now.first) evidence.news += news(sight, sides.sight, now.elapsed, config.telling.same);
+  sides.sight = sight;
   evidence.walking = sides.walk.log_odds(forward, config.walking);
   evidence.share = now.first ? 1.0 : std::min(1.0, now.elapsed / config.walking.same);
   sides.posture = posture;
@@ -158,6 +182,7 @@ Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, con
 void turn_round(Instant& now, Sides& sides, Spans& spans) {
   sides.filter.turn_round();
   sides.posture = -sides.posture;
+  sides.sight = -sides.sight;
   for (Spans* each : {&sides.spans, &spans}) {
     for (Eigen::Vector3d& span : *each) span = -span;
   }
@@ -170,13 +195,16 @@ bool must_turn(const PersonFilter& filter, bool first, const SidesConfig& config
   return std::log((1.0 - right) / right) > (first ? 0.0 : config.change_odds);
 }
 
-/// Learns habits, but only while the sides are certain, and from views whose labels could change.
+/// Learns habits, but only while the sides are certain, and from views that were seen before.
 void learn(const Instant& now, const Person& person, const Sides& sides, SidesMemory& memory,
            const SidesConfig& config) {
   if (sides.filter.right() < config.learn_from) return;
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     const Passage& passage = now.steps[v].passage;
-    if (passage.elapsed > 0) memory.habits[person.views[v].sensor].learn(passage, config.habit);
+    if (!(passage.elapsed > 0)) continue;
+    const SensorId& sensor = person.views[v].sensor;
+    memory.habits[sensor].learn(passage, config.habit);
+    memory.telling[sensor].learn(passage, config.telling);
   }
 }
 
@@ -215,17 +243,18 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   auto before = recall(memory, person.id, instant, config);
   now.first = !before;
   Sides sides =
-      before ? std::move(*before)
-             : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, {}};
+      before
+          ? std::move(*before)
+          : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, {}};
   now.elapsed = seconds(instant - sides.seen);
-  look_at_views(now, person, sides);
+  look_at_views(now, person, sides, memory, config);
   Spans spans = joined(now);
   spans = followed(sides.spans, spans, trust_in(spans, sides.spans));
   keep_lost(spans, sides.spans);
   step_views(now, person, spans, sides, memory, config);
   sides.walk.follow(person.views, instant, config.walking);
   sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
-  sides.filter.update(evidence_of(now, person, sides, spans, config));
+  sides.filter.update(evidence_of(now, person, sides, spans, memory, config));
   if (must_turn(sides.filter, now.first, config)) {
     turn_round(now, sides, spans);
   } else {

@@ -14,6 +14,7 @@
 #include "fusion-server/facing/limbs.h"
 #include "fusion-server/facing/person_sides.h"
 #include "fusion-server/facing/posture.h"
+#include "fusion-server/facing/telling.h"
 #include "fusion-server/facing/walking.h"
 
 namespace chorus::facing {
@@ -24,11 +25,12 @@ struct SidesConfig {
   WalkingCue walking = {};
   PersonPrior person = {};
   HabitPrior habit = {};
+  TellingPrior telling = {};
   LimbLimits limbs = {};
   double change_odds = 1.0;  ///< The held sides change if the log odds against them exceed this.
   double smoothing = 0.1;    ///< Time constant with which the held spans follow the views [s].
   double learn_from = 0.95;  ///< Habits are learned while the sides are at least this probable.
-  /// Forgets a person who was not seen for this long.
+  /// A person who was not seen for this long is forgotten.
   Duration forget = std::chrono::seconds(1);
 
   bool operator==(const SidesConfig&) const = default;
@@ -47,12 +49,15 @@ struct Sides {
   PersonFilter filter;
   Walk walk;
   double posture = 0.0;  ///< Log odds of the posture at the previous instant.
+  double sight = 0.0;    ///< Log odds of the labels at the previous instant.
   std::map<SensorId, SeenLabels> views;
 };
 
 struct SidesMemory {
   std::map<PersonId, Sides> people;
-  std::map<SensorId, ExchangeHabit> habits;  ///< Learned from all people whom the sensor saw.
+  // Learned from all people whom the sensor saw.
+  std::map<SensorId, ExchangeHabit> habits;
+  std::map<SensorId, Telling> telling;
 };
 
 /// Swaps left and right in the views that have them wrong, sets every view's `facing` to that of

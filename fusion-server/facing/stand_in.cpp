@@ -10,9 +10,10 @@ namespace chorus::facing {
 namespace {
 
 constexpr double kNearest = 0.3;  // [m], horizontal; a person is not nearer to a camera.
-// [m]; limit of size_of() the spans.  A person seen from the front has 0.8.
+// A figure is narrow if the size_of() its spans is less than this [m]; a person seen from the front
+// has 0.8.
 constexpr double kWide = 0.35;
-// Cosine of ray and normal; a flatter ray meets the plane too far away.
+// Cosine of the angle between ray and normal; a flatter ray meets the plane too far away.
 constexpr double kSteepest = 0.1;
 
 /// Moves the joint to where its ray meets the plane; if the ray is too flat, the joint is left out.

@@ -16,11 +16,11 @@ namespace chorus::facing {
 struct Figure {
   std::size_t view = 0;  ///< Index in Person::views.
   bool narrow = false;
-  Skeleton<WorldSpace> rays;  ///< The skeleton before.
+  Skeleton<WorldSpace> rays;  ///< The skeleton as the camera gave it.
 };
 
-/// Turns ray bodies into flat figures at `core` (world [m]).  A view whose camera is inside the
-/// person stays as it is.
+/// Turns ray bodies into flat figures at `core` (world [m]).  A view whose camera is closer than
+/// 0.3 m to the person stays as it is.
 [[nodiscard]] std::vector<Figure> stand_in(Person& person, const Eigen::Vector3d& core);
 
 /// Turns these views back into rays.  If left and right of a figure that is not narrow were swapped

@@ -9,7 +9,7 @@
 namespace chorus::facing {
 
 struct WalkingCue {
-  double log_odds = 3.0;   ///< Of walking forwards against backwards, at full speed.
+  double log_odds = 3.0;   ///< Log odds that somebody who walks at full speed walks forwards.
   double from = 0.3;       ///< A lower speed counts as standing [m/s].
   double full = 1.0;       ///< Speed from which `log_odds` applies in full [m/s].
   double smoothing = 0.2;  ///< Time constant of the speed [s].

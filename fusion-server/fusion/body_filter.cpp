@@ -16,12 +16,13 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kHabit = 5.0;        // [s] over which the views' habits are learned
+constexpr double kHabit = 5.0;        // [s] time constant of a Habit
 constexpr double kUsualScale = 0.01;  // relative differences in size that noise alone causes
 constexpr double kFirstAgreement = 0.25;
-constexpr double kNarrowShoulders = 0.1;  // [m] seen from above
+// [m]; shoulders that are closer together, seen from above, show no direction.
+constexpr double kNarrowShoulders = 0.1;
 
-/// A mean that follows slowly.
+/// A mean that follows new values slowly.
 struct Habit {
   double value = 0.0;
 
@@ -76,13 +77,13 @@ class BodyFilter final : public Estimator {
  private:
   [[nodiscard]] const BodyModel& model() const { return config_->body; }
 
-  /// By how much the shoulders have turned since the last instant [rad]; 0 if that is not known.
+  /// The angle by which the shoulders have turned since both were last placed [rad]; 0 if unknown.
   [[nodiscard]] double turned(const PlacedBody& body) {
     const PlacedJoint& left = body[index_of(JointId::ShoulderLeft)];
     const PlacedJoint& right = body[index_of(JointId::ShoulderRight)];
     if (!left.placed || !right.placed) return 0.0;
     const Eigen::Vector3d across = left.position - right.position;
-    if (std::hypot(across.x(), across.z()) < kNarrowShoulders) return 0.0;  // has no direction
+    if (std::hypot(across.x(), across.z()) < kNarrowShoulders) return 0.0;  // no direction
     const double before = std::exchange(yaw_, std::atan2(across.z(), across.x()));
     return std::abs(wrap_angle(yaw_ - before));
   }
@@ -132,8 +133,8 @@ class BodyFilter final : public Estimator {
             true};
   }
 
-  /// States the covariance, with the errors that all views have in common, which are in no view's
-  /// covariance.
+  /// Sets position and covariance.  Errors that all views have in common are added to the
+  /// covariance, because no view's covariance contains them.
   void state(FusedJoint& fused, const PlacedJoint& place) const {
     const BodyModel& body = model();
     const double wider = body.agreement > 0 ? agreement_.value / body.agreement : 1.0;
@@ -151,11 +152,12 @@ class BodyFilter final : public Estimator {
   MisfitSize misfits_;
   Biases biases_;
   MotionFilters filters_;
-  std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last seen [m^2].
+  std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last determined [m^2].
   Habit agreement_{kFirstAgreement};
   Habit scale_square_;
-  std::optional<Eigen::Vector3d> middle_;  ///< Of the trunk.
-  double yaw_ = 0.0;                       ///< Of the shoulders, when last placed [rad].
+  std::optional<Eigen::Vector3d> middle_;  ///< Middle of the trunk.
+  double yaw_ = 0.0;                       ///< Yaw of the shoulders when both were last placed
+                                           ///< [rad].
   std::optional<Timestamp> last_;
 };
 

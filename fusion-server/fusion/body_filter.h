@@ -4,8 +4,8 @@
 // At each instant all views are combined (sighted_body.h), the bones hold the joints together at
 // the lengths learned so far (bone_lengths.h), and each joint is filtered (motion_filter.h).  A
 // joint that no sensor sees is predicted for BodyModel::carry and moves with its bones; it is then
-// Inferred and has no contributors.  The stated covariance is that of the position at the instant:
-// the views' slow errors, the error common to all sensors, and the filter's own error.
+// Inferred and has no contributors.  The stated covariance is that of the position at the instant;
+// it includes the views' slow errors, the error common to all sensors, and the filter's own error.
 #pragma once
 
 #include <memory>

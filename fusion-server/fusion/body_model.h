@@ -8,26 +8,26 @@
 namespace chorus::fusion {
 
 struct BodyModel {
-  /// Where the estimate of misfits starts (misfit_size.h).  Standard deviation of the ratio by
-  /// which a sensor's whole body is too large or too small.
+  /// Start of the estimate of misfits (misfit_size.h): standard deviation of the ratio by which the
+  /// whole body of a view is too large or too small.
   double scale = 0.06;
-  /// Standard deviation of the turn of a sensor's whole body about the vertical axis, when seen
-  /// from the side [rad]: zero up to `turn_from`, in full from `turn_full` on; both are angles
-  /// between frontal and side-on.
+  /// The same for the angle [rad] by which the whole body of a view is turned about the vertical
+  /// axis when it is seen from the side.  It is zero up to `turn_from`, and reaches this value at
+  /// `turn_full`; both are angles between frontal and side-on.
   double turn = deg(20);
   double turn_from = deg(40);
   double turn_full = deg(90);
-  /// How constant a bone's length is [m], and the time over which the length is learned.
+  /// Standard deviation of a bone's length [m], and the time over which the length is learned.
   double bone = 0.003;
   Duration bone_memory = std::chrono::seconds(60);
-  /// Rate at which a sensor's offset of each joint is followed [1/s], 0: not at all; and the time,
-  /// or the angle [rad] by which the person has turned, after which it has faded: a sensor errs
-  /// differently about somebody whom it sees from another side.
+  /// Rate at which each sensor's bias of each joint is learned [1/s]; 0: no biases.
   double bias_rate = 3.0;
+  /// Biases fade by a factor of e in this time, and also while the person turns by this angle
+  /// [rad], because a sensor errs differently about somebody whom it sees from another side.
   Duration bias_memory = std::chrono::milliseconds(300);
   double bias_turn = deg(15);
-  /// Pose error in the weights of the views, as a fraction of what is stated (pose_error.h), and by
-  /// what factor it is larger where a joint is inferred.
+  /// For the weights of the views, the pose error (pose_error.h) of a tracked joint is multiplied
+  /// by `pose`, that of an inferred joint by `inferred`, too.
   double pose = 0.5;
   double inferred = 3.0;
   /// Huber's threshold, in standard deviations that include this pose error.
@@ -37,7 +37,7 @@ struct BodyModel {
   double resting = 0.0005;
   double moving = 3.0;
   double limb = 4.0;
-  /// Fraction of one instant's stated standard deviation that is independent at the next instant.
+  /// Fraction of a joint's standard deviation that is white noise, independent at each instant.
   double white = 0.15;
   /// The next two affect the stated errors only; 0: unused.  Sensors that differ in scale also have
   /// wrong proportions: the error is this fraction of the difference in scale, times a joint's

@@ -9,8 +9,8 @@ namespace chorus::fusion {
 namespace {
 
 constexpr double kAlike = 0.5;         // [s] within which errors are the same
-constexpr double kLeastPassed = 5e-3;  // [s] an instant counts for at least this,
-constexpr double kLongest = 0.1;       // [s] and for at most this, after a gap
+constexpr double kLeastPassed = 5e-3;  // [s] the least time that an instant counts for
+constexpr double kLongest = 0.1;       // [s] the most time that an instant counts for, after a gap
 
 /// For each bone its counterpart on the other side; bones in the middle map to themselves.
 std::array<std::size_t, kBones.size()> other_sides() {

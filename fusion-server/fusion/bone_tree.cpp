@@ -16,7 +16,7 @@ struct Node {
 /// x_child = offset + follow x_parent.
 struct Follower {
   bool held = false;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  ///< Of the child, given its parent.
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  ///< Covariance of the child, given its parent.
   Eigen::Matrix3d follow = Eigen::Matrix3d::Zero();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };

@@ -1,8 +1,8 @@
 // Moves joints so that the lengths of the bones fit: the body as a tree.
 //
-//   min  sum_j |x_j - z_j|^2_S_j + sum_b (|x_c - x_p| - L_b)^2 / s_b^2        docs/papers/body.md
-//   (4)
-// by Gauss-Newton, each step solved exactly from the leaves to the root and back (5)-(7).
+//   min  sum_j |x_j - z_j|^2_S_j + sum_b (|x_c - x_p| - L_b)^2 / s_b^2
+// (docs/papers/body.md (4)) by Gauss-Newton, each step solved exactly from the leaves to the root
+// and back (5)-(7).
 #pragma once
 
 #include <array>

@@ -5,9 +5,9 @@
 
 namespace chorus::fusion {
 
-/// The last body, moved on the floor so that its middle is at `middle` (world [m]); `unseen`: for
-/// how long.  Its joints are inferred, nobody contributes to them, and their covariance grows with
-/// time.
+/// The last body, moved on the floor so that its middle is at `middle` (world [m]).  `unseen`: time
+/// since a sensor last saw the person.  The joints are inferred, nobody contributes to them, and
+/// their covariance grows with that time.
 [[nodiscard]] FusedBody carry(const FusedBody& last, Duration unseen,
                               const Eigen::Vector3d& middle);
 

@@ -29,7 +29,7 @@ Eigen::Matrix3d ray_covariance(const Joint& joint, const NoiseModel& noise) {
 }
 
 /// A stated covariance, widened so that it can be inverted.  Rounding on the wire leaves
-/// eigenvalues slightly below 0 where a sensor says that one direction is hardly known.
+/// eigenvalues slightly below 0 where a sensor states that one direction is hardly known.
 Eigen::Matrix3d invertible(const Eigen::Matrix3d& stated) {
   constexpr double kLeastRatio = 1e-7;  // of the smallest to the largest eigenvalue
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;

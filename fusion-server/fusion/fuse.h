@@ -25,16 +25,17 @@ class Memory {
   Memory& operator=(Memory&&) noexcept = default;
   ~Memory() = default;
 
-  /// One body per person, in the order of `people`, each fused by method_for() it.  A person whom
-  /// no sensor sees is carried: predicted if the method can do that, otherwise moved in their last
-  /// pose.  When the configuration changes, all memory is cleared.
+  /// One body per person, in the order of `people`, each fused by the method that method_for()
+  /// returns; somebody who was fused from several sources just now keeps the configured method.  A
+  /// person whom no sensor sees is carried: predicted if the method can do that, otherwise moved in
+  /// their last pose.  When the configuration changes, all memory is cleared.
   [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
                                             const Instant& instant, const FusionConfig& config);
   /// Forgets people who are no longer tracked.
   void keep_only(const std::set<PersonId>& tracked);
 
  private:
-  /// The last body that a sensor saw.
+  /// A person's fused body at the last instant at which a sensor saw the person.
   struct Last {
     FusedBody body;
     Timestamp at;
@@ -44,7 +45,8 @@ class Memory {
 
   FusionConfig config_;
   std::map<PersonId, Last> last_;
-  std::map<PersonId, Timestamp> several_;  ///< When the configured method last was the right one.
+  std::map<PersonId, Timestamp> several_;  ///< When method_for() last returned the configured
+                                           ///< method.
   std::map<std::pair<PersonId, Method>, std::unique_ptr<Estimator>> estimators_;
 };
 

@@ -22,7 +22,8 @@ enum class Method {
   Substitution,     ///< The best skeleton, untracked joints from other views.  Has memory.
   OttoKalman,       ///< A Kalman filter per joint with Otto's weights in R.  Has memory.
   PointsAndRays,    ///< Robust least squares over points and rays of cameras.  Has memory.
-  BodyFilter,       ///< One body over time: bones, common errors of a view.  Has memory.
+  BodyFilter,       ///< One body over time, with its bones and the errors of whole views.  Has
+                    ///< memory.
 };
 
 struct FusionConfig {
@@ -32,9 +33,12 @@ struct FusionConfig {
   double zero_weight_floor = 0.02;
   NoiseModel noise;  ///< For sensors without an entry of their own.
   std::map<SensorId, NoiseModel> sensor_noise;
-  PoseError pose_error;  ///< InverseVariance, BodyFilter: part of the covariance that they state.
+  /// InverseVariance and BodyFilter add this to the covariance that they state.
+  PoseError pose_error;
   double common_sigma = 0.004;  ///< Error common to all sensors [m]; added to stated variances.
-  double huber = 1.5;  ///< [standard deviations]; robust loss: InverseVariance, PointsAndRays.
+  /// Threshold of the robust loss [standard deviations]: of InverseVariance, of PointsAndRays, and
+  /// of BodyFilter for joints that have a ray or a stated covariance.
+  double huber = 1.5;
   /// BestSkeleton, Substitution: how long another view must be better before it takes over.
   Duration hysteresis = std::chrono::milliseconds(300);
   /// OttoKalman: standard deviation of a view of weight 1 [m].
@@ -43,9 +47,10 @@ struct FusionConfig {
   /// joint's last position limits its depth when only one ray shows it.
   Duration kalman_coast = std::chrono::milliseconds(300);
 
-  /// PointsAndRays: a joint that its rays determine less precisely than this is left out [m].
+  /// PointsAndRays, BodyFilter: a joint that is left less certain than this by rays alone is left
+  /// out [m].
   double max_sigma = 0.15;
-  BodyModel body;  ///< BodyFilter.
+  BodyModel body;  ///< Parameters of BodyFilter.
 
   bool operator==(const FusionConfig&) const = default;
 };

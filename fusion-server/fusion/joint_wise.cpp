@@ -13,8 +13,8 @@
 namespace chorus::fusion {
 namespace {
 
-/// Highest weight first, then most tracked joints, then smallest sensor id: the order of the views
-/// never matters.
+/// The person with one view alone: that of the highest weight; of equal ones, that with the most
+/// tracked joints, then that of the smallest sensor id.  So the order of the views never matters.
 Person heaviest_view_of(const Person& person) {
   const auto heavier = [](const SensorView& a, const SensorView& b) {
     const double weight_a = Weight::clamped(a.weight).value();

@@ -23,7 +23,8 @@ constexpr double kNearest = 0.1;            // [m] a nearer joint counts as behi
 constexpr double kFirstRange = 3.0;         // [m] assumed range of a ray while it is unknown
 constexpr double kMinAngle = 1e-5;          // [rad] no camera is more precise
 constexpr double kLeastInformation = 1e-2;  // [1/m^2] (10 m); less along any axis counts as none
-constexpr double kScalePrior = 4.0;  // weight of "the scale is one", in views or degrees of freedom
+// Weight of the prior that the scale is 1, in views or in degrees of freedom.
+constexpr double kScalePrior = 4.0;
 constexpr std::size_t kManyViews = 4;  // from this many on, a median estimates the scale
 constexpr double kMedianOf2 = 1.3863;  // median of chi^2 with two degrees of freedom
 constexpr double kMedianOf3 = 2.3660;
@@ -35,7 +36,7 @@ struct Term {
   bool usable = true;  ///< The joint is in front of this camera.
 };
 
-/// Information across the ray at a range of one [1/rad^2].
+/// Information across the ray [1/rad^2], which is also that in [1/m^2] at a range of 1 m.
 Eigen::Matrix3d angular_information(const JointView& view) {
   const Eigen::Vector3d& d = view.joint.position;
   Eigen::Matrix<double, 3, 2> basis;
@@ -146,7 +147,7 @@ std::optional<Eigen::Vector3d> plain_start(const Terms& terms, std::span<const d
   return point;
 }
 
-/// Of all starts computed from one or two views, the one that agrees with the most other views.
+/// The start with the least loss: `start`, or one computed from one or two views alone.
 Eigen::Vector3d best_start(const Terms& terms, Eigen::Vector3d start) {
   double least = loss_at(terms, start);
   const std::size_t count = std::min(terms.size(), kMaxStarts);

@@ -5,8 +5,9 @@
 // covariance C [rad^2] becomes r^2 C [m^2].
 //   p = argmin sum_i rho(|p - z_i|_Sigma_i)
 // solved by Gauss-Newton with re-weighting.  The influence of a measurement grows like Huber's up
-// to `huber`, then stays constant, and fades beyond kFar.  That is not convex: where measurements
-// contradict each other, every pair of them is tried as a start (docs/papers/rays.md).
+// to `huber`, then stays constant, and fades beyond 5 standard deviations.  That is not convex:
+// where measurements contradict each other, every pair of them is tried as a start
+// (docs/papers/rays.md).
 #pragma once
 
 #include <optional>

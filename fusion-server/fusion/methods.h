@@ -25,11 +25,11 @@ struct MethodRow {
 /// An estimator of this method for one person, with the configured parameters.
 [[nodiscard]] std::unique_ptr<Estimator> begin(Method method, const FusionConfig& config);
 
-/// The configured method; for a person seen only by rays, the method that can use rays.  The body
-/// filter corrects the typical errors of depth sensors, so two kinds of people get another method.
-/// Points whose depth is hardly known, according to their covariance, count as rays.  A body that
-/// comes with covariances from a single source, such as another fusion server or a file of fused
-/// frames, is taken as it is.
+/// The configured method, but PointsAndRays for a person seen as rays alone.  The body filter
+/// corrects the typical errors of depth sensors, so where it is configured, two kinds of people get
+/// another method: PointsAndRays if the depth of all points is hardly known according to their
+/// covariance; and InverseVariance, which takes a body as it is, if it comes with covariances from
+/// a single source, such as another fusion server or a file of fused frames.
 [[nodiscard]] Method method_for(const Person& person, const FusionConfig& config);
 
 }  // namespace chorus::fusion

@@ -6,7 +6,7 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kPrior = 1.0;        // [s] of evidence that the configured sizes are worth
+constexpr double kPrior = 1.0;        // [s] of evidence that the configured sizes count for
 constexpr double kMemory = 5.0;       // [s]
 constexpr double kLongestGap = 0.1;   // [s] the most that an instant counts for, after a gap
 constexpr double kLeastSideOn = 0.3;  // a view nearer to frontal says nothing about turns

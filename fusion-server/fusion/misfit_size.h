@@ -2,10 +2,10 @@
 // seen.
 //
 // If a sensor measures every body correctly, allowing for a misfit would waste what the sensor
-// measures of size and direction.  So the configured sizes are only the start of the estimate.  It
-// is EM over all views, where the expected square of a misfit is its own square plus its variance:
-// sigma^2 = mean (m^2 + var m),   faded over some seconds                   docs/papers/body.md
-// (13)
+// measures of size and direction.  So the configured sizes are only the start of the estimate
+// (docs/papers/body.md (13)).  It is EM over all views, where the expected square of a misfit is
+// its own square plus its variance:
+//   sigma^2 = mean (m^2 + var m),   faded over some seconds
 #pragma once
 
 #include <span>

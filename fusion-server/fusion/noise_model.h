@@ -12,7 +12,7 @@ struct NoiseModel {
   double along = 0.015;
   double across = 0.015;
   double inferred_factor = 3.0;  ///< Factor on the standard deviations of inferred joints.
-  double ray = deg(0.5);         ///< Direction of a ray without its own covariance [rad].
+  double ray = deg(0.5);         ///< Direction of a ray that states no covariance [rad].
 
   bool operator==(const NoiseModel&) const = default;
 };

@@ -1,5 +1,6 @@
 // Error of a tracked pose beyond its sensor's noise: it changes slowly and grows towards the ends
-// of the limbs.  This estimate of its size does not affect positions, only the stated covariances.
+// of the limbs.  This estimate of its size goes into the stated covariances; only the body filter
+// uses a part of it in the weights of the views, too.
 #pragma once
 
 #include "common/body/skeleton.h"

@@ -26,7 +26,7 @@ Ranked ranked(const Person& person, const Score& score) {
   return views;
 }
 
-/// The mean of one view is that view, with the error model's covariance.
+/// Turns one view into a body with the error model's covariance: the mean of a single view.
 class OneView {
  public:
   explicit OneView(FusionConfig config) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRounds = 3;
 constexpr int kFirstWeighings = 5;  // re-weightings of a joint's views, starting from their mean
-constexpr int kWeighings = 2;       // the same, starting from the previous round's result
+constexpr int kWeighings = 2;       // the same, starting from the body held by its bones
 
 Eigen::Matrix3d round_covariance(double variance) { return variance * Eigen::Matrix3d::Identity(); }
 
@@ -116,7 +116,8 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
       Weighing& weighing = sights.weighings[v];
       const Eigen::Vector3d& place = sights.views[v].joint.position;
-      // Knowing by how much a view is off does not make it right: its bias counts as distance too.
+      // The bias was subtracted but counts as distance, so that a view known to be biased is
+      // trusted less.
       const Eigen::Vector3d off = place + weighing.bias - joint.position;
       const double distance = off.norm() / std::sqrt(weighing.variance);
       const bool weigh = joint.placed && huber > 0 && distance > huber;
@@ -131,7 +132,8 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
 
 PlacedJoint SightedBody::robust_squares(Sights& sights, const PlacedJoint& expected) const {
   auto found = least_squares(sights.views, config_.huber);
-  // A point says itself how little it knows; only what rays leave open is no place.
+  // A point is placed whatever its covariance is; a joint with rays alone only if they determine
+  // it.
   const bool point =
       std::ranges::any_of(sights.views, [](const JointView& view) { return view.joint.seen(); });
   const auto is_open = [&](const auto& solved) {
@@ -218,8 +220,9 @@ std::optional<double> SightedBody::scale_square() const {
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t v = 0; v < seen_.size(); ++v) {
+    // Rays alone have no size.
     if (!has_points(seen_[v])) continue;
-    sum += misfits_[v].scale * misfits_[v].scale;  // rays alone have no size
+    sum += misfits_[v].scale * misfits_[v].scale;
     count += 1.0;
   }
   if (count < 2.0) return std::nullopt;

@@ -16,7 +16,7 @@
 
 namespace chorus::fusion {
 
-/// Each sensor's constant offset of each joint [m]; zero for joints without one.
+/// The learned error of each joint's position in each sensor [m]; zero if none was learned.
 using Biases = std::map<SensorId, std::array<Eigen::Vector3d, kJointCount>>;
 
 class SightedBody {
@@ -41,8 +41,8 @@ class SightedBody {
   /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last
   /// call, since when the person has turned by `turned` [rad].
   void learn(Biases& biases, const PlacedBody& body, double passed, double turned) const;
-  /// Mean squared residual between the points and `body`, per axis, in the points' variances; none
-  /// without a joint that two views have.
+  /// Mean squared residual between the points and `body`, per axis, in units of the points'
+  /// variances; none if no joint is seen in two views.
   [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;
   /// Mean square of the views' scale errors; none with fewer than two views.
   [[nodiscard]] std::optional<double> scale_square() const;
@@ -52,17 +52,18 @@ class SightedBody {
  private:
   /// How one view of a joint counts.
   struct Weighing {
-    double variance = 0.0;                           ///< Per axis, for weights [m^2].
-    double stated = 0.0;                             ///< Per axis, with the whole pose error [m^2].
-    Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< What was subtracted [m].
+    double variance = 0.0;                           ///< Variance per axis, for the weights [m^2].
+    double stated = 0.0;                             ///< Variance per axis, with the whole pose
+                                                     ///< error [m^2].
+    Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< The bias that was subtracted [m].
     double trust = 1.0;
   };
   /// A joint's views, corrected, and how far each is trusted.
   struct Sights {
     std::vector<JointView> views;
-    std::vector<Weighing> weighings;  ///< Of the same views.
-    bool round = true;                ///< All points have isotropic errors.
-    bool bounded = false;             ///< The predicted place was needed besides the views.
+    std::vector<Weighing> weighings;  ///< One for each of `views`.
+    bool round = true;                ///< True if all views are points with isotropic errors.
+    bool bounded = false;             ///< True if the views alone do not determine the position.
   };
   using Offsets = std::array<Eigen::Vector3d, kJointCount>;
 

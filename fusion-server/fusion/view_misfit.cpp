@@ -18,9 +18,10 @@ constexpr double kLeastTurn = 0.005;  // [rad] prior for the turn of a frontal v
 constexpr double kOff = 1e-9;         // prior of a nuisance parameter that is switched off
 constexpr double kNarrow = 0.1;       // [m] shoulders closer together give no direction
 
-/// How the joints hang on the spine.
+/// How the joints are attached to the spine.
 struct Hanging {
-  std::array<std::size_t, kJointCount> axis{};  ///< The end of the spine that a joint hangs on.
+  std::array<std::size_t, kJointCount> axis{};  ///< The end of the spine to which a joint is
+                                                ///< attached.
   std::array<bool, kJointCount> trunk{};
 };
 

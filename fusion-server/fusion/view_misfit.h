@@ -3,9 +3,9 @@
 // A tracker that fits a body of its own proportions scales all bones of a frame wrongly by one
 // ratio; one that sees a body from the side takes it to be turned towards itself (Otto et al. 3.2).
 // Neither averages out over joints, so each is a normally distributed nuisance of the view:
-//   z_j = x_j + s (x_j - c) + t (up x (x_j - a_j)) + e_j                      docs/papers/body.md
-//   (2)
-// with c the middle of the trunk and a_j the upper or lower end of the spine.
+//   z_j = x_j + s (x_j - c) + t (up x (x_j - a_j)) + e_j
+// (docs/papers/body.md (2)) with c the middle of the trunk and a_j the upper or lower end of the
+// spine.
 #pragma once
 
 #include <array>

@@ -64,7 +64,7 @@ void add_real(Bytes& out, double value) {
 
 std::uint32_t time_code(const outlet::TrackerFrame& frame) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(to_unix_ns(frame.instant)) /
-                                    1'000'000U);  // The field has 32 bits.
+                                    1'000'000U);  // In milliseconds; the field has 32 bits.
 }
 
 /// Every datagram contains all segments, so an unseen limb is placed at its parent.

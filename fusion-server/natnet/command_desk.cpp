@@ -65,7 +65,7 @@ std::string_view CommandDesk::objection(const Address& from) const {
 }
 
 void CommandDesk::knock(const Address& from, SteadyTime now) {
-  // This many knocks must be a flood; a real client will ask again.
+  // So many addresses that asked once must be a flood; a real client will ask again.
   if (knocks_.size() >= kMaxKnocks) knocks_.clear();
   if (count_of(knocks_, from.host) >= options_.max_clients_per_address) {
     knocks_.erase(knocks_.lower_bound({from.host, 0}));

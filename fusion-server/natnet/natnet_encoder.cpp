@@ -128,7 +128,7 @@ Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models, cons
   append(out, kNone);  // force plates
   append(out, kNone);  // devices
   add_times(out, frame, times);
-  // Never says that something is recorded or replayed.
+  // The flags for recording and replay are never set.
   append(out, models_changed ? kModelsChanged : std::int16_t{0});
   append(out, std::uint32_t{0});
   return message_of(Message::Frame, out);

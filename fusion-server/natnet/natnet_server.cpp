@@ -96,7 +96,7 @@ error_code Server::Impl::open_group(const asio::ip::address_v4& interface) {
   if (!error && !interface.is_unspecified()) {
     group.set_option(asio::ip::multicast::outbound_interface(interface), error);
   }
-  // Not bound to the data port, because clients on this host bind to that.
+  // The socket is not bound to the data port, because clients on this host bind to that.
   if (!error) group.bind({interface, 0}, error);
   return error;
 }

@@ -71,8 +71,8 @@ const Eigen::Quaterniond& rig_from_ahead_rest() {
   return kHalfTurnAboutUp;
 }
 
-// Elements of R = Rx(a) Ry(b) Rz(c): R02 = sin b, R12 = -sin a cos b, R22 = cos a cos b, R01 = -cos
-// b sin c, R00 = cos b cos c.
+// Elements of R = Rx(a) Ry(b) Rz(c):
+//   R02 = sin b, R12 = -sin a cos b, R22 = cos a cos b, R01 = -cos b sin c, R00 = cos b cos c.
 Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& r) {
   const double sine = std::clamp(r(0, 2), -1.0, 1.0);
   if (std::abs(sine) > kGimbal) {
@@ -81,8 +81,8 @@ Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& r) {
   return {std::atan2(-r(1, 2), r(2, 2)), std::asin(sine), std::atan2(-r(0, 1), r(0, 0))};
 }
 
-// Elements of R = Ry(a) Rx(e) Rz(r): R12 = -sin e, R02 = sin a cos e, R22 = cos a cos e, R10 = cos
-// e sin r, R11 = cos e cos r.
+// Elements of R = Ry(a) Rx(e) Rz(r):
+//   R12 = -sin e, R02 = sin a cos e, R22 = cos a cos e, R10 = cos e sin r, R11 = cos e cos r.
 Eigen::Vector3d trackd_angles(const Eigen::Matrix3d& r) {
   const double sine = std::clamp(-r(1, 2), -1.0, 1.0);
   if (std::abs(sine) > kGimbal) {

@@ -71,7 +71,7 @@ struct DatagramSender::Sockets {
   std::optional<DatagramSocket> v4;
   std::optional<DatagramSocket> v6;
   std::vector<udp::endpoint> targets;
-  bool loopback = true;  ///< True if every target is on this host.
+  bool loopback = true;  ///< True if every target and `listen_address` are loopback.
 
   [[nodiscard]] std::optional<DatagramSocket>& towards(const udp& protocol) {
     return protocol == udp::v6() ? v6 : v4;

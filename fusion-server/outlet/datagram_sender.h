@@ -69,7 +69,7 @@ class DatagramSender {
   void send_to(std::span<const char> datagram, const Target& to);
   /// The first 64 bytes of the next datagram received on our source port; none if there is none.
   [[nodiscard]] std::optional<Arrival> receive();
-  /// The port from which we send IPv4 datagrams; 0 before the first one.
+  /// The port from which we send IPv4 datagrams; 0 if there is no IPv4 socket.
   [[nodiscard]] std::uint16_t source_port() const;
   /// Number of datagrams lost on sending.  May be called from any thread.
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }

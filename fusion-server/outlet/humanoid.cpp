@@ -105,7 +105,7 @@ struct Limb {
   JointId root, middle, end;
   HumanBone upper, lower, trunk;
   Eigen::Vector3d rest_along;
-  Eigen::Vector3d rest_hinge;  ///< Axis upper x lower of the natural bend.
+  Eigen::Vector3d rest_hinge;  ///< Axis of the natural bend: upper x lower.
 };
 
 const std::array<Limb, 4> kLimbs{{
@@ -243,7 +243,7 @@ void Rig::add_hand(const Tip& hand) {
   if (!along) return follow(hand.bone, false);
   const Eigen::Quaterniond forearm = turn(hand.lower);
   const Direction thumb = direction(body_, hand.root, hand.aside);
-  // Without a thumb, `along` itself, which defines no plane.
+  // Without a thumb, `along` itself is passed, which defines no plane.
   const Cross now{*along, thumb.value_or(*along)};
   set(hand.bone, turned({hand.rest_along, hand.rest_aside}, now, forearm));
 }

@@ -11,7 +11,7 @@
 //   for the trunk:   from the line of the hips (Hips), of the shoulders (Chest), of both (Spine),
 //   for neck, head:  from the shoulders' line, rotated as the joint's own orientation is against
 //                    that of SpineShoulder (the only use of orientations: those of limbs are wrong
-//                    by 50-170 degrees about the bone, those of leaves do not exist),
+//                    by 50-170 degrees about the bone, and leaf joints have none),
 //   for the limbs:   from the plane of elbow or knee if bent (faded in from 15 to 30 degrees); for
 //                    a straight limb, by the shortest turn out of T-pose relative to the trunk,
 //   for the hands:   from the thumb, otherwise like the forearm,

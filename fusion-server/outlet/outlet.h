@@ -25,7 +25,7 @@ class Outlet {
   [[nodiscard]] virtual SinkCounters counters() const = 0;
 };
 
-/// What every protocol receives besides its own settings.
+/// What every protocol receives in addition to its own settings.
 struct OutletContext {
   std::size_t slots = 6;  ///< Maximum number of people.
   std::shared_ptr<const Clock> clock;
@@ -42,9 +42,9 @@ struct OutletTiming {
   std::shared_ptr<const Clock> clock;
 };
 
-/// Passes frames to the outlet on its own thread.  When the outlet is two frames behind, the oldest
-/// frame is dropped and counted; the pipeline never waits.  An exception from the outlet is logged
-/// and counted as failed; only that frame is lost.
+/// Passes frames to the outlet on a thread of its own.  When the outlet is two frames behind, the
+/// oldest frame is dropped and counted; the pipeline never waits.  An exception from the outlet is
+/// logged and counted as failed; only that frame is lost.
 class OutletSink final : public Sink {
  public:
   OutletSink(std::unique_ptr<Outlet> outlet, OutletTiming timing);

@@ -34,7 +34,7 @@ struct Opening {
   Result<void> outcome;
 };
 
-/// open_outlet() is found in the protocol's namespace.
+/// open_outlet() is found in the protocol's namespace, by argument-dependent lookup.
 template <class Setting>
 void open_one(std::string_view key, const Setting& output, Opening& opening) {
   if (!output.common.enabled || !opening.outcome) return;

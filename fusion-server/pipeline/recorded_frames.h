@@ -29,8 +29,8 @@ class RecordedFrames {
   RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors,
                  std::map<SensorId, ClockOffset> clocks = {});
 
-  /// Reads until every lane has passed `instant` by kAhead, or has ended.  Refuses a sensor that is
-  /// in two lanes, and sensors whose clocks differ too much to be merged.
+  /// Reads until every lane has passed `instant` by five seconds, or has ended.  Refuses a sensor
+  /// that is in two lanes, and sensors whose clocks differ too much to be merged.
   [[nodiscard]] Result<void> read_to(Timestamp instant);
   /// Reads until there is a frame captured after `instant`; returns its capture time, or none at
   /// the end.

@@ -7,7 +7,7 @@ namespace chorus::pipeline {
 namespace {
 
 constexpr std::size_t kMaxWalkers = 60'000;  // This many bodies need 100 MB.
-// Bodies in frames with several people only show where the feet are.
+// Frames with several people are used for the floor only, because they show where the feet are.
 constexpr std::size_t kMaxSeveral = 10'000;
 /// A longer gap does not count as time in which a person was seen.
 constexpr Duration kNextSight = std::chrono::seconds(1);

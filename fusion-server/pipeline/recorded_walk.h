@@ -17,7 +17,7 @@ class RecordedWalk {
   [[nodiscard]] bool enough() const { return alone_ >= wanted_ || used_up(); }
   /// True if the memory limit is reached: the walk cannot become longer.
   [[nodiscard]] bool used_up() const;
-  /// Makes enough() false until the walk has grown by its initially wanted length.
+  /// Makes enough() false until a person was seen alone for two more minutes.
   void go_on();
 
   /// One track for each sensor that has delivered a frame, ordered by id.

@@ -1,4 +1,4 @@
-// Seats people in numbered slots, once for all outputs.
+// Assigns people to numbered slots, once for all outputs.
 //
 // A plain value without clock, thread or socket: the instants determine how long a person was
 // absent.
@@ -36,7 +36,8 @@ class Seating {
     PersonId person;
     Timestamp seen;
     bool absent = false;
-    /// The person's own slot, or a lower one whose person was absent when this person arrived.
+    /// The slot for which the person waits: their own, or a lower one whose person was absent when
+    /// this one arrived.
     std::size_t waits_for = 0;
   };
 

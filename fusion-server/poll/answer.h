@@ -39,8 +39,8 @@ struct FrameAnswer {
 /// The four time stamps of the exchange; none if the answer has no Chorus-Clock header.
 [[nodiscard]] std::optional<ClockExchange> exchange_of(const http::ClientResponse& response);
 
-/// The frame with its times corrected to our clock by `clock`, and with its floor, which is y = 0
-/// in world space.
+/// The frame with its times corrected to our clock by `clock`, and with `floor`; the floor of a
+/// frame in world space is y = 0 instead.
 [[nodiscard]] SensorFrame place_in_time(const resource::FrameResource& frame,
                                         const SensorId& sensor, Timestamp received,
                                         const std::optional<ClockEstimate>& clock,

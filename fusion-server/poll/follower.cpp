@@ -147,7 +147,7 @@ void Follower::act(const Sleep& sleep) {
   timer_.async_wait([weak = weak_from_this()](const net::error_code& error) {
     const auto self = weak.lock();
     if (!self || error || self->stopped_) return;
-    // The timer was set again, or replaced by a request, just when it expired.
+    // Ignored if the timer was set again, or replaced by a request, just when it expired.
     if (self->timer_.expiry() > std::chrono::steady_clock::now() || self->fsm_.asking()) return;
     self->survive([&] { self->feed(Woke{}); });
   });

@@ -22,7 +22,7 @@ class ParseBudget {
   static constexpr int kTimes = 10;
   static constexpr Duration kAllowed = std::chrono::milliseconds(30);
 
-  Duration debt_{0};  ///< Time to wait until all reading so far is a tenth of the time.
+  Duration debt_{0};  ///< Time to wait until reading has taken no more than a tenth of all time.
   Duration at_{0};
 };
 

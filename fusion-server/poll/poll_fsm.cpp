@@ -34,7 +34,7 @@ Duration backoff(const PollTimings& timings, int failures_in_row, double jitter)
   Duration whole = timings.first_backoff;
   for (int i = 0; i < doublings && whole < timings.max_backoff; ++i) whole *= 2;
   whole = std::min(whole, timings.max_backoff);
-  const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // False for NaN, too.
+  const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // Also 0 for NaN.
   return whole / 2 + from_seconds(seconds(whole) * 0.5 * fraction);
 }
 
@@ -158,7 +158,7 @@ Step PollFsm::on(const ClockAnswered& answer, Duration now, double) {
 }
 
 Step PollFsm::on(const Unreadable& body, Duration, double jitter) {
-  etag_.clear();  // Makes the next request get a body, whatever its tag.
+  etag_.clear();  // Without a tag, the next answer has a body even if the frame is the same.
   Step step = fail(SensorState::Refused, to_string(body.error), jitter);
   auto& pause = std::get<Sleep>(*step.action).duration;
   pause = std::max(pause, body.rest);
@@ -253,7 +253,8 @@ bool PollFsm::wants_stream(Duration now) {
   return stream_asked_ = true;
 }
 
-/// Ends streaming.  Each end without frames in between doubles the pause, up to a minute.
+/// Ends streaming.  Each stream that lasted less than kStreamProven doubles the pause before the
+/// next one, up to a minute.
 void PollFsm::leave_stream(Duration now, Duration pause) {
   stream_asked_ = false;
   streaming_ = false;

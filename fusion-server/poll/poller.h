@@ -2,7 +2,7 @@
 // clocks.
 //
 // There is one thread for all sensors, and one or two connections per sensor.  A dead, slow or
-// lying sensor costs the others nothing except network traffic and a tenth of the thread's time.
+// faulty sensor costs the others nothing except network traffic and a tenth of the thread's time.
 #pragma once
 
 #include <functional>
@@ -50,9 +50,10 @@ struct PollReport {
   std::optional<ClockEstimate> clock;
   std::optional<NtpStatus> host;  ///< What its host says of its own clock.
   std::uint64_t frames = 0;
-  std::uint64_t missed = 0;  ///< Gaps in the sensor's sequence that were not filled.
-  std::uint64_t early = 0;   ///< Frames refused because their time is ahead of ours ...
-  std::uint64_t stale = 0;   ///< ... or far behind.
+  std::uint64_t missed = 0;  ///< Frames missing from the sensor's numbering: neither delivered nor
+                             ///< filled in later.
+  std::uint64_t early = 0;   ///< Frames refused because their time is ahead of ours.
+  std::uint64_t stale = 0;   ///< Frames refused because their time is far behind ours.
   std::uint64_t failures = 0;
 };
 

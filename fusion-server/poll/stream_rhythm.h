@@ -1,6 +1,6 @@
 // Finds when a stream's next frame is overdue, and whether that has happened recently.  A packet
-// that is lost twice holds up all later ones for a fifth of a second or more, while another
-// connection is free.
+// that is lost twice holds up all later ones for a fifth of a second or more, while the connection
+// for requests is free.
 #pragma once
 
 #include <optional>

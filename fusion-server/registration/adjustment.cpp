@@ -17,18 +17,23 @@ namespace {
 
 constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
-constexpr int kScaleRounds = 2;                // of Tukey's scale
-constexpr double kSettled = 1e-6;              // [rad], [m]
-constexpr double kNearly = 1e-4;               // ... before the scale is read again
-constexpr std::size_t kBiasTerms = 1'000'000;  // of many sensors a part tells what bias does
-constexpr double kRidge = 1e-6;      // holds the state in directions that nothing observes
-constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
+constexpr int kScaleRounds = 2;  // each with a new scale for Tukey's weights
+// [rad], [m]: an iteration that moves no sensor by more ends the last round.
+constexpr double kSettled = 1e-6;
+// [rad], [m]; the same for the rounds before, after which the scale is computed again.
+constexpr double kNearly = 1e-4;
+// With more terms, only a part of the points is used for the bias.
+constexpr std::size_t kBiasTerms = 1'000'000;
+constexpr double kRidge = 1e-6;  // keeps the equations solvable where nothing is measured
+// Sigma with which the master's yaw and its position on the floor are held [rad], [m].
+constexpr double kGauge = 1e-5;
 constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependent = 1.2;   // [1/s] independent measurements: a joint's errors last
-constexpr double kPriorFreedom = 3.0;  // what that counts for: as much as a sensor's own blocks
+constexpr double kIndependent = 1.2;  // [1/s] rate of independent measurements
+// Weight of the expected factor, in degrees of freedom.
+constexpr double kPriorFreedom = 3.0;
 constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
 constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
 
@@ -165,7 +170,7 @@ void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// The given parameters of all sensors that can move relative to the master.
+/// Indices of the parameters `of_each` of all sensors that can move relative to the master.
 std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
                                  std::span<const Eigen::Index> of_each) {
   std::vector<Eigen::Index> all;
@@ -176,7 +181,7 @@ std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
   return all;
 }
 
-/// Actual variance of a measurement, in units of its stated one.
+/// Sums from which the actual variance of a measurement follows, in units of the stated one.
 struct Misfit {
   double squares = 0.0;
   double freedom = 0.0;
@@ -200,7 +205,8 @@ BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) 
   return {variance * std::max(1.0, misfit.weights / independent), kPriorFreedom};
 }
 
-/// The equations of the walk alone, with its points weighted by how independent they are.
+/// The equations of the walk alone.  Also sets `along` and `upward`, the factors by which the
+/// variances are larger than if all its points were independent.
 PlaceEquations walk_equations(Adjustment& adjustment) {
   const Eigen::Index size = adjustment.size();
   BlockScores blocks(adjustment.points.back().time);
@@ -275,7 +281,7 @@ bool iterate(Adjustment& adjustment, double settled) {
   return motion.lpNorm<Eigen::Infinity>() > settled;
 }
 
-/// Covariance of the places that the bias of all sights causes.
+/// Covariance of the places that the bias of all views causes.
 Eigen::MatrixXd bias_covariance(Adjustment& adjustment) {
   const std::vector<FusedPoint> all = adjustment.fuse_all();
   const auto ways = ways_of(adjustment.points, all);
@@ -315,15 +321,16 @@ Adjusted adjusted(Adjustment& adjustment) {
   return result;
 }
 
-/// True if no sensor ends far from its chain, which is robust: wrong views would have misled it.
+/// True if no sensor ends far from where its chain put it.  Chains are robust, so a sensor that
+/// moves farther was misled by wrong views.
 bool near(const Places& start, const Places& end) {
   return std::ranges::all_of(start, [&](const auto& each) {
     return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;
   });
 }
 
-/// Iterates with Tukey's scale of the start, then with that of what was found, so that the end does
-/// not depend on how good the start was.  False if it was stopped.
+/// Iterates with Tukey's scale at the start, then with that of the result, so that the end does not
+/// depend on how good the start was.  False if it was stopped.
 bool settle(Adjustment& adjustment, const Stopped& stopped) {
   for (int round = 0; round < kScaleRounds; ++round) {
     adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);

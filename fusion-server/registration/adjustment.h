@@ -3,11 +3,11 @@
 //   minimise over places T_i and points x_k:
 //     sum w (T_i m_ik - x_k)^T S_ik^-1 (T_i m_ik - x_k) / v + sum over floors (tilt, height)
 //
-// with S_ik small across and large along each line of sight, Tukey weights, and each sensor's floor
-// as a prior of its own tilt and height.  Given the places, each x_k is the inverse-variance mean,
-// so only the places are unknown.  No measurement determines the world's position along the floor
-// and its yaw.  They are held at those of the master; nothing else of the master is held.  Derived
-// in docs/papers/registration.md, Section 8.
+// with S_ik small across and large along each line of sight, Tukey weights w, the variance factor v
+// (block_variance.h), and each sensor's floor as a prior of its own tilt and height.  Given the
+// places, each x_k is the inverse-variance mean, so only the places are unknown.  No measurement
+// determines the world's position along the floor and its yaw.  They are held at those of the
+// master; nothing else of the master is held.  Derived in docs/papers/registration.md, Section 8.
 #pragma once
 
 #include <map>
@@ -36,7 +36,7 @@ struct Adjusted {
 };
 
 /// Starts from `places`.  None if nothing was seen together, if the result fits the walk and the
-/// floors worse, or if it was stopped.
+/// floors worse than `places` do, if it moves a sensor by more than 1 m, or if it was stopped.
 [[nodiscard]] std::optional<Adjusted> adjust_together(const Places& places, const Walkers& walkers,
                                                       const RegistrationConfig& config);
 

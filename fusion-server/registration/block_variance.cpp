@@ -9,9 +9,9 @@ namespace chorus::registration {
 namespace {
 
 constexpr double kBlock = 2.0;           // [s] errors of joints last 0.2 to 1 s
-constexpr double kFewest = 4.0;          // blocks of a walk
+constexpr double kFewest = 4.0;          // least number of blocks of a walk
 constexpr double kShortest = 0.1;        // [s]
-constexpr double kLeast = 1e-6;          // of the factor and of the denominator
+constexpr double kLeast = 1e-6;          // least factor, and least denominator
 constexpr double kRelativeRidge = 1e-9;  // relative, for what no measurement determines
 
 }  // namespace

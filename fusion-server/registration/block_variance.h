@@ -1,8 +1,8 @@
 // Estimates from the residuals how far successive measurements are from independent.
 //
 // A least-squares estimate with information H, sum of scores g = 0 and independent measurements has
-// the covariance H^-1.  Errors of joints last for seconds, so the scores of one block of time add
-// up.  With g_b and H_b the score and the information of block b, H = sum H_b, the factor
+// the covariance H^-1.  Errors of joints persist over many frames, so the scores of one block of
+// time add up.  With g_b and H_b the score and the information of block b, H = sum H_b, the factor
 //   v = sum_b g_b^T H^-1 g_b / (dim - sum_b tr((H^-1 H_b)^2))
 // is what H^-1 has to be multiplied by: the scalar form of the cluster-robust (sandwich)
 // covariance, where the denominator accounts for what the fit has removed from each block.  Scores
@@ -24,7 +24,7 @@ class BlockScores {
   /// Blocks last 2 s, or a quarter of a walk shorter than 8 s.  `length`: that of the walk [s].
   explicit BlockScores(double length);
 
-  /// The block that an instant [s] lies in.
+  /// Index of the block that contains the instant `time` [s].
   [[nodiscard]] long index(double time) const;
   /// Adds one whole block.
   void add(Eigen::MatrixXd information, Eigen::VectorXd score);
@@ -35,7 +35,7 @@ class BlockScores {
     double freedom = 0.0;  ///< How many degrees of freedom of the blocks it counts for.
   };
   /// The factor v over some of the parameters, with the others held.  Blocks shorter than 2 s do
-  /// not show errors that last 2 s, so their sum is multiplied by 2 s / their length.
+  /// not show errors that last 2 s, so the sum over them is multiplied by 2 s / the length of one.
   [[nodiscard]] double factor(std::span<const Eigen::Index> parameters, const Prior& prior) const;
 
  private:

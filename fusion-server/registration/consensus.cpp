@@ -26,12 +26,12 @@ bool of(const SensorId& sensor, const SensorId& target, const SensorId& source) 
   return sensor == target || sensor == source;
 }
 
-/// to_from_from along an edge, whichever way it was estimated.
+/// The transform to the sensor `to` from the other end of the edge, whichever way it was estimated.
 Eigen::Isometry3d along(const PairwiseRegistration& edge, const SensorId& to) {
   return edge.target == to ? edge.target_from_source : edge.target_from_source.inverse();
 }
 
-/// The edges by their sensors, the lesser first.
+/// Finds the edge between two sensors, whichever of them is its target.
 class EdgeIndex {
  public:
   explicit EdgeIndex(const Evidence& evidence) {
@@ -43,7 +43,7 @@ class EdgeIndex {
     const auto found = edges_.find(std::minmax(a, b));
     return found == edges_.end() ? nullptr : found->second;
   }
-  /// The sensors after `sensor` with which it has edges, in ascending order.
+  /// The sensors with a greater id than `sensor` with which it has edges, in ascending order.
   [[nodiscard]] std::vector<SensorId> after(const SensorId& sensor) const {
     std::vector<SensorId> others;
     for (auto at = edges_.lower_bound({sensor, {}}); at != edges_.end(); ++at) {

@@ -34,8 +34,8 @@ struct Evidence {
   std::map<SensorId, Eigen::Vector3d> middles;  ///< Middle of each sensor's walk, in its own space.
 };
 
-/// Distance by which the walk's middle is off after going once around the triangle of these three
-/// edges [m]; infinite if they turn it by more than 15 deg.
+/// Going once around the triangle of these three edges moves the middle of the walk by this
+/// distance [m]; infinite if it also turns it by more than 15 deg.
 [[nodiscard]] double loop_error(const PairwiseRegistration& ab, const PairwiseRegistration& bc,
                                 const PairwiseRegistration& ca, const Evidence& evidence);
 

@@ -47,7 +47,7 @@ std::optional<FloorPlane> median_floor(const WalkTrack& walk) {
   return *plane;
 }
 
-/// Height above the plane below which the lowest tenth of all foot joints are.
+/// Height above the plane below which a tenth of all foot joints lie.
 std::optional<double> lowest_feet(const WalkTrack& walk, const FloorPlane& floor) {
   std::vector<double> heights;
   for (const SensorFrame& frame : walk.frames) {

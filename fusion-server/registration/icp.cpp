@@ -152,7 +152,7 @@ std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target, const Eigen::Iso
     set_up(icp, from, to, kRefineIterations);
     icp.setMaxCorrespondenceDistance(reach);
     return run(icp, start, 1.0);
-  } catch (const std::exception&) {  // PCL throws on degenerate clouds; then the start is returned
+  } catch (const std::exception&) {  // PCL throws on degenerate clouds; the caller keeps the start
     return std::nullopt;
   }
 }

@@ -1,4 +1,5 @@
-// Iterative closest point on neck clouds, by PCL (Otto 5.2, 5.2.1; docs/papers/registration.md, 5).
+// Iterative closest point on neck clouds, by PCL (Otto 5.2, 5.2.1; docs/papers/registration.md,
+// Section 5).
 #pragma once
 
 #include <optional>
@@ -14,7 +15,7 @@ using Cloud = std::span<const Eigen::Vector3d>;
 
 struct IcpFit {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  double rms = 0.0;  ///< Distance to the nearest target point, over kept correspondences [m].
+  double rms = 0.0;  ///< rms distance to the nearest target point, over kept correspondences [m].
   std::size_t accepted = 0;
 };
 

@@ -13,9 +13,10 @@ namespace {
 
 using enum JointId;
 
-constexpr std::size_t kSmoothed = 5;  // frames that are averaged, so that no offset
-                                      // interpolates less noise away than another
-// Of the source; in a longer walk, neighbouring frames share noise.
+// Number of frames that are averaged, so that interpolation removes as much noise at one offset as
+// at another.
+constexpr std::size_t kSmoothed = 5;
+// Most frames of the source that are used; in a longer walk, neighbouring frames share noise.
 constexpr std::size_t kMostFrames = 300;
 constexpr std::size_t kMinFrames = 30;  // fewest frames that an offset must leave
 constexpr double kCoarse = 0.020;       // [s]
@@ -84,7 +85,7 @@ Trail inner_part(const Trail& trail, const Trail& other, Duration range) {
   return out.frames.size() < trail.frames.size() / 2 ? trail : out;
 }
 
-/// Points that do not depend on which side is called left, where both sensors have them.
+/// Adds the points that do not depend on which side is called left, where both sensors have them.
 void add_points(const TrailFrame& target, const TrailFrame& source, std::size_t frame,
                 Points& points) {
   const auto both = [&](JointId id) { return target.has(slot(id)) && source.has(slot(id)); };
@@ -98,7 +99,7 @@ void add_points(const TrailFrame& target, const TrailFrame& source, std::size_t 
   for (const Sides& sides : kMirrored) add(sides.left, sides.right);
 }
 
-/// The middle of the points of each frame: with levelled sensors, only the walk is needed.
+/// The middle of the points of each frame: for levelled sensors, the person's path is enough.
 Points middles_of(const Points& all) {
   Points middles;
   for (std::size_t i = 0; i < all.frame.size();) {

@@ -52,7 +52,8 @@ class OffsetProfile {
   Duration max_gap_;
   Trail target_;
   Trail source_;
-  Trail inner_;  ///< The part of the source that stays in the target's time at every offset.
+  Trail inner_;  ///< The frames of the source that stay within the target's time span at every
+                 ///< offset.
   bool levelled_ = false;
   Eigen::Isometry3d level_from_target_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d level_from_source_ = Eigen::Isometry3d::Identity();

@@ -25,7 +25,7 @@ constexpr double kLeastApart = 0.15;     // [m] the two halves of a walk may alw
 constexpr double kApartOfRms = 3.0;      // ... or by this multiple of the residuals
 constexpr double kIcpReach = 0.10;       // [m] a neck point without a partner this close is ignored
 
-/// Both skeletons' spaces levelled to y = 0 if both floors are known; unchanged otherwise.
+/// Both sensors' spaces, levelled to y = 0 if both floors are known; unchanged otherwise.
 struct Levelled {
   bool both = false;
   Eigen::Isometry3d level_from_target = Eigen::Isometry3d::Identity();

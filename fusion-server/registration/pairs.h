@@ -22,7 +22,8 @@ class TrailReader {
  public:
   TrailReader(const Trail& trail, Duration max_gap) : frames_(trail.frames), max_gap_(max_gap) {}
 
-  /// Instants must not decrease.  None unless the instant lies in a narrow bracket of one body.
+  /// Instants must not decrease.  None unless two frames of one body, at most max_gap apart,
+  /// enclose the instant.
   std::optional<TrailMoment> at(Timestamp instant);
 
  private:
@@ -47,9 +48,9 @@ struct Pairing {
   std::vector<Pair> pairs;
   std::size_t instants = 0;      ///< Source frames for which there are pairs.
   std::size_t together = 0;      ///< Source frames at whose instant the target saw a body, too.
-  std::size_t resting = 0;       ///< Of these, frames at which the person had hardly moved.
-  std::size_t too_fast = 0;      ///< Of these, frames rejected by max_speed.
-  std::size_t out_of_range = 0;  ///< Of these, frames rejected by min_distance or max_distance.
+  std::size_t resting = 0;       ///< Frames of `together` at which the person had hardly moved.
+  std::size_t too_fast = 0;      ///< Frames of `together` rejected by max_speed.
+  std::size_t out_of_range = 0;  ///< Frames of `together` rejected by min_distance or max_distance.
 };
 
 [[nodiscard]] Pairing pair_up(const Trail& target, const Trail& source,

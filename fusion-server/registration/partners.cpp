@@ -7,9 +7,11 @@
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kAllPairs = 12;           // sensors of which all pairs are tried
-constexpr std::size_t kPartners = 8;            // of each sensor, of more
-constexpr auto kBin = std::chrono::seconds(1);  // in which two sensors see the person together
+constexpr std::size_t kAllPairs = 12;  // up to this many sensors, all pairs are tried
+// With more sensors, each one chooses this many partners.
+constexpr std::size_t kPartners = 8;
+// Two sensors that saw the person in the same bin count as having seen the person together.
+constexpr auto kBin = std::chrono::seconds(1);
 
 /// Number of frames in which the person had moved, by seconds since 1970.
 using Presence = std::map<std::int64_t, std::size_t>;

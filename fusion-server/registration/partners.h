@@ -4,7 +4,7 @@
 // the same walk, most pairs add nothing new.  Up to twelve sensors all pairs are tried.  With more
 // sensors, each is paired with the eight with which it shares the longest part of the walk; groups
 // that these pairs leave unconnected are joined by all pairs between them.  In either case the
-// final adjustment uses the sights of all sensors.
+// final adjustment uses the views of all sensors.
 #pragma once
 
 #include <map>
@@ -22,8 +22,9 @@ using SensorPair = std::pair<SensorId, SensorId>;  ///< Target and source.
 /// reason is reported.
 [[nodiscard]] std::vector<SensorPair> partners_of(const std::map<SensorId, Walker>& walkers);
 
-/// The pairs that are not among the `tried` ones and lie between groups of sensors that `edges`
-/// leave unconnected: a pair that was chosen can still be refused.  Same order as partners_of().
+/// The pairs that were not `tried` and lie between groups of sensors that `edges` leave
+/// unconnected; there are some if pairs that were chosen have been refused.  Same order as
+/// partners_of().
 [[nodiscard]] std::vector<SensorPair> untried_links(const std::map<SensorId, Walker>& walkers,
                                                     const std::vector<SensorPair>& tried,
                                                     const std::vector<PairwiseRegistration>& edges);

@@ -6,8 +6,8 @@
 //   x = C sum_i S_i^-1 T_i m_i,   C = (sum_i S_i^-1)^-1,   S_i = sigma_i^2 (I + e r_i r_i^T)
 // With a small motion (omega, tau) of T_i on the world's side and J_i = [-[T_i m_i]x  I], the Schur
 // complement of x is (docs/papers/registration.md):
-//   H_ij = delta_ij J_i^T S_i^-1 J_i - J_i^T S_i^-1 C S_j^-1 J_j,   g_i = J_i^T S_i^-1 (x - T_i
-//   m_i)
+//   H_ij = delta_ij J_i^T S_i^-1 J_i - J_i^T S_i^-1 C S_j^-1 J_j
+//   g_i = J_i^T S_i^-1 (x - T_i m_i)
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,8 @@ struct FusedPoint {
                                     std::span<const Eigen::Isometry3d> world_from_level,
                                     double along_ratio);
 
-/// The norm of the point's worst measurement, in units of sigma; a point is trusted as a whole.
+/// The largest residual among the point's measurements, in sigmas; it decides how much the point as
+/// a whole is trusted.
 [[nodiscard]] double worst_norm(const FusedPoint& fused);
 
 /// information * (omega, tau of every sensor) = right.

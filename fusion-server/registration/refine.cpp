@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kRefiningIterations = 15;
 constexpr double kRefineSettled = 1e-7;  // [rad], [m]
-constexpr double kMaxCorrelated = 0.98;  // a larger rho means "constant error", not "no samples"
+// Limits rho: a constant error does not mean that there are no samples.
+constexpr double kMaxCorrelated = 0.98;
 constexpr double kTiny = 1e-12;
 constexpr double kAxes = 3.0;
 

@@ -4,9 +4,10 @@
 // slightly wrong floor, and each sensor is less accurate along its line of sight:
 //   minimise sum w r^T S^-1 r / (s^2 kappa) + |tilt|^2 / sigma_tilt^2 + |height|^2 / sigma_height^2
 //   S = sigma^2 / 2 (A_target + R A_source R^T),   A = I + (ratio^2 - 1) ray ray^T
-// with Tukey weights w. kappa = (1 + rho) / (1 - rho), because successive residuals are not
-// independent; without it the walk would outweigh the floor, and the covariance would be too small
-// by the same factor.  Derived in docs/papers/registration.md, Section 4.
+// with Tukey weights w and their scale s.  kappa = max(1, j) (1 + rho) / (1 - rho) accounts for the
+// correlation of successive instants (rho) and of the joints at one instant (j); without it the
+// walk would outweigh the floor, and the covariance would be too small by the same factor.  Derived
+// in docs/papers/registration.md, Section 4.
 #pragma once
 
 #include "fusion-server/registration/floor_prior.h"

@@ -26,8 +26,8 @@ enum class PairMethod {
 
 enum class JointChoice {
   Neck,  ///< Otto: the neck alone.
-  Core,  ///< Neck, SpineShoulder, Head, SpineMid and the flip-invariant shoulder and hip
-         ///< mid-points.
+  Core,  ///< Neck, SpineShoulder, Head, SpineMid, and the mid-points of shoulders, hips, elbows and
+         ///< wrists, which swapped sides do not change.
   All,   ///< All joints: if sensors distinguish left and right, and for motions beyond walking.
 };
 
@@ -47,7 +47,7 @@ struct RegistrationConfig {
   double max_edge_rms = 0.15;  ///< With larger residuals there is no edge [m].
   /// One final adjustment of all sensors together.
   bool adjust_together = true;
-  double good_rms = 0.08;  ///< Above this the verdict is provisional [m].
+  double good_rms = 0.08;  ///< With a larger rms of an edge the verdict is provisional [m].
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
   double good_position = 0.05;

@@ -38,7 +38,7 @@ struct Work {
   std::map<SensorId, Walker> walkers;
   std::map<SensorId, const WalkTrack*> tracks;
   std::vector<Refusal> refusals;
-  std::set<SensorId> outcasts;  ///< Sensors that contradict the others; their reason is stated.
+  std::set<SensorId> outcasts;  ///< Sensors that contradict the others; the reason is noted.
   Registration result;
   bool doubtful = false;  ///< True if there is a doubt that concerns all places.
 
@@ -79,7 +79,7 @@ void register_pairs(Work& work, const PairEstimator& estimate) {
   std::ranges::for_each(untried_links(work.walkers, partners, work.result.edges), attempt);
 }
 
-/// Leaves out the sensors that contradict the others, by name.
+/// Leaves out the sensors that contradict the others, and notes why.
 void refuse_outcasts(Work& work) {
   if (work.config.method != PairMethod::TimedRobust) return;
   Evidence evidence;
@@ -171,7 +171,7 @@ struct Placed {
   Matrix6 covariance = Matrix6::Zero();
 };
 
-/// Places by chains, in a world on the common floor; then adjusts all of them together.
+/// The places along the chains, in a world on the common floor, then adjusted all together.
 std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& chains) {
   std::optional<FloorPlane> guessed;
   std::optional<FloorPlane> floor = floor_in_master(work, chains);
@@ -237,7 +237,7 @@ bool linked(const Work& work, const SensorId& sensor) {
   return work.result.sensors.contains(sensor);
 }
 
-/// Notes why this sensor is left out: what refused its pairs with linked sensors.
+/// Notes why this sensor is left out: why its pairs with linked sensors were refused.
 void explain_unlinked(Work& work, const SensorId& sensor) {
   if (!work.result.verdicts[sensor].reasons.empty()) return;
   std::vector<std::string> strangers;

@@ -23,7 +23,7 @@ struct Loss {
   double value = 0.0;
 };
 
-/// How well something fits.
+/// A place of the source, and how well it fits each frame.
 struct StudentFit {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
   std::vector<Loss> losses;  ///< One per frame, in order.

@@ -19,11 +19,11 @@ namespace {
 constexpr double kKnown = 0.002;
 constexpr double kMostSearched = 1.1;  // [s]
 constexpr double kSearchSigmas = 4.0;
-constexpr double kLeastSigma = 0.001;  // [s] of a pair: what views differ in is no time
+constexpr double kLeastSigma = 0.001;  // [s] least sigma of a pair: views differ not only in time
 constexpr double kExact = 1e-4;        // [s] a clock that is known exactly
 constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less and less
 constexpr int kSolveIterations = 10;
-constexpr double kMaxSpread = 0.05;  // [m] of the place, over what is open of the offset
+constexpr double kMaxSpread = 0.05;  // [m] most that a place may vary over the possible offsets
 
 /// What one pair measures: the correction of the source's stamps minus that of the target's.
 struct Measured {
@@ -76,7 +76,7 @@ std::optional<Duration> least_age_of(const WalkTrack& track) {
   return *std::ranges::lower_bound(ages, ages[std::min(kOdd, ages.size() - 1)] - kJitter);
 }
 
-/// The pairs that are worth a search, each searched.
+/// Searches the offset of each pair for which that is worthwhile.
 void measure(Network& network, const RegistrationConfig& config, const PairSearch& search) {
   const std::vector<Walker>& walkers = network.walkers;
   for (std::size_t target = 0; target < walkers.size(); ++target) {
@@ -103,8 +103,8 @@ double weight_of(const Network& network, const Measured& pair) {
   return 1.0 / (sigma * sigma) / (1.0 + off * off);
 }
 
-/// One step of re-weighted least squares over all pairs and priors; in the first step all weights
-/// are one.
+/// One step of least squares over all pairs and priors; from the second step on, pairs far from the
+/// last result count less.
 void solve(Network& network) {
   const auto size = Network::at(network.sensors.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);

@@ -17,7 +17,7 @@
 
 namespace chorus::registration {
 
-/// What the walk says about the clocks.
+/// What the walk shows about the clocks.
 struct WalkClocks {
   /// One for every sensor that sent frames, relative to the clock that is known best.  Empty if all
   /// clocks are known.

@@ -29,7 +29,7 @@ Hop reversed(const PairwiseRegistration& edge) {
           edge_error(edge)};
 }
 
-/// What each sensor is joined with.
+/// The hops that lead away from each sensor.
 std::map<SensorId, std::vector<Hop>> hops_of(const std::vector<PairwiseRegistration>& edges) {
   std::map<SensorId, std::vector<Hop>> hops;
   for (const PairwiseRegistration& edge : edges) {

@@ -1,7 +1,8 @@
-// Finds the best chain of edges from the master to each client (Otto 5.2.3, Fig. 11).
+// Finds the best chain of edges from the master to every other sensor (Otto 5.2.3, Fig. 11).
 //
-// Best = smallest sum of edge errors (Dijkstra).  An edge may be followed in both directions; it is
-// reversed explicitly, here and nowhere else.  Derived in docs/papers/registration.md, Section 7.
+// The best chain has the smallest sum of edge errors (Dijkstra).  An edge may be followed in both
+// directions; against its own direction its inverse is used.  Derived in
+// docs/papers/registration.md, Section 7.
 #pragma once
 
 #include <map>
@@ -23,8 +24,8 @@ struct Chain {
 [[nodiscard]] std::map<SensorId, Chain> best_chains(const SensorId& master,
                                                     const std::vector<PairwiseRegistration>& edges);
 
-/// Cost of an edge in the graph: rms / sqrt(inliers) plus a constant, so that among equal chains
-/// the shorter one wins [m].
+/// Cost of an edge in the graph [m]: rms / sqrt(inliers), larger for a narrow walk, plus a
+/// constant, so that among equal chains the shorter one wins.
 [[nodiscard]] double edge_error(const PairwiseRegistration& edge);
 
 }  // namespace chorus::registration

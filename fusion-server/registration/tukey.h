@@ -3,7 +3,8 @@
 
 namespace chorus::registration {
 
-/// In standard deviations; has 95 % efficiency for Gaussian errors.
+/// Where the biweight becomes zero, in standard deviations; has 95 % efficiency for Gaussian
+/// errors.
 inline constexpr double kTukey = 4.685;
 
 /// Median of the norm of a 3-D standard Gaussian.

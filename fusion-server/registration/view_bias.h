@@ -1,7 +1,7 @@
-// What no length of walk shows about two sensors: joints lie differently in a body that is seen
-// from elsewhere.
+// The bias that no length of walk shows: sensors that see a body from different sides place its
+// joints differently.
 //
-// Apart from noise, the error of a sight is a function of the angle phi between the way the person
+// Apart from noise, the error of a view is a function of the angle phi between the way the person
 // walks and the direction to the sensor, b(phi) = c_0 + c_1 cos phi + c_2 sin phi + c_3 cos 2 phi +
 // c_4 sin 2 phi, where each c has a part along the view, aside and upwards, and each sensor has its
 // own c's.  They are not estimated, but considered (Schmidt 1966): with g = G c in the scores of
@@ -21,8 +21,8 @@ class ViewBias {
  public:
   explicit ViewBias(std::vector<Eigen::Vector3d> eyes);
 
-  /// One point as the adjustment counts it.  `walking`: the direction in which the person walks at
-  /// this point, world; if none, only c_0 is counted.
+  /// Adds one point, as the adjustment counts it.  `walking`: the direction in which the person
+  /// walks at this point, world; if none, only c_0 is counted.
   void add(const PointMeasurements& measurements, const FusedPoint& fused, double weight,
            const std::optional<Eigen::Vector3d>& walking);
 
@@ -30,7 +30,7 @@ class ViewBias {
   [[nodiscard]] Eigen::MatrixXd scores() const;
 
  private:
-  std::vector<Eigen::Vector3d> eyes_;     ///< Of the sensors [m].
+  std::vector<Eigen::Vector3d> eyes_;     ///< Positions of the sensors, world [m].
   std::vector<Eigen::MatrixXd> effects_;  ///< G of each sensor.
 };
 

@@ -9,10 +9,13 @@ namespace chorus::registration {
 namespace {
 
 constexpr std::size_t kMaxPoints = 1500;  // of the walk; successive ones are redundant
-constexpr double kPointsEach = 100.0;     // of many sensors, two of which see a point
-constexpr Duration kFrame = std::chrono::milliseconds(33);  // two instants of one sensor
-constexpr double kAside = 0.3;                              // [s] before and after, to tell the way
-constexpr double kLeastWay = 0.06;                          // [m] in that time
+constexpr double kPointsEach = 100.0;     // at least this many per sensor, if two see each point
+// The least time between two instants of one sensor.
+constexpr Duration kFrame = std::chrono::milliseconds(33);
+// The direction of a point is computed from its way during this time before and after it [s].
+constexpr double kAside = 0.3;
+// A point that moves less than this has no direction [m].
+constexpr double kLeastWay = 0.06;
 
 /// Adds the slots that several sensors saw at one instant.
 void add_instant(const std::vector<std::optional<TrailMoment>>& moments,

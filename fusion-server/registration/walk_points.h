@@ -1,4 +1,4 @@
-// The points of a walk that the adjustment counts: what several sensors saw at one instant.
+// The points of a walk that the adjustment uses: what several sensors saw at one instant.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct Station {
   Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
   FloorPrior floor = {};  ///< How well its own floor is known; zero: not at all.
   bool master = false;
-  bool fixed = false;  ///< Has too few common points.
+  bool fixed = false;  ///< True if it has too few common points to be moved.
 
   [[nodiscard]] Eigen::Isometry3d world_from_sensor() const {
     return world_from_level * level_from_sensor;
@@ -27,7 +27,7 @@ struct Station {
 /// A slot at one instant.
 struct WalkPoint {
   double time = 0.0;     ///< Since the first instant [s].
-  std::size_t slot = 0;  ///< Of slots_of().
+  std::size_t slot = 0;  ///< Index into slots_of().
   PointMeasurements seen;
 };
 

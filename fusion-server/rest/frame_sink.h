@@ -7,7 +7,7 @@
 
 namespace chorus::rest {
 
-/// `frames` must outlive it.
+/// `frames` must outlive the sink.
 class FrameSink final : public Sink {
  public:
   explicit FrameSink(service::FrameResources& frames) : frames_(frames) {}

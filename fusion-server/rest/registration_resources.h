@@ -25,9 +25,9 @@ struct SessionRequest {
   Adoption adoption = Adoption::AtOnce;
 };
 
-/// Requests by the routes to the owner of the registration.  They must only post a task and return.
-/// `ticket` counts the requests: RegistrationProgress::commands says how many have been carried
-/// out.
+/// What the routes ask of the owner of the registration.  The functions must only post a task and
+/// return.  `ticket` counts the requests: RegistrationProgress::commands says how many have been
+/// carried out.
 struct RegistrationControl {
   std::function<void(const SessionRequest& request, std::uint64_t session, std::uint64_t ticket)>
       start;
@@ -72,13 +72,13 @@ class RegistrationResources {
   std::uint64_t version_ = 0;
 };
 
-/// "{"seconds": 30, "adopt": "when-accepted"}"; what is omitted, or all of an empty body, is as in
-/// `fallback`.  InvalidArgument for anything else.
+/// Reads a body such as {"seconds": 30, "adopt": "when-accepted"}; what is omitted, or all of an
+/// empty body, is as in `fallback`.  InvalidArgument for anything else.
 [[nodiscard]] Result<SessionRequest> parse_session_request(std::string_view body,
                                                            SessionRequest fallback);
 
-/// "{"x": 1.5, "z": -2, "yawDegrees": 90}", in the present world; what is omitted is 0.
-/// InvalidArgument for anything else.
+/// Reads a body such as {"x": 1.5, "z": -2, "yawDegrees": 90}, in the present world; what is
+/// omitted is 0.  InvalidArgument for anything else.
 [[nodiscard]] Result<core::Origin> parse_origin_request(std::string_view body);
 
 }  // namespace chorus::rest

@@ -48,6 +48,15 @@ void read_habit(ConfigReader reader, facing::HabitPrior& out) {
   reader.read("most_time_s", out.most_time, 1.0, 24 * kMaxTime);
 }
 
+void read_telling(ConfigReader reader, facing::TellingPrior& out) {
+  reader.read_deg("from_deg", out.from, 90.0, 180.0);
+  reader.read("log_odds", out.log_odds, 0.0, kMaxLogOdds);
+  reader.read("time_s", out.time, 1e-3, kMaxTime);
+  reader.read("limit_log_odds", out.limit, 0.0, kMaxLogOdds);
+  reader.read("mistaken_share", out.mistaken, 1e-3, 0.49);
+  reader.read("same_s", out.same, 1e-3, kMaxTime);
+}
+
 void read_limbs(ConfigReader reader, facing::LimbLimits& out) {
   reader.read("mend", out.mend);
   reader.read("apart_m", out.apart, 0.01, 1.0);
@@ -64,6 +73,7 @@ void read_facing(ConfigReader reader, facing::SidesConfig& out) {
   reader.read("slip_per_s", out.person.slip, 0.0, kMaxRate);
   reader.read("lost_per_s", out.person.lost, 0.0, kMaxRate);
   read_habit(reader.child("habit"), out.habit);
+  read_telling(reader.child("telling"), out.telling);
   read_limbs(reader.child("limbs"), out.limbs);
   reader.read("change_log_odds", out.change_odds, 0.0, kMaxLogOdds);
   reader.read("smoothing_s", out.smoothing, 0.0, 10.0);

@@ -46,7 +46,8 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   return core;
 }
 
-/// Logs which sensors have no place in the stored registration.
+/// Logs which sensors have no place in the stored registration, and which of its sensors are not
+/// polled.
 void report_fit(const Registration& registration, const std::vector<SensorId>& configured) {
   for (const SensorId& sensor : configured) {
     if (!registration.sensors.contains(sensor)) {
@@ -351,7 +352,7 @@ bool FusionServer::alive() {
 
 void FusionServer::stop() {
   Impl& s = *impl_;
-  // First no more requests, then no more frames, then the end of the pipeline.
+  // Requests end first, then frames, then the pipeline.
   if (s.http) s.http->stop();
   if (s.poller) s.poller->stop();
   s.loop.reset();

@@ -44,7 +44,7 @@ struct StartSettings {
   outputs::OutputsConfig outputs;
   /// A file with given extrinsics; empty: the sensors are registered from a walk.
   std::string registration_file;
-  /// The folder for state that is kept across restarts; "auto": the user's folder; empty: none.
+  /// The folder for state that is kept across restarts; "auto": see state_folder(); empty: none.
   std::string state_dir;
   service::RecordingConfig recording;
   std::string viewer_dir;  ///< The folder of the static files of /viewer/; empty: no viewer.

@@ -1,4 +1,4 @@
-// chorus-fusion: many sensors, one tracker.
+// The program chorus-fusion: fuses the bodies that many sensors see into those of one tracker.
 #include "common/service/hosted_program.h"
 #include "fusion-server/server/fusion_server.h"
 

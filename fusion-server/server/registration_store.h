@@ -1,5 +1,5 @@
-// Keeps two things across restarts: the registration, and the highest person id so far.  Each has a
-// file, which is replaced atomically.
+// Keeps two things across restarts: the registration, and up to which number person ids may have
+// been used.  Each has a file, which is replaced atomically.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Stores what must survive a restart: the registration in use and the highest person id so far.
-// The worker does the writing; a failure is reported until a later write succeeds.
+// Stores what must survive a restart: the registration in use, and up to which number person ids
+// may have been used.  The worker does the writing; a failure is reported until a later write
+// succeeds.
 #pragma once
 
 #include <cstdint>

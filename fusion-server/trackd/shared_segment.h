@@ -10,8 +10,8 @@ namespace chorus::trackd {
 
 class SharedSegment {
  public:
-  /// Makes a new segment, with mode 0666 and all zero.  Or takes over the one of the same size that
-  /// an earlier run of this user left, with its content, so that attached readers keep receiving.
+  /// Makes a new segment, with mode 0666 and all zero, or takes over one of the same size that an
+  /// earlier run of this user left, with its content, so that attached readers keep receiving.
   /// Conflict names an existing segment of another size or user, or one that a running program
   /// uses.
   [[nodiscard]] static Result<SharedSegment> create(int key, std::size_t bytes);
@@ -28,7 +28,7 @@ class SharedSegment {
  private:
   explicit SharedSegment(int held) : held_(held) {}
 
-  int held_;  ///< Shows other Chorus programs that the key is in use.
+  int held_;  ///< A socket that shows other Chorus programs that the key is in use.
   int id_ = -1;
   std::span<char> bytes_;
 };

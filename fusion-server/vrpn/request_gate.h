@@ -22,7 +22,7 @@ struct GateLimits {
   /// Largest number of connections being established at the same time.
   std::size_t most_under_way = 32;
   net::Allowance all{32.0, 64.0};
-  std::size_t most_of_source = 8;  ///< The same for one address.
+  std::size_t most_of_source = 8;  ///< The same as most_under_way, for one address.
   net::Allowance source{16.0, 32.0};
   double failure = 4.0;  ///< Extra cost to an address when a connection fails.
   /// Number of addresses with an allowance of their own; all others share one allowance.

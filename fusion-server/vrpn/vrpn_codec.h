@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxMessage = 64000;  ///< Largest value of the len
 inline constexpr std::size_t kMaxDatagram = 1472;  ///< Size of a client's buffer.
 /// The payload of a description has room for 100 bytes.
 inline constexpr std::size_t kMaxName = 95;
-/// Limit of the senders, and of the types, of each side.
+/// How many senders, and how many types, either side may describe.
 inline constexpr std::int32_t kMaxNames = 2000;
 
 /// Negative types concern the connection itself.

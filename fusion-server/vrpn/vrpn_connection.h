@@ -17,9 +17,9 @@ namespace chorus::vrpn {
 
 /// Written on the server's thread, read on any.
 struct ServerCounters {
-  std::atomic<std::uint64_t> dropped = 0;  ///< Frames, counted for each client.
-  std::atomic<std::uint64_t> failed = 0;   ///< Datagrams.
-  std::atomic<std::uint64_t> refused = 0;  ///< Clients and requests.
+  std::atomic<std::uint64_t> dropped = 0;  ///< Frames that were dropped, counted for each client.
+  std::atomic<std::uint64_t> failed = 0;   ///< Datagrams that could not be sent.
+  std::atomic<std::uint64_t> refused = 0;  ///< Clients and requests that were refused.
   std::atomic<std::uint64_t> clients = 0;
 };
 

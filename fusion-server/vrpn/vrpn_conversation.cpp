@@ -48,7 +48,7 @@ Result<void> Conversation::obey(const Message& message, Timestamp now, std::stri
     case SystemType::Datagrams:
       take_datagram_port(message);
       return {};
-    case SystemType::Log:  // Would make us write files.
+    case SystemType::Log:  // It would make us write files.
       return {};
   }
   if (ping_type_ == message.type) answer_ping(message, now, answer);

@@ -10,15 +10,15 @@
 
 namespace chorus::watch {
 
-/// One sensor, one person, one instant.
+/// How one sensor's view of one person at one instant differs from the views of the others.
 struct Residual {
   SensorId sensor;
   std::set<SensorId> others;  ///< The other sensors that saw the person.
   /// This sensor's view minus that of the others, mean over the body [m], along three axes:
   /// horizontally away from this sensor; horizontally across that (up x away); up.
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();
-  double distance = 0.0;   ///< From the sensor to the person, horizontally [m].
-  double direction = 0.0;  ///< The same as an angle: atan2(x, z) in world [rad].
+  double distance = 0.0;   ///< Horizontal distance from the sensor to the person [m].
+  double direction = 0.0;  ///< Direction from the sensor to the person: atan2(x, z) in world [rad].
   double front = 0.0;      ///< Angle from the direction to the sensor to the person's front [rad].
 };
 

@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 constexpr Duration kEvery = milliseconds(90);    // successive frames have nearly the same errors
 constexpr Duration kBlock = milliseconds(500);   // length of a block
 constexpr Duration kStale = milliseconds(1500);  // a block that takes longer is given up
-constexpr std::size_t kLeast = 3;                // residuals in a block
+constexpr std::size_t kLeast = 3;                // fewest residuals in a block
 constexpr Duration kBreak = milliseconds(400);   // after a longer gap, a person starts over
 constexpr double kSmoothing = 0.5;               // [s]
 constexpr double kWalking = 0.25;                // [m/s]
@@ -107,7 +107,7 @@ void Watch::judge(Watched& sensor) const {
   sensor.drift = sigmas >= config_.least_sigmas ? off.norm() : 0.0;
 }
 
-/// Zero unless the sensor counts as moved or drifted.
+/// The sensor's shift or drift [m]; zero unless the sensor counts as moved or drifted.
 double Watch::size_of(const Watched& sensor) const {
   if (sensor.recent.empty()) return 0.0;
   const double shift = sensor.shift.middle.norm();

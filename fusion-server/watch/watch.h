@@ -23,7 +23,7 @@ struct Finding {
   std::optional<SensorId> or_else;
   double shift = 0.0;    ///< Distance between where it and where the others see people [m].
   bool drifted = false;  ///< True if it has lasted for minutes, false if it began recently.
-  Timestamp since;       ///< When it began, or was first certain.
+  Timestamp since;       ///< When it began; for a drift, the latest instant.
 };
 
 class Watch {
@@ -31,10 +31,10 @@ class Watch {
   /// Takes the views of one instant; instants increase.  `config` may change at any time.
   void look(const std::vector<Person>& people, Timestamp instant, const WatchConfig& config);
 
-  /// The sensor that stands out most at present; none when none does.
+  /// The sensor that stands out most at present; none if no sensor does.
   [[nodiscard]] std::optional<Finding> finding() const;
-  /// Distance between where this sensor and the others see the same people now, less what is usual
-  /// for this sensor [m]; none until somebody has walked for a while.
+  /// Distance between where this sensor and the others see the same people now, minus the distance
+  /// that is usual for this sensor [m]; none until somebody has walked for a while.
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const;
 
   /// Forgets what is usual for each sensor.  Call this when a sensor has a new place, because what

@@ -131,8 +131,8 @@ Result<void> read_matrix(const json& object, const std::string& where, const cha
   return {};
 }
 
-/// Replaces the pose's rotation, which was read from the quaternion, by the matrix if there is one,
-/// because the matrix is more exact.
+/// Replaces the pose's rotation, which was read from the quaternion, with the matrix if there is
+/// one, because the matrix is more exact.
 Result<void> read_rotation(const json& object, const std::string& where, Eigen::Isometry3d& pose) {
   Eigen::Matrix3d rotation = pose.linear();
   if (auto ok = read_matrix(object, where, "rotation", rotation); !ok) return ok;

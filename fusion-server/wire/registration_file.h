@@ -10,7 +10,8 @@
 
 namespace chorus::wire {
 
-/// Writes JSON with the keys of /registration and the covariance, which only a restart needs.
+/// Writes JSON with the keys of /registration in full precision, and what only a restart needs: the
+/// rotations as matrices, and how well each clock was known during the walk.
 [[nodiscard]] std::string write_registration(const Registration& registration);
 
 /// Reads such a file, a saved answer of GET /registration, or a file with given extrinsics, for

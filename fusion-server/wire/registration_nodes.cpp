@@ -112,7 +112,7 @@ std::vector<resource::Ref> session_refs(const RegistrationProgress& progress) {
   return refs;
 }
 
-/// What each two sensors saw together.
+/// What each pair of sensors saw together.
 std::vector<Node> pair_nodes(const SessionStatus& session) {
   constexpr int kDigits = 3;
   std::vector<Node> nodes;

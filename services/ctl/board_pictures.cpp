@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kEvery = 0.25;  // [s] between pictures of a video: a hand moves far enough
+// Time between the examined pictures of a video [s]; a hand moves the board far enough in it.
+constexpr double kEvery = 0.25;
 constexpr std::size_t kMaxViews = 2000;
 
 bool is_photo(const fs::path& file) {

@@ -28,8 +28,9 @@ struct BoardViews {
   std::vector<std::string> notes;  ///< What was left out and why.
 };
 
-/// Every photo, and four pictures a second of a video or camera.  An error when nothing can be read
-/// at all.  A damaged photo, or one whose size differs from the first, is left out with a note.
+/// Examines every photo, and four pictures a second of a video or camera.  Fails when a folder has
+/// no photos, when no picture can be read, or when the only source fails.  A damaged photo, and
+/// pictures whose size differs from the first, are left out with a note.
 [[nodiscard]] Result<BoardViews> look_for_board(const BoardSearch& search);
 
 }  // namespace chorus::ctl

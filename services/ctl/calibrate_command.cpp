@@ -30,9 +30,10 @@ using calibration::Board;
 using calibration::Calibration;
 using calibration::PictureSize;
 
-constexpr std::size_t kMostViews = 40;  // more take longer and hardly improve the lens
+constexpr std::size_t kMostViews = 40;  // More views take longer and hardly improve the lens.
 constexpr std::uintmax_t kMaxPhoto = 1u << 28;
-constexpr double kMarkerShare = 0.75;  // of a square
+// Default side of a marker, relative to that of a square.
+constexpr double kMarkerShare = 0.75;
 // Relative standard deviation of a focal length from a photo: Exif rounds to millimetres, and
 // videos are cropped.
 constexpr double kPhotoSigma = 0.04;

@@ -16,7 +16,7 @@ namespace chorus::ctl {
 [[nodiscard]] std::filesystem::path sibling_program(const std::string& name);
 
 struct Child {
-  std::string label;  ///< For messages.
+  std::string label;  ///< Name in messages.
   std::vector<std::string> command;
 };
 

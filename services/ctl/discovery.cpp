@@ -21,9 +21,9 @@ namespace {
 constexpr std::size_t kMostSensors = 256;
 constexpr std::size_t kMostBytes = 1u << 20;
 constexpr std::size_t kLongestHost = 253;
-constexpr int kNotInstalled = 127;  // of the shell
+constexpr int kNotInstalled = 127;  // The shell's exit code when there is no such program.
 
-/// The fields of a resolved service, which begin with "=".
+/// The fields of a line about a resolved service; such a line begins with "=".
 enum Field { Mark, Interface, Protocol, Name, Type, Domain, Host, Address, Port, Texts, Count };
 
 std::optional<std::array<std::string_view, Count>> fields_of(std::string_view line) {
@@ -70,7 +70,7 @@ std::optional<FoundSensor> sensor_in(std::string_view line) {
   return valid ? std::optional(sensor) : std::nullopt;
 }
 
-/// Less is better.
+/// How suitable an address is; a smaller number is better.
 int rank_of(const std::string& address) {
   if (address.starts_with("127.") || address == "::1") return 4;
   if (address.starts_with("fe80:")) return 3;

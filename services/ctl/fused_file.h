@@ -9,8 +9,9 @@
 
 namespace chorus::ctl {
 
-/// Only finish() replaces an existing file; without it, nothing is left behind. "-" is standard
-/// output.  The file's contents do not depend on when or where it is written.
+/// Only finish() puts the file in its place; without it, nothing is left behind.  An existing
+/// recording is not replaced (Conflict), other files are.  "-" is standard output.  The contents do
+/// not depend on when or where they are written.
 class FusedFile {
  public:
   virtual ~FusedFile() = default;

@@ -166,7 +166,7 @@ std::string announce_folder(const InitArguments& arguments) {
   return offered ? kAvahiFolder : "";
 }
 
-/// Only a convenience: the sensor works without it, too.
+/// Writes the announcement.  A failure is only reported, because the sensor works without it.
 void announce(const InitArguments& arguments, const ServiceWishes& wishes) {
   const std::string folder = announce_folder(arguments);
   if (folder.empty()) return;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uintmax_t kMaxLensBytes = 1u << 20;
 
-/// The text of only the lens, as JSON.
+/// Only the lens, as JSON text.
 Result<std::string> lens_text(const std::string& file) {
   const auto text = read_file(file, kMaxLensBytes);
   if (!text) return pass(text);

@@ -206,7 +206,7 @@ Result<int> history(const ServiceClient& server, bool json) {
     if (session)
       sessions.push_back(std::move(*session));
     else if (session.error().code != ErrorCode::NotFound)
-      return pass(session);  // made room
+      return pass(session);  // Unless it was dropped to make room for newer ones.
   }
   if (json) return print_json(sessions);
   std::vector<std::vector<std::string>> rows{

@@ -41,7 +41,7 @@ std::string next_shown(const nlohmann::json& sensor) {
                      shown(to_mm(client::number_at(sensor, "nextError")), 1));
 }
 
-/// The pair whose loops close worst.
+/// A line about the pair whose loops close worst; empty if there are no loops.
 std::string worst_loop_shown(const nlohmann::json& registration) {
   double worst = -1.0;
   std::string text;

@@ -22,7 +22,7 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr Duration kHeadStart = std::chrono::seconds(1);  // until every process is ready
+constexpr Duration kHeadStart = std::chrono::seconds(1);  // Time in which every process gets ready.
 constexpr int kLastPort = 65535;
 
 struct ReplayArguments {

@@ -11,9 +11,10 @@ namespace {
 
 using Stays = std::vector<record::SensorStay>;
 
-constexpr Duration kBetweenRounds = std::chrono::milliseconds(33);  // one frame, as within a round
+// Pause between rounds: one frame, so that it looks like any other step.
+constexpr Duration kBetweenRounds = std::chrono::milliseconds(33);
 
-/// The spans of all streams together.
+/// The first and last beginnings and ends of all streams.
 struct Spans {
   Timestamp first_begin = Timestamp::max();
   Timestamp last_begin = Timestamp::min();

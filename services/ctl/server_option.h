@@ -10,11 +10,11 @@ class App;
 
 namespace chorus::ctl {
 
-/// `names`: of the option; "url,--url" also accepts it as a positional argument.
+/// `names`: the option's names; "url,--url" also accepts it as a positional argument.
 void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names = "--url");
 
-/// --ca: the authorities of https:// servers, for every request of this process.
+/// Adds --ca, which names the authorities of https:// servers for every request of this process.
 void add_authority_option(CLI::App& app);
 
 }  // namespace chorus::ctl

@@ -11,11 +11,12 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr double kSure = 0.95;       // smallest certainty of left and right
-constexpr double kStill = 0.10;      // [m], largest movement
-constexpr double kTurned = 10.0;     // [deg], largest turn
-constexpr std::size_t kEnough = 5;   // smallest number of frames
-constexpr double kNarrowest = 0.05;  // [m] from right to left; if narrower, the front is undefined
+constexpr double kSure = 0.95;      // Smallest certainty of left and right.
+constexpr double kStill = 0.10;     // Largest movement [m].
+constexpr double kTurned = 10.0;    // Largest turn [deg].
+constexpr std::size_t kEnough = 5;  // Smallest number of frames.
+// Smallest sum of the vectors from right to left [m]; below it, the front is undefined.
+constexpr double kNarrowest = 0.05;
 
 Eigen::Vector2d on_floor(const nlohmann::json& joints, const char* name) {
   const auto& joint = client::part_at(joints, name);

@@ -10,7 +10,7 @@
 namespace chorus::ctl {
 
 struct Stance {
-  double x = 0.0;    ///< Of the pelvis, in world space [m].
+  double x = 0.0;    ///< Place of the pelvis in world space [m].
   double z = 0.0;    ///< [m]
   double yaw = 0.0;  ///< Direction in which the person faces, about +y from +z [rad].
 };

@@ -10,8 +10,8 @@
 namespace chorus::ctl {
 
 struct VideoImport {
-  /// None, one for all, or one for each: files with the keys of device.camera.intrinsics, or
-  /// configurations of sensors.  None: assumes a usual field of view.
+  /// Files with the keys of device.camera.intrinsics, or configurations of sensors: one for all
+  /// videos, or one for each.  If there is none, a usual field of view is assumed.
   std::vector<std::string> lenses;
   std::string model;
   double rate_hz = 30.0;  ///< Highest number of pictures per second.

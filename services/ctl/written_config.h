@@ -25,7 +25,7 @@ struct SensorWishes {
   std::string id;
   std::string device = "bridge";  ///< bridge, camera, phone, replay or simulated
   std::string camera = "/dev/video0";
-  std::string recording;  ///< For a replay: the recording.
+  std::string recording;  ///< The recording that a replay plays.
   bool images = false;
 };
 

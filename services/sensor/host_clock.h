@@ -9,7 +9,8 @@
 
 namespace chorus::sensor_service {
 
-/// Errors to simulate in the host's clock.  Drift and `step_after` start with the service.
+/// Errors to simulate in the host's clock.  Drift and `step_after` count from the start of the
+/// service.
 struct ClockErrors {
   Duration offset{0};
   double drift = 0.0;  ///< [s/s]

@@ -151,7 +151,7 @@ std::optional<Result<void>> SensorHost::run_once(const std::stop_token& stop,
 }
 
 void SensorHost::run_device(const std::stop_token& stop) {
-  std::uint64_t before = 0;  // Frames of earlier runs, because the numbers continue.
+  std::uint64_t before = 0;  // The last number of earlier runs, which the numbers continue.
   std::uint64_t latest = 0;
   const auto take = [&](Capture capture) {
     capture.frame.sequence += before;

@@ -44,8 +44,8 @@ class SensorHost {
   /// What would not work if the service started on this host now.
   [[nodiscard]] service::Concerns concerns() const;
 
-  /// For a watchdog: true while the server's thread runs.  The device does not count, because it
-  /// may be silent for any length of time.
+  /// For a watchdog: false if the server's thread hangs (http::Server::alive()).  The device does
+  /// not count, because it may be silent for any length of time.
   [[nodiscard]] bool alive() { return server_.alive(); }
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }

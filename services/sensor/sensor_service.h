@@ -39,10 +39,10 @@ struct ServiceOptions {
 
 struct ServiceCounters {
   std::uint64_t captured = 0;  ///< Frames published.
-  std::uint64_t lost = 0;      ///< Gaps in the device's frame numbers.
+  std::uint64_t lost = 0;      ///< Number of frames missing in the device's numbering.
   std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
   std::uint64_t failures = 0;  ///< Exceptions of the device, of publishing, and of images.
-  std::uint64_t bodies = 0;    ///< Number in the latest frame.
+  std::uint64_t bodies = 0;    ///< Bodies in the latest frame.
   double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
 };
 
@@ -55,8 +55,9 @@ class SensorService {
 
   /// Publishes one capture.  Refuses and counts a capture whose time or number does not advance,
   /// with two bodies of the same id, or with too many bodies.  A time that goes back by more than a
-  /// second means that the clock was set; from then on times are compared with the new one.  An
-  /// exception is logged and counted; the next capture is published as usual.
+  /// second, or by less if the next capture continues from there, means that the clock was set;
+  /// from then on times are compared with the new one.  An exception is logged and counted; the
+  /// next capture is published as usual.
   void on_capture(Capture capture) noexcept;
   /// Logs and counts an exception from the device or from another thread of this service.
   void on_failure(std::string_view reason) noexcept;

@@ -1,4 +1,4 @@
-// What is true of every body that a sensor may publish, whatever its input was.
+// Checks that hold for every body that a sensor may publish, whatever input it was given.
 #pragma once
 
 #include <cmath>

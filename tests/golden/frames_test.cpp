@@ -1,4 +1,5 @@
-// What proto/golden promises of its files in the folders perfect, good and bad.
+// Tests what the manifest of proto/golden states about the files in its folders perfect, good and
+// bad.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// tests/golden/outputs: every encoder produces the bytes stored there.
+// Every encoder of an output produces the bytes that are stored in tests/golden/outputs.
 #include <bit>
 #include <cstdlib>
 #include <fstream>

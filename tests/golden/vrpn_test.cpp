@@ -1,4 +1,5 @@
-// proto/golden/vrpn: our server writes it byte for byte, and the tests' own client reads it.
+// Our VRPN server writes the files in proto/golden/vrpn byte for byte, and the tests' own client
+// reads them.
 #include <fstream>
 #include <sstream>
 

@@ -44,7 +44,7 @@ Start start_of(const Walker& walker) {
 /// the walk will start.
 struct Pose {
   double ahead = 0.0;  ///< In front of the start, along its heading [m]
-  double phase = 0.0;  ///< Phase of the gait; runs backwards like the feet.
+  double phase = 0.0;  ///< Phase of the gait; decreases while the person walks backwards.
   double amplitude = 0.0;
   synthetic::Reach reach{};
 };
@@ -55,8 +55,8 @@ synthetic::Reach waving(double left_over) {
   return {false, up, {-0.35 + swing, 1.65, 0.25}};
 }
 
-/// The pose of a walk that comes to a stop in its last kStopping; `left_over` is the time before
-/// its end [s].
+/// Pose of a walk that slows down to a stop during its last kStopping seconds; `left_over` is the
+/// time before its end [s].
 Pose walking(double left_over, double speed, double stride) {
   const double slow = std::min(left_over, kStopping);
   const double way = speed * (left_over - slow + 0.5 * slow * slow / kStopping);
@@ -89,7 +89,7 @@ Skeleton<WorldSpace> body_in(const Pose& pose, const Start& start, const Gait& g
   return body;
 }
 
-/// Distance from `start` at which the straight path of a person who comes in begins [m].
+/// Length of the straight path on which a person comes in, from kOutside to `start` [m].
 double way_in(const Start& start) {
   const double along = start.place.dot(start.forward());
   const double aside = start.place.squaredNorm() - along * along;

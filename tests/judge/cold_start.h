@@ -30,7 +30,7 @@ struct ColdScript {
   synthetic::Ring ring = {};  ///< The person comes in between two of its sensors.
 };
 
-/// Makes such a person; the time of a Person counts from 1970.
+/// Makes such a person, who is called with the time since 1970.
 [[nodiscard]] synthetic::Person cold_starter(const ColdScript& script);
 
 }  // namespace chorus::bench

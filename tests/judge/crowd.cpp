@@ -26,7 +26,7 @@ constexpr double kBeside = 0.5;                     // from the middle, for two 
 constexpr double kBench = 0.2;  // between neighbouring stations of one person [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
-/// A walker of random build who starts somewhere in the loop.
+/// A walker of random build; the random speed is the same for all people of one `seed`.
 WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   constexpr double kSpread = 0.08;
   WalkerScript script;
@@ -37,11 +37,11 @@ WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   return script;
 }
 
-/// How a walk is shifted to the side, turned about the middle and delayed.
+/// How a walk is shifted to the side, turned about the middle and shifted in time.
 struct Placing {
   double yaw = 0.0;    ///< [rad]
-  double aside = 0.0;  ///< [m] to the left of the walk
-  double delay = 0.0;  ///< [s]
+  double aside = 0.0;  ///< Shift along +x, before the turn [m]
+  double delay = 0.0;  ///< Time by which the walk is ahead [s]
 };
 
 Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body, const Eigen::Isometry3d& placed) {
@@ -200,7 +200,7 @@ std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin)
     stint = {stint.leaves + pause, 0.0, stint.behind + pause};
   }
   WalkerScript other = script_of(seed, 1, PathKind::Line);
-  other.seed = script.seed;  // both use the same way
+  other.seed = script.seed;  // both walk along the same line
   other.reach = kReach;
   return {in_stints(way, begin, stints[0]), in_stints(placed(other, along_z), begin, stints[1])};
 }

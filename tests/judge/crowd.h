@@ -17,8 +17,9 @@ namespace chorus::bench {
 [[nodiscard]] std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed,
                                                              double passing = 0.5);
 
-/// Three people who use the same walk one after the other: each leaves the room on the way, and the
-/// next enters at that place 0.3 to 2 s later.  The first is there at `begin`; nobody comes back.
+/// Three people who follow the same path one after the other: each leaves the room on the way, and
+/// the next enters at that place 0.3 to 2 s later.  The first is there at `begin`; nobody comes
+/// back.
 [[nodiscard]] std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin);
 
 /// Three people at work.  The first leaves for 0.3 to 2 s and, later, for 20 s; the other two leave
@@ -26,9 +27,9 @@ namespace chorus::bench {
 /// `begin`, and again from the 50th second on.
 [[nodiscard]] std::vector<synthetic::Person> returning_people(std::uint64_t seed, Timestamp begin);
 
-/// Two people who use a booth in turns: one goes behind the screen(), and 0.3 to 2 s later the
-/// other comes out on the other side, after stints of at least ten seconds.  Whoever is not walking
-/// is out of the room.
+/// Two people who take turns to walk, each for at least ten seconds: when one has gone behind the
+/// screen(), that one is out of the room, and 0.3 to 2 s later the other comes out on the other
+/// side.
 [[nodiscard]] std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin);
 
 /// Two people at assembly work, 1 m apart, who are in their places from the start.

@@ -93,7 +93,7 @@ Recorded record_sensor(const Workshop& workshop, const SensorId& id, std::size_t
   return {record(*sensor, workshop.begin + setting.length), sensor->clock()};
 }
 
-/// Adds an offset and a drift to the host's clock.
+/// Adds an offset and a drift to the host's clock, and corrects the capture times accordingly.
 void set_off(Recorded& recorded, Timestamp begin, double offset, double drift) {
   const HostClock before = recorded.clock;
   recorded.clock.origin = begin;
@@ -192,7 +192,7 @@ std::vector<Eigen::Isometry3d> pair_places(double angle) {
 }
 
 Timestamp true_time(const HostClock& clock, Timestamp stamp) {
-  // The clock deviates by parts per million, so two iterations are exact to nanoseconds.
+  // The clock deviates by parts per million, so a few iterations are exact to nanoseconds.
   Timestamp guess = stamp;
   for (int i = 0; i < 3; ++i) guess = stamp - (clock.host_time(guess) - guess);
   return guess;

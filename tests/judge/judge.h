@@ -1,9 +1,9 @@
 // The judge: one draw of the simulated workshop, with the complete truth.  Every accuracy benchmark
 // and accuracy test depends on it; algorithms never include it.
 //
-// A draw = profile x seed (from which follow the sensors' parameters, the people, the walk and the
-// hour) x optional stress x layout.  World of the scene: y up, y = 0 the floor, origin = workspace
-// centre.
+// A draw follows from a profile, a seed (which determines the sensors' parameters, the people, the
+// walk and when it begins), optional stress and a layout.  World of the scene: y up, y = 0 the
+// floor, origin = workspace centre.
 #pragma once
 
 #include <functional>

@@ -31,7 +31,8 @@ struct LogStatistics {
 /// are taken only over four frames at the usual rate.
 [[nodiscard]] LogStatistics statistics_of(const std::vector<SensorFrame>& frames);
 
-/// Standard deviation, and autocorrelation at a lag given in samples; NaN for too few.
+/// Standard deviation, and autocorrelation at a lag given in samples; NaN if there are too few
+/// values.
 [[nodiscard]] double deviation(const std::vector<double>& values);
 [[nodiscard]] double autocorrelation(const std::vector<double>& values, std::size_t lag);
 

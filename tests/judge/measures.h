@@ -1,4 +1,4 @@
-// What several scores share.
+// Constants and helpers that several scores share.
 #pragma once
 
 #include <array>

@@ -20,7 +20,7 @@ constexpr double kStance = 0.2;   // [s]
 constexpr double kAhead = 0.05;   // [s]
 constexpr std::array kArm{ElbowLeft, WristLeft, HandLeft};
 constexpr std::array kLeg{KneeLeft, AnkleLeft, FootLeft};
-/// Whether this pair of limbs is exchanged; none: it cannot be decided.
+/// Whether left and right of this pair of limbs are swapped; none if it cannot be decided.
 std::optional<bool> is_exchanged(const Answer& answer, std::span<const JointId> left_limb) {
   double as_stated = 0.0;
   double exchanged = 0.0;
@@ -40,7 +40,7 @@ std::optional<bool> is_exchanged(const Answer& answer, std::span<const JointId> 
   return exchanged < as_stated;
 }
 
-/// Whether the true ankle stands between this instant and the previous one.
+/// Whether the true ankle stands still from the previous instant to this one.
 bool stands(const Answers& answers, std::size_t at, JointId ankle) {
   const double dt = seconds(answers[at].instant - answers[at - 1].instant);
   const Eigen::Vector3d way =
@@ -57,7 +57,7 @@ void add_stance(const Places& places, double length, Mean& squares) {
   for (const Eigen::Vector2d& each : places) squares.add((each - middle).squaredNorm());
 }
 
-/// Adds the stances of one foot.
+/// Adds the squared deviations of all stances of one foot.
 void add_stances(const Answers& answers, JointId ankle, Mean& squares) {
   Places places;
   std::size_t first = 0;

@@ -1,4 +1,4 @@
-// Whether the reported body behaves like a body: limbs on the right side, bones of the right
+// Whether the reported body behaves like a body: limbs on the correct side, bones of the correct
 // length, feet that stand still.
 //
 // In metres and fractions; NaN when there was nothing to measure.

@@ -1,6 +1,6 @@
 // Whether stated errors of joints are true: compares stated covariances with true errors.
 //
-// Only joints whose answer states a covariance count; NaN if there are none.
+// Only joints that are reported with a covariance count; NaN if there are none.
 #pragma once
 
 #include "tests/judge/metrics.h"

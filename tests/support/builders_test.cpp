@@ -1,4 +1,4 @@
-// The person that other tests rely on: plausible, symmetric, at the given place.
+// Tests that the person that other tests rely on is plausible, symmetric and at the given place.
 #include "tests/support/builders.h"
 
 #include <numbers>

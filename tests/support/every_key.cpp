@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Strings, each of which is valid for some key and refused by the others.
+/// Values to try for a key that holds a string; each is valid for some key.
 constexpr const char* kWords[] = {
     "s2",     "0.0.0.0",     "http://a",   "warn",        "json",     "A",
     "circle", "replay",      "otto",       "centre-axis", "icp-only", "when-accepted",
@@ -35,7 +35,7 @@ std::vector<json> other_values(const json& value) {
     others.push_back(json::parse(R"([{"token": "0123456789abcdef", "role": "images"}])"));
     others.push_back(json::parse(R"([{"slot": 1, "targets": ["127.0.0.1:7"]}])"));
   }
-  std::erase(others, value);  // zero times ten is zero again
+  std::erase(others, value);  // a factor does not change zero
   return others;
 }
 

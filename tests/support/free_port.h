@@ -19,7 +19,8 @@ namespace chorus::testing {
   return address;
 }
 
-/// A port that is free at present; never the same twice.
+/// A port that is free at present for TCP and UDP, and that this process has not been given
+/// before; 0 if there is none.
 [[nodiscard]] inline std::uint16_t free_port() {
   constexpr int kFirst = 10'000;
   constexpr int kCount = 6'000;

@@ -1,4 +1,4 @@
-// A matcher that accepts everything would make all other tests worthless.
+// Tests of the matchers: one that accepts everything would make all other tests worthless.
 #include "tests/support/matchers.h"
 
 #include <limits>

@@ -41,7 +41,8 @@ struct TickClock {
   std::int64_t origin_ticks = 0;
   Timestamp origin;
 
-  /// The capture time; none for rows before the first or days after it, which could overflow.
+  /// The capture time; none for rows before the first or more than a week after it, where the sum
+  /// could overflow.
   [[nodiscard]] std::optional<Timestamp> at(std::int64_t ticks) const {
     constexpr std::int64_t kMaxSpanTicks = 7 * 24 * 3600 * 10'000'000LL;
     if (ticks < origin_ticks || ticks - origin_ticks > kMaxSpanTicks) return std::nullopt;

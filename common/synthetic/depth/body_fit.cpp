@@ -12,34 +12,45 @@ namespace {
 // Weights are relative to that of one depth point at kUsualRange.  They were chosen by hand until
 // the fit followed people who walk in front of one sensor (six walks), never by a result of
 // registration or fusion.
-constexpr double kUsualRange = 2.5;  // [m]
-constexpr double kRobust = 0.05;     // larger residuals count less [m]
+
+// Distance at which a depth point has weight 1 [m].
+constexpr double kUsualRange = 2.5;
+// Larger residuals count less [m].
+constexpr double kRobust = 0.05;
 constexpr double kBoneWeight = 300.0;
-constexpr double kShapeWeight = 40.0;  // the trunk is straight
-constexpr double kTwistWeight = 8.0;   // hips turn with the shoulders
-constexpr double kFollowWeight = 3.0;  // a limb goes on moving as before
+constexpr double kShapeWeight = 40.0;  // The trunk keeps its shape.
+constexpr double kTwistWeight = 8.0;   // The hips turn with the shoulders.
+constexpr double kFollowWeight = 3.0;  // A limb keeps moving as before.
 constexpr double kStayWeight = 0.5;
-constexpr double kRestWeight = 0.3;    // towards hanging down
-constexpr double kFootWeight = 3.0;    // toes point to the front
-constexpr double kHandWeight = 3.0;    // hands go on along the forearm
-constexpr double kApartWeight = 30.0;  // legs do not cross
-constexpr double kApart = 0.03;        // least share of the height between knees, ankles
+constexpr double kRestWeight = 0.3;    // A limb without points hangs down.
+constexpr double kFootWeight = 3.0;    // Toes point to the front.
+constexpr double kHandWeight = 3.0;    // Hands continue the line of the forearm.
+constexpr double kApartWeight = 30.0;  // Legs do not cross.
+// Least distance between the knees, and between the ankles, as a share of the height.
+constexpr double kApart = 0.03;
 constexpr double kThroughWeight = 8.0;
-constexpr double kThrough = 0.15;       // a depth this much beyond a node is no contradiction [m]
-constexpr double kTrunkThrough = 0.15;  // a ray that goes further passes beside the trunk [m]
+// If the image shows a surface this far behind a limb's node, the node is in a wrong place [m].
+constexpr double kThrough = 0.15;
+// If it shows one this far behind a node of the trunk, the ray passes beside the trunk [m].
+constexpr double kTrunkThrough = 0.15;
 constexpr double kTrunkWeight = 8.0;
-constexpr double kThroughReach = 0.6;  // how far the person's nearest point is looked for [m]
-constexpr double kDeep = 0.04;         // least depth of a node below the surface [m]
-constexpr double kMostStep = 0.12;     // of a node in one round [m]
+// Radius in which the nearest point of the person is looked for [m].
+constexpr double kThroughReach = 0.6;
+// Depth below the surface to which a node is moved [m].
+constexpr double kDeep = 0.04;
+// Largest step of a node in one round [m].
+constexpr double kMostStep = 0.12;
 constexpr double kMomentum = 0.7;
 constexpr double kSupported = 0.2;
-constexpr double kSeen = 0.6;  // share of a capsule's outline that usually gives points
+// Share of a capsule's outline that usually yields points.
+constexpr double kSeen = 0.6;
 
 struct Nearest {
   std::size_t segment = 0;
-  double along = 0.0;                                         ///< Share of the axis, 0..1.
-  Eigen::Vector3d out = Eigen::Vector3d::UnitZ();             ///< Unit, axis to point.
-  double distance = std::numeric_limits<double>::infinity();  ///< To the surface, signed [m]
+  double along = 0.0;                              ///< Position on the axis, 0..1.
+  Eigen::Vector3d out = Eigen::Vector3d::UnitZ();  ///< Unit vector from the axis to the point.
+  /// From the surface to the point, signed [m].
+  double distance = std::numeric_limits<double>::infinity();
 };
 
 struct Axes {
@@ -58,8 +69,9 @@ struct Axes {
   }
 };
 
-/// A capsule's axis must lie behind the points that are seen of it; an axis in front of its point
-/// counts as far away as if the capsule were turned over.
+/// Finds the capsule whose surface is nearest to the point.  A sensor sees only the near side of a
+/// capsule, so its axis must lie behind the point.  If it lies in front, the distance to the
+/// capsule's opposite side counts.
 Nearest nearest(const Axes& axes, const Eigen::Vector3d& point) {
   Nearest best;
   double least = std::numeric_limits<double>::infinity();
@@ -138,7 +150,7 @@ void keep_trunk(NormalEquations& equations, const Nodes& nodes, double height) {
   middle(kHipL, kHipR, kPelvis, -0.015);
   want(equations, nodes, std::array{Term{kHead, 1.0}, Term{kChest, -1.0}}, height * 0.13 * up,
        kShapeWeight);
-  constexpr double kNarrow = 0.116 / 0.052;  // shoulders to hips
+  constexpr double kNarrow = 0.116 / 0.052;  // Width of the shoulders relative to that of the hips.
   want(equations, nodes,
        std::array{Term{kHipL, kNarrow}, Term{kHipR, -kNarrow}, Term{kShoulderL, -1.0},
                   Term{kShoulderR, 1.0}},
@@ -187,7 +199,7 @@ void keep_apart(NormalEquations& equations, const Nodes& nodes, double height) {
   }
 }
 
-/// The nearest point of the person that was seen; none within reach.
+/// The seen point of the person that is nearest to the node; null if none is within kThroughReach.
 const SurfacePoint* nearest_seen(const Evidence& evidence, const Eigen::Vector3d& node) {
   const SurfacePoint* found = nullptr;
   double least = kThroughReach * kThroughReach;
@@ -230,7 +242,7 @@ void limit_steps(Nodes& step) {
   }
 }
 
-/// How many points half a capsule gives if nothing hides it.
+/// Number of points that half a capsule yields if nothing hides it.
 double expected_points(const Axes& axes, std::size_t segment, const DepthCamera& camera) {
   const Eigen::Vector3d middle = axes.from[segment] + 0.5 * axes.way[segment];
   const double across = axes.way[segment].cross(middle.normalized()).norm();

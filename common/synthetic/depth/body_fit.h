@@ -26,14 +26,16 @@ struct FittedBody {
   Nodes now = Nodes::Zero();
   Nodes before = Nodes::Zero();  ///< One frame earlier.
   double height = kGenericHeight;
-  std::array<double, kNodeCount> support{};  ///< Points near each node over those of a free view.
-  double misfit = 0.0;                       ///< Mean distance of points to the surface [m]
+  /// For each node: the number of points near it, relative to the number if nothing hid it.
+  std::array<double, kNodeCount> support{};
+  double misfit = 0.0;  ///< Mean distance of points to the surface [m]
 };
 
 /// Distance of a point to the body's surface [m].
 [[nodiscard]] double distance_to(const Nodes& nodes, double height, const Eigen::Vector3d& point);
 
-/// Predicts the next frame: all nodes go on moving as before, but more slowly.
+/// Predicts the next frame: nodes keep moving as before, but more slowly; those without enough
+/// points move with the trunk.
 void predict(FittedBody& body);
 
 /// Makes `rounds` Gauss-Newton steps from the current pose, then computes support and misfit.

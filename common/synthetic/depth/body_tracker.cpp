@@ -12,38 +12,49 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-constexpr std::size_t kMostTracks = 6;    // as Kinect v2
-constexpr std::size_t kMostPoints = 400;  // of one person, used for the fit
-constexpr std::size_t kFewPoints = 40;    // fewer are not taken for a person
-constexpr std::size_t kNewPoints = 120;   // that a new person must have
+constexpr std::size_t kMostTracks = 6;    // As a Kinect v2.
+constexpr std::size_t kMostPoints = 400;  // Number of a person's points that the fit uses.
+// With fewer points of a body, the frame counts as poor for it.
+constexpr std::size_t kFewPoints = 40;
+constexpr std::size_t kNewPoints = 120;  // Least number of points of a new person.
 constexpr int kRounds = 4;
 constexpr int kFirstRounds = 15;
 constexpr std::array kFirstYaws{0.0, deg(40), -deg(40), deg(80), -deg(80)};
-constexpr double kReach = 0.35;       // points within this distance may belong to the body [m]
-constexpr double kMixedReach = 0.12;  // the same in a piece that is mostly something else [m]
-constexpr double kOwnShare = 0.5;  // of a piece within kMixedReach: then all of it is the person's
-constexpr double kForeignShare = 0.1;   // of a piece: below, it is a new person or an object
-constexpr int kConfirmed = 3;           // frames before a body is reported
-constexpr int kPatience = 10;           // poor frames before it is given up
-constexpr double kBadFit = 0.035;       // mean distance to the surface [m]
-constexpr double kTrunkSeen = 0.15;     // least support of head and chest of a real body
-constexpr double kSame = 0.15;          // two trunks cannot be closer [m]
-constexpr double kExchange = deg(100);  // beyond this facing angle, front and rear are exchanged
-constexpr double kTracked = 0.3;        // support of a joint
-constexpr int kForgotten = 60;          // frames without support: not tracked any more
-constexpr double kBorder = 6.0;  // pixels beyond the image's border in which joints are guessed
-constexpr double kLeastHeight = 1.4;  // of a person [m]
+// Reach of a body's surface: points within it may belong to the body [m].
+constexpr double kReach = 0.35;
+// The same for a piece of which less than kOwnShare is near a body [m].
+constexpr double kMixedReach = 0.12;
+// If at least this share of a piece is within kMixedReach of a body, kReach applies to all of it.
+constexpr double kOwnShare = 0.5;
+// If a smaller share is, the piece is a new person or an object.
+constexpr double kForeignShare = 0.1;
+constexpr int kConfirmed = 3;  // Frames before a body is reported.
+constexpr int kPatience = 10;  // Poor frames in a row before a body is given up.
+// Largest mean distance of points to the surface of a good fit [m].
+constexpr double kBadFit = 0.035;
+constexpr double kTrunkSeen = 0.15;     // Least support of head and chest of a real body.
+constexpr double kSame = 0.15;          // Two trunks cannot be closer than this [m].
+constexpr double kExchange = deg(100);  // Beyond this facing, left and right are swapped.
+constexpr double kTracked = 0.3;        // Least support of a tracked joint.
+constexpr int kForgotten = 60;  // Frames without support after which a joint is not tracked.
+// Up to this far outside the image, joints are inferred; farther out they are not tracked [px].
+constexpr double kBorder = 6.0;
+// Limits of a person's height [m].
+constexpr double kLeastHeight = 1.4;
 constexpr double kMostHeight = 2.05;
-constexpr double kGrowth = 0.2;      // of the height per frame, towards what is seen
-constexpr int kGrowing = 60;         // frames in which the height is learned
-constexpr double kHeadReach = 0.2;   // [m]
-constexpr double kWidest = 1.2;      // largest width of a new person [m]
-constexpr double kLowestTop = 1.1;   // least height of its top [m]
-constexpr double kTallest = 0.7;     // its least vertical extent [m]
-constexpr double kHeadBand = 0.15;   // the topmost part of this height ...
-constexpr double kHeadWidth = 0.45;  // ... is no wider than a head [m]
-constexpr double kHalfWidth = 0.18;  // shoulder to the middle of a body [m]
-constexpr double kHalfDepth = 0.10;  // surface to the middle of a body [m]
+// The height grows by this share of its difference to the seen height per frame.
+constexpr double kGrowth = 0.2;
+constexpr int kGrowing = 60;  // Frames in which the height is learned.
+// Points this near to the head node count for the height [m].
+constexpr double kHeadReach = 0.2;
+constexpr double kWidest = 1.2;     // Largest width of a new person [m].
+constexpr double kLowestTop = 1.1;  // Least height above the floor of its topmost point [m].
+constexpr double kTallest = 0.7;    // Its least vertical extent [m].
+// Points less than kHeadBand below the topmost one must not spread wider than kHeadWidth [m].
+constexpr double kHeadBand = 0.15;
+constexpr double kHeadWidth = 0.45;
+constexpr double kHalfWidth = 0.18;  // From a shoulder to the middle of a body [m].
+constexpr double kHalfDepth = 0.10;  // From the surface to the middle of a body [m].
 
 struct Extent {
   Eigen::Vector3d least = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
@@ -116,7 +127,7 @@ void learn_height(FittedBody& body, const std::vector<SurfacePoint>& points) {
   if (top > body.height) body.height += kGrowth * (std::min(top, kMostHeight) - body.height);
 }
 
-/// Turns a body that would face away so that it faces the sensor.
+/// Swaps left and right of a body that seems to face away from the sensor, so that it faces it.
 void believe_it_faces_us(FittedBody& body) {
   const auto facing = facing_angle(joints_of(body.now, body.height));
   if (!facing || std::abs(*facing) <= kExchange) return;

@@ -2,7 +2,7 @@
 // does not know the truth.
 //
 // Like body-tracking SDKs it assumes that people face the sensor: once the shoulders have turned
-// beyond the side view, left and right are exchanged.
+// beyond the side view, left and right are swapped.
 #pragma once
 
 #include <vector>
@@ -29,7 +29,7 @@ class BodyTracker {
     BodyId id;
     FittedBody body;
     std::vector<SurfacePoint> points;
-    int age = 0;                           ///< Frames.
+    int age = 0;                           ///< Number of frames since the body was found.
     int poor = 0;                          ///< Frames in a row with too few points or a bad fit.
     std::array<int, kNodeCount> unseen{};  ///< Frames in a row without support.
   };

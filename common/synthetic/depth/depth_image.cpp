@@ -9,14 +9,14 @@ namespace chorus::synthetic::depth {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-constexpr double kEdge = 0.10;  // neighbours further apart than this form an edge [m]
+constexpr double kEdge = 0.10;  // Neighbouring pixels whose depths differ by more form an edge [m].
 
 struct Patch {
   int left, right, top, bottom;  ///< Pixels, right and bottom exclusive.
 };
 
-/// The pixels that may see the taper: the squares around the balls at its ends, or the whole image
-/// if it is too near.
+/// The pixels that may see the taper: a rectangle around the balls at its ends, or the whole image
+/// if the taper is too near.
 Patch patch_of(const Taper& taper, const DepthCamera& camera) {
   Patch patch{camera.width, 0, camera.height, 0};
   const auto clip = [](double v, int most) {
@@ -80,11 +80,11 @@ double unit_noise(Draw& draw) {
     sum += static_cast<double>((bits >> (16 * part)) & 0xffffu);
   }
   constexpr double kMean = 4 * 32767.5;
-  constexpr double kScale = 1.7320508075688772 / 65536.0;  // a uniform number: variance 1/12
+  constexpr double kScale = 1.7320508075688772 / 65536.0;  // Four numbers, each of variance 1/12.
   return (sum - kMean) * kScale;
 }
 
-/// The depth on the other side of the nearest edge; the pixel's own depth if there is no edge.
+/// The depth of a neighbouring pixel beyond an edge; the pixel's own depth if there is no edge.
 double across_edge(const DepthImage& exact, int column, int row) {
   const double own = exact.at(column, row);
   constexpr std::array<std::array<int, 2>, 4> kCross{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};

@@ -31,12 +31,12 @@ struct DepthCamera {
   [[nodiscard]] bool see(const Eigen::Vector3d& point, int& column, int& row) const;
 };
 
-/// Row by row; 0 where nothing was measured.
+/// Row by row.  Where there is no depth, measured images have 0 and exact ones infinity.
 struct DepthImage {
   int width = 0;
   int height = 0;
   std::vector<float> depth;  ///< Along z [m]
-  std::vector<bool> dark;    ///< True on dark cloth; only in exact images.
+  std::vector<bool> dark;    ///< True on dark cloth or hair; only in exact images.
 
   [[nodiscard]] std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +

@@ -10,12 +10,13 @@ namespace chorus::synthetic::depth {
 namespace {
 
 constexpr std::uint64_t kPurpose = 1101;
-constexpr double kMostLost = 0.9;  // of pixels, so that something is still seen
+// Limit of the shares of pixels, so that something is still seen.
+constexpr double kMostLost = 0.9;
 
 struct Parameter {
   double& (*field)(DepthProfile&);
   double value;
-  double spread;  ///< A draw is uniform in value * (1 +- spread).
+  double spread;  ///< The parameter is drawn uniformly from value * (1 +- spread).
 };
 
 // Sources: [notes] simulator notes 6.1, layer 10; [spec] Kinect v2; [ansur] standard deviations of
@@ -25,7 +26,7 @@ constexpr std::array kParameters{
     // [notes] sigma(z) = 1.2 mm + 0.4 mm (z / 1 m)^2
     Parameter{[](DepthProfile& p) -> double& { return p.camera.noise_near; }, 0.0012, 0.3},
     Parameter{[](DepthProfile& p) -> double& { return p.camera.noise_square; }, 0.0004, 0.3},
-    // [est] mixed depths are about one of 512 pixels wide; each of ours is four of those wide
+    // [est] mixed depths occur on about one of the 512 columns; our pixels are four columns wide
     Parameter{[](DepthProfile& p) -> double& { return p.camera.flying_share; }, 0.2, 0.4},
     // [est]
     Parameter{[](DepthProfile& p) -> double& { return p.camera.hole_share; }, 0.003, 0.5},

@@ -12,26 +12,28 @@
 namespace chorus::synthetic::depth {
 
 struct TimeOfFlight {
-  double noise_near = 0;                   ///< sigma(z) = near + square z^2 [m]
-  double noise_square = 0;                 ///< [1/m]
-  double flying_share = 0;                 ///< Share of edge pixels that lie between both sides.
-  double hole_share = 0;                   ///< Share of all pixels that give no depth.
-  double dark_hole_share = 0;              ///< The same for pixels on dark cloth or hair.
+  double noise_near = 0;    ///< sigma(z) = near + square z^2 [m]
+  double noise_square = 0;  ///< [1/m]
+  /// Share of the pixels at an edge whose depth lies between those of the two sides.
+  double flying_share = 0;
+  double hole_share = 0;  ///< Share of pixels that give no depth, except on dark cloth or hair.
+  double dark_hole_share = 0;  ///< Share of pixels on dark cloth or hair that give no depth.
   double least_range = 0, most_range = 0;  ///< [m]
 };
 
 struct BuildSpread {
-  double girth = 0;        ///< Radii of a person's segments differ by up to this share.
-  double clothing = 0;     ///< Clothing adds up to this much to a radius [m]
-  double dark_chance = 0;  ///< Probability to be dark; for hair, trunk and legs each.
+  double girth = 0;  ///< Radii of a person's segments differ from the average by up to this share.
+  double clothing = 0;  ///< Clothing adds up to this much to a radius [m]
+  /// Probability that a person's hair is dark; likewise for trunk and legs.
+  double dark_chance = 0;
 };
 
 struct DepthProfile {
   TimeOfFlight camera;
   BuildSpread build;
-  kinect::Delivery
-      delivery;  ///< Of profile A; its gaps are not used: people are lost by themselves.
-  kinect::ClockError clock;  ///< Of profile A.
+  /// As in profile A, but without its gaps, because here the tracker loses people by itself.
+  kinect::Delivery delivery;
+  kinect::ClockError clock;  ///< As in profile A.
 };
 
 [[nodiscard]] DepthProfile nominal_depth_profile();

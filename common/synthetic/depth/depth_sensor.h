@@ -1,8 +1,9 @@
 // Profile C: a sensor that renders depth images of the truth, measures them as a time-of-flight
-// camera would and fits a generic body to them.  Errors of joints result from that; none is drawn.
+// camera would and fits a generic body to them.  The errors of joints result from the fit; none is
+// drawn.
 //
-// When frames are taken, dropped and arrive, the floor plane and the host's clock are as in
-// kinect/.
+// The times of exposure and arrival, lost frames, the floor plane and the host's clock are
+// simulated as in kinect/.
 #pragma once
 
 #include <vector>
@@ -19,8 +20,9 @@ struct DepthSetting {
   std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
   DepthProfile profile;
   std::uint64_t seed = 1;
-  std::uint64_t people_seed = 1;  ///< Of people's build and clothing; equal for all sensors.
-  bool own_clock = true;          ///< Stamps by the host's clock with its errors; false: true time.
+  std::uint64_t people_seed = 1;  ///< Seed of people's build and clothing; equal for all sensors.
+  /// True: frames are stamped by the host's clock with its errors.  False: by true time.
+  bool own_clock = true;
 };
 
 class DepthSensor final : public BodySensor {
@@ -42,7 +44,7 @@ class DepthSensor final : public BodySensor {
   std::uint64_t number_;
   std::vector<Build> builds_;
   DepthCamera camera_;
-  kinect::FloorError floor_ = kinect::nominal_profile("A").floor;  ///< From the same SDK.
+  kinect::FloorError floor_ = kinect::nominal_profile("A").floor;  ///< As in profile A.
   BodyTracker tracker_;
 };
 

@@ -7,10 +7,12 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-constexpr double kFloorBand = 0.05;  // everything lower counts as floor [m]
-constexpr double kHighest = 2.4;     // nobody reaches higher [m]
-constexpr double kJoined = 0.10;     // largest step between neighbouring pixels of one surface [m]
-constexpr int kLeastNeighbours = 3;  // of eight; a pixel with fewer is stray
+constexpr double kFloorBand = 0.05;  // Everything lower counts as floor [m].
+constexpr double kHighest = 2.4;     // Nobody reaches higher [m].
+// Largest difference of depth between neighbouring pixels of one surface [m].
+constexpr double kJoined = 0.10;
+// A pixel with fewer neighbours (of eight) on its surface is stray.
+constexpr int kLeastNeighbours = 3;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 constexpr std::array<std::array<int, 2>, 8> kAround{

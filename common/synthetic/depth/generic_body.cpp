@@ -31,8 +31,8 @@ constexpr std::array kSources{
 };
 // clang-format on
 
-constexpr double kThumb =
-    0.022;  // from the hand towards the middle of the body, as a share of the height
+// Distance of the thumb from the hand, towards the pelvis, as a share of the height.
+constexpr double kThumb = 0.022;
 
 }  // namespace
 

@@ -42,7 +42,7 @@ struct Between {
 struct Segment {
   Between from;
   Between to;
-  double radius;  ///< [m] of somebody 1.7 m tall
+  double radius;  ///< Radius for a body of kGenericHeight [m].
 };
 
 constexpr Between on(Node node) { return {node, node, 0.0}; }
@@ -116,7 +116,7 @@ struct Stance {
 /// The corresponding node on the other side of the body.
 [[nodiscard]] Node other_side(Node node);
 
-/// The nodes with left and right exchanged.
+/// The nodes with left and right swapped.
 [[nodiscard]] Nodes exchanged(const Nodes& nodes);
 
 /// The 25 joints of Kinect v2, all tracked; orientations are not given.

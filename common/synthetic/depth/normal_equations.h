@@ -17,11 +17,11 @@ class NormalEquations {
  public:
   NormalEquations();
 
-  /// Adds an equation by which the combination of nodes should move by `way` along the unit vector
+  /// Adds an equation: the combination of nodes moves by `way` [m] along the unit vector
   /// `direction`.
   void move_along(std::span<const Term> combination, const Eigen::Vector3d& direction, double way,
                   double weight);
-  /// Adds the equations by which the combination of nodes should move by `way`.
+  /// Adds three equations: the combination of nodes moves by `way` [m].
   void move(std::span<const Term> combination, const Eigen::Vector3d& way, double weight);
 
   /// The step of every node; zero if the equations have no finite solution.
@@ -33,7 +33,8 @@ class NormalEquations {
   void add(std::span<const Term> combination, const Eigen::Matrix3d& weight,
            const Eigen::Vector3d& weighted_way);
 
-  Eigen::Matrix<double, kSize, kSize> left_;  ///< Lower blocks only.
+  /// Only the blocks on and below the diagonal are filled.
+  Eigen::Matrix<double, kSize, kSize> left_;
   Eigen::Matrix<double, kSize, 1> right_;
 };
 

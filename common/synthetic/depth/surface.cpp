@@ -13,11 +13,12 @@ namespace {
 using enum JointId;
 
 constexpr std::uint64_t kDrawBuild = 1111;
-constexpr double kMeanTrunk = 0.42;  // SpineBase to SpineShoulder of somebody 1.73 m tall [m]
+// Distance from SpineBase to SpineShoulder of somebody 1.73 m tall [m].
+constexpr double kMeanTrunk = 0.42;
 constexpr double kLeastScale = 0.5;
 constexpr double kMostScale = 1.5;
 
-/// base + side * (towards - base) + down * (along - base)
+/// A point: base + side * (towards - base) + down * (along - base).
 struct Anchor {
   JointId base;
   JointId towards;
@@ -109,7 +110,7 @@ double scale_of(const Skeleton<SensorSpace>& body) {
   return std::isfinite(trunk) ? std::clamp(trunk / kMeanTrunk, kLeastScale, kMostScale) : 1.0;
 }
 
-/// Distance to the first intersection with a ball in front of the origin.
+/// Distance to the first intersection with the ball, if that is in front of the origin.
 std::optional<double> hit_ball(const Eigen::Vector3d& centre, double radius,
                                const Eigen::Vector3d& ray) {
   const double closest = ray.dot(centre);
@@ -119,14 +120,15 @@ std::optional<double> hit_ball(const Eigen::Vector3d& centre, double radius,
   return distance > 0 ? std::optional(distance) : std::nullopt;
 }
 
-/// Distance to the cone that touches both balls, between the circles where it touches them.
+/// Distance to the cone that touches both balls, between the circles of contact.
 std::optional<double> hit_cone(const Taper& taper, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d axis = taper.to - taper.from;
   const double length = axis.norm();
   const double sine = length > 0 ? (taper.radius_from - taper.radius_to) / length : 1.0;
-  if (std::abs(sine) >= 1.0) return std::nullopt;  // one ball contains the other
+  if (std::abs(sine) >= 1.0) return std::nullopt;  // One ball contains the other.
   const Eigen::Vector3d unit = axis / length;
-  const double slope = sine / std::sqrt(1.0 - sine * sine);  // radius lost per length of axis
+  // Decrease of the cone's radius per length of the axis.
+  const double slope = sine / std::sqrt(1.0 - sine * sine);
   // Points x on the cone satisfy |x across the axis| = r0 - slope * along, with r0 its radius at
   // `from`.
   const double r0 = taper.radius_from / std::sqrt(1.0 - sine * sine);

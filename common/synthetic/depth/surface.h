@@ -22,8 +22,8 @@ struct Taper {
   bool dark = false;                               ///< True if it reflects little light.
 };
 
-/// Distance from the origin along the unit ray to the surface; none if the ray misses it, if the
-/// surface lies behind the origin, or if the origin is inside.
+/// Distance from the origin along the unit ray to the surface; none if the ray misses it or the
+/// surface lies behind the origin.  The origin must be outside.
 [[nodiscard]] std::optional<double> hit(const Taper& taper, const Eigen::Vector3d& ray);
 
 enum class Cloth : std::uint8_t { Skin, Hair, Trunk, Legs };
@@ -34,11 +34,11 @@ struct Build {
   double trunk = 1.0;  ///< Factor on the mean radii.
   double arms = 1.0;
   double legs = 1.0;
-  double clothing = 0.0;  ///< On trunk, upper arms and legs [m]
+  double clothing = 0.0;  ///< Thickness of the clothing on trunk, upper arms and legs [m].
   bool dark[kCloths] = {};
 };
 
-/// Draws a person's build; it is the same for every sensor and in every run.
+/// Draws a person's build.  It depends only on these arguments, so it is the same for every sensor.
 [[nodiscard]] Build draw_build(const BuildSpread& spread, std::uint64_t seed, std::size_t person);
 
 /// Leaves out segments whose joints are not finite.  Radii are in proportion to the length of the

@@ -1,5 +1,5 @@
 // When frames are exposed and when they arrive, which ones are lost, and what the sensor host's
-// clock shows.  All times in seconds.
+// clock shows.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ namespace chorus::synthetic::kinect {
 /// The first frame exposed at or after the instant.
 [[nodiscard]] std::uint64_t first_frame(const Delivery& delivery, Timestamp instant,
                                         const ErrorKeys& keys);
-/// True if the frame was lost on the way, or never taken: while a sensor runs at half the rate, the
-/// odd frames are missing.
+/// True if the frame was lost on the way, or never taken: while a sensor runs at half its rate, it
+/// takes only frames with even numbers.
 [[nodiscard]] bool is_dropped(const Delivery& delivery, std::uint64_t number,
                               const ErrorKeys& keys);
-/// True while the tracker has lost this person.
+/// True while the SDK has lost this person.  `time`: seconds since the epoch.
 [[nodiscard]] bool is_lost(const Delivery& delivery, double time, const ErrorKeys& keys);
 /// The delay between exposure and arrival.
 [[nodiscard]] Duration latency(const Delivery& delivery, std::uint64_t number,

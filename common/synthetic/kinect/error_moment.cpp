@@ -36,8 +36,8 @@ Moments of_free_joints(const Sight& sight, double time, const Profile& profile,
   return moments;
 }
 
-/// The moment that turns a bone: that of the difference between its ends' errors, which is small
-/// for a joint that follows its neighbour.
+/// Moment of the difference between the errors of a bone's two ends, which turns the bone.  It is
+/// small if one end follows the other (leader.h).
 Eigen::Matrix3d turning(const Moments& free, JointId parent, JointId child,
                         const ColouredError& coloured) {
   const Eigen::Matrix3d apart = free[index_of(parent)] + free[index_of(child)];
@@ -59,7 +59,8 @@ Moments of_fitted_body(const Moments& free, const Sight& sight, const Profile& p
   const double shared = core + (1.0 - core) / static_cast<double>(kCoreJoints.size());
   for (const JointId id : kCoreJoints) moments[index_of(id)] = shared * trunk;
   for (const auto& [parent, child] : kBones) {
-    if (mirror(child) == child) continue;  // the trunk as a whole stays where it is
+    // Joints of the trunk got theirs above; they all have the trunk's mean error.
+    if (mirror(child) == child) continue;
     const Eigen::Vector3d bone = sight.exact[child].position - sight.exact[parent].position;
     const Eigen::Matrix3d across =
         Eigen::Matrix3d::Identity() - bone.normalized() * bone.normalized().transpose();

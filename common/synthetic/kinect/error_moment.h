@@ -18,7 +18,8 @@ using Moments = std::array<Eigen::Matrix3d, kJointCount>;
 /// One person in front of one sensor, just before random errors are added to the body.
 struct Sight {
   const Skeleton<SensorSpace>& exact;
-  const Skeleton<SensorSpace>& shown;  ///< With bias, the SDK's labels, and states.
+  /// The body with bias, the SDK's labels, and states.
+  const Skeleton<SensorSpace>& shown;
   FlipState flip;
   const Stand& stand;
 };

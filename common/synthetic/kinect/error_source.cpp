@@ -6,7 +6,7 @@
 namespace chorus::synthetic::kinect {
 namespace {
 
-constexpr double kMostDropped = 0.9;  // so that some frames still arrive
+constexpr double kMostDropped = 0.9;  // So that some frames still arrive.
 
 double share(double value, double factor) { return std::clamp(value * factor, 0.0, 1.0); }
 
@@ -18,7 +18,7 @@ void scale(Visibility& visibility, double factor) {
 
 /// Moves the angle towards half a turn for factors below 1, towards the reliable angle above 1.
 double flip_angle(double angle, double reliable, double factor) {
-  if (angle >= deg(180)) return angle;  // an angle that is never reached stays so
+  if (angle >= deg(180)) return angle;  // An angle that is never reached stays so.
   if (factor < 1) return angle + (1.0 - factor) * (deg(180) - angle);
   return reliable + (angle - reliable) / factor;
 }

@@ -1,4 +1,4 @@
-// Turning one layer of the sensor model up, down or off: stress sweeps and ablations.
+// Turns one layer of the sensor model up, down or off, for stress sweeps and ablations.
 #pragma once
 
 #include "common/synthetic/kinect/profile.h"
@@ -16,10 +16,10 @@ enum class Source { Visibility, Yaw, Bias, Coloured, White, Gross, Delivery, Clo
 ///   (Which joints are hidden is geometry, and does not change, except that at 0 none is; nor does
 ///   the share of hidden joints that is called inferred.)
 /// - Yaw: the slopes beyond the reliable angle are raised to this power, so that the body shown
-///   turns less and less but never backwards.  Above 1 left and right are exchanged at a smaller
-///   angle, closer to the reliable one; below 1 at a larger one, closer to half a turn.
+///   turns less and less but never backwards.  Above 1, left and right are swapped at a smaller
+///   angle, closer to the reliable one; below 1 at a larger one, closer to half a turn; at 0 never.
 /// - Bias, Coloured, White: the size of the error.
-/// - Gross: the rates of teleports and ghosts, the probability that ids are exchanged, and how far
+/// - Gross: the rates of teleports and ghosts, the probability that ids are swapped, and how far
 ///   legs are pulled together.
 /// - Delivery: the shares of lost frames and of time at 15 Hz, the rate of gaps, and both jitters.
 ///   Latency is not an error and does not change.

@@ -10,7 +10,7 @@ namespace {
 
 enum Purpose : std::uint64_t { kScale = 951, kScaleWhite, kProportion };
 
-constexpr double kLeastScale = 0.5;  // the smallest scale that a tracker would fit
+constexpr double kLeastScale = 0.5;  // Smallest scale that an SDK would fit.
 
 std::uint64_t stamp_of(double time) {
   return static_cast<std::uint64_t>(std::max(0.0, time * 1e6));

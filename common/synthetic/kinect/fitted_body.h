@@ -1,4 +1,4 @@
-// A tracker that fits a body of fixed proportions: in each frame all bones have their own lengths
+// An SDK that fits a body of fixed proportions: in each frame all bones have their own lengths
 // times one common scale.  (Measured on Azure Kinect logs: the lengths of any two bones correlate
 // by 1.000000, and the scale is between 0.77 and 1.09.)
 //
@@ -11,7 +11,7 @@
 
 namespace chorus::synthetic::kinect {
 
-/// What one sensor's tracker remembers of one body: the course of its scale.
+/// What one sensor's SDK remembers of one body: its scale, which varies slowly.
 struct FitState {
   SmoothNoise scale;
 };

@@ -10,7 +10,7 @@ namespace {
 
 enum Purpose : std::uint64_t { kGhost = 941, kGhostPlace, kSwap, kIds };
 
-// Ids of ghosts and of people never coincide; the numbers mean nothing else.
+// Ids of people are up to kMaxId, those of ghosts from kGhostId on, so they never coincide.
 constexpr std::uint64_t kMaxId = 800'000;
 constexpr std::uint64_t kGhostId = 900'000;
 constexpr std::uint64_t kGhostIds = 1000;

@@ -1,4 +1,4 @@
-// Errors that are not noise: legs that merge, bodies where nobody is, exchanged ids.
+// Errors that are not noise: legs that merge, bodies where nobody is, swapped ids.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ void merge_legs(Skeleton<SensorSpace>& body, const GrossError& gross);
 [[nodiscard]] std::optional<BodyFrame> ghost(const GrossError& gross, double time,
                                              const ErrorKeys& keys);
 
-/// The id that one sensor uses for each person.  When two people touch, their ids are exchanged
-/// with some probability.
+/// The id that one sensor uses for each person.  When two people touch, their ids are swapped with
+/// some probability.
 class IdBook {
  public:
   IdBook(const ErrorKeys& keys, std::size_t people);

@@ -15,7 +15,7 @@
 namespace chorus::synthetic::kinect {
 
 struct BiasKeys {
-  std::uint64_t sdk = 1;  ///< The same for every sensor and person of one draw.
+  std::uint64_t sdk = 1;  ///< Seed of the SDK's part; the same for every sensor and person.
   std::uint64_t person = 1;
 };
 

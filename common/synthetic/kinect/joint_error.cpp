@@ -13,11 +13,11 @@ namespace {
 
 enum Purpose : std::uint64_t { kOwn = 922, kCore, kTail, kState, kWhite, kTeleport, kHidden };
 
-constexpr double kTurnUnit = deg(22.5);  // the unit of turn_growth
+constexpr double kTurnUnit = deg(22.5);  // Angle that `turn_growth` refers to.
 
 bool is_core(JointId id) { return mirror(id) == id; }
 
-/// Shoulders and hips sit on the trunk.
+/// True for shoulders and hips, which are fixed to the trunk.
 bool is_girdle(JointId id) {
   using enum JointId;
   return id == ShoulderLeft || id == ShoulderRight || id == HipLeft || id == HipRight;
@@ -106,7 +106,7 @@ JointState shown_state(JointId id, double visible_share, double time, const Visi
 
 void SmoothNoise::advance(double passed, double tau, Draw draw) {
   const Eigen::Vector3d fresh = draw.gauss3();
-  if (!started_) {  // drawn from the stationary distribution
+  if (!started_) {  // Starts with the stationary distribution.
     first_ = fresh;
     second_ = 0.5 * (fresh + draw.gauss3());
     started_ = true;
@@ -118,7 +118,7 @@ void SmoothNoise::advance(double passed, double tau, Draw draw) {
 }
 
 Eigen::Vector3d SmoothNoise::value() const {
-  return std::numbers::sqrt2 * second_;  // two lags halve the variance
+  return std::numbers::sqrt2 * second_;  // The two filters halve the variance.
 }
 
 double activity(double speed, const ColouredError& coloured) {
@@ -146,8 +146,9 @@ void advance(ColouredState& state, const Stand& stand, const Moment& moment, con
 
 namespace {
 
-/// The coloured error of one joint without that of its leader, of unit variance: a part shared by
-/// the sensors that see the same side, a part common to the core, and a part of its own.
+/// The coloured error of one joint, of unit variance, without what it follows of its leader.  It is
+/// the sum of a part shared by the sensors that see the same side, a part common to the core
+/// joints, and a part of its own.
 Eigen::Vector3d own_unit(std::size_t i, const ColouredState& state, const ColouredError& coloured) {
   const double shared = static_cast<JointId>(i) == JointId::Neck ? coloured.neck_correlation
                                                                  : coloured.sensor_correlation;
@@ -158,7 +159,7 @@ Eigen::Vector3d own_unit(std::size_t i, const ColouredState& state, const Colour
          std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i].value();
 }
 
-/// own_unit() together with the part that follows the joint's leader.
+/// The coloured error of one joint, of unit variance, with the part that follows its leader.
 Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
                               const ColouredError& coloured) {
   const auto led_by = leader(static_cast<JointId>(i));
@@ -174,9 +175,9 @@ Eigen::Vector3d stretched(const Eigen::Vector3d& unit, const Eigen::Vector3d& ra
 
 /// Standard deviations of the random errors of a seen joint, and the ray to it.
 struct Sizes {
-  double coloured = 0.0;                            ///< Across the ray [m]
-  double hidden = 0.0;                              ///< Across the ray [m]
-  Eigen::Vector3d white = Eigen::Vector3d::Zero();  ///< Along the axes [m]
+  double coloured = 0.0;  ///< Coloured error, across the ray [m].
+  double hidden = 0.0;    ///< Error of a hidden joint, across the ray [m].
+  Eigen::Vector3d white = Eigen::Vector3d::Zero();  ///< White noise, along the axes [m].
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
 };
 
@@ -210,7 +211,7 @@ Sizes sizes_of(std::size_t i, const Joint& joint, const Stand& stand, double tim
           white_sigma(i, stand, profile, guessed), joint.position.stableNormalized()};
 }
 
-/// Covariance of a stretched unit error.
+/// Covariance of a stretched() error whose standard deviation across the ray is `sigma`.
 Eigen::Matrix3d stretched_covariance(double sigma, const Eigen::Vector3d& ray, double factor) {
   return sigma * sigma *
          (Eigen::Matrix3d::Identity() + (factor * factor - 1.0) * ray * ray.transpose());

@@ -1,7 +1,7 @@
 // Random joint error (coloured noise, white noise, teleports) and the state tracked or inferred.
 //
-// Times are seconds since the epoch.  Everything except ColouredState is a pure function of its
-// arguments, so that it can be computed for any frame in any order.
+// Times are seconds since the epoch.  All results except the changes of a ColouredState depend only
+// on the arguments, so they can be computed for any frame in any order.
 #pragma once
 
 #include <array>
@@ -48,22 +48,23 @@ struct ColouredState {
 /// The body's pose and motion as far as they determine the size of the error.
 struct Stand {
   View view;
-  double misjudged = 0.0;                    ///< Error of the yaw that the SDK shows [rad]
-  double distance = 2.5;                     ///< Sensor to neck [m]
-  std::array<double, kJointCount> speed{};   ///< Of each joint [m/s]
-  std::array<double, kJointCount> hidden{};  ///< By the SDK's labels, as noticed; 0: seen.
+  double misjudged = 0.0;                   ///< Error of the yaw that the SDK shows [rad].
+  double distance = 2.5;                    ///< From the sensor to the neck [m].
+  std::array<double, kJointCount> speed{};  ///< Speed of each joint [m/s].
+  /// How far each joint is hidden, as noticed by the SDK and by its labels: 0 (seen) to 1.
+  std::array<double, kJointCount> hidden{};
 };
 
 /// Smooth noise of unit variance over `time`, with correlation time `tau` [s]; a pure function.
 [[nodiscard]] Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double time,
                                             double tau);
 
-/// How fast the error of a joint of this speed changes: by rest_share of the full rate at rest, by
-/// the full rate (1) when it moves.
+/// The rate at which the error of a joint of this speed changes, as a share of the full rate:
+/// rest_share at rest, 1 from moving_speed on.
 [[nodiscard]] double activity(double speed, const ColouredError& coloured);
 
-/// Decides between tracked and inferred, in runs of about `state_hold`.  Occluded joints are mostly
-/// inferred; visible core joints, shoulders and hips never are.
+/// Draws the state, tracked or inferred, anew in each interval of `state_hold`.  Occluded joints
+/// are mostly inferred; visible core joints, shoulders and hips never are.
 [[nodiscard]] JointState shown_state(JointId id, double visible_share, double time,
                                      const Visibility& visibility, const ErrorKeys& keys);
 
@@ -73,7 +74,7 @@ struct Moment {
   double dt = 0.033;
 };
 
-/// Goes on by one frame.
+/// Advances by one frame.
 void advance(ColouredState& state, const Stand& stand, const Moment& moment, const Profile& profile,
              const ErrorKeys& keys);
 

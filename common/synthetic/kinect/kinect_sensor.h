@@ -26,11 +26,14 @@ struct KinectSetting {
   SensorId id;
   std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
   Profile profile;
-  std::uint64_t seed = 1;       ///< The same for all sensors of a room, for errors that they share.
-  std::uint64_t bias_seed = 1;  ///< Of the SDK and of people, whose bias is the same in every run.
-  bool own_clock = true;        ///< Stamps by the host's clock with its errors; false: true time.
-  /// Gives each joint the true mean square of its error as its covariance (error_moment.h).  No
-  /// real sensor knows that; it serves to compute bounds.
+  /// Seed of the other errors; the same for all sensors of a room, because they share some errors.
+  std::uint64_t seed = 1;
+  /// Seed of the bias of the SDK and of people; it is the same in every run.
+  std::uint64_t bias_seed = 1;
+  /// True: frames are stamped by the host's clock with its errors.  False: by true time.
+  bool own_clock = true;
+  /// True: each joint's covariance is the true mean square of its error (error_moment.h).  No real
+  /// sensor knows that; it serves to compute bounds.
   bool confides = false;
 };
 
@@ -46,7 +49,8 @@ class KinectSensor final : public BodySensor {
  private:
   struct Memory {
     FlipState flip;
-    std::array<double, kJointCount> hidden{};  ///< Of each joint, as noticed by the SDK.
+    /// How far each joint is hidden, as noticed by the SDK: 0 (seen) to 1.
+    std::array<double, kJointCount> hidden{};
     ColouredState coloured;
     FitState fit;
     PersonHarmonics bias{};

@@ -18,9 +18,10 @@ namespace chorus::synthetic::kinect {
 
 /// The direction from which one sensor sees a person, and the person's place.
 struct View {
-  double facing = 0.0;                              ///< Yaw away from facing the sensor [rad]
-  double heading = 0.0;                             ///< Of the body in sensor space, about +y [rad]
-  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< Of the neck on the floor, world x, z [m]
+  double facing = 0.0;   ///< Yaw away from facing the sensor [rad]
+  double heading = 0.0;  ///< Yaw of the body in sensor space [rad].
+  /// The neck's place on the floor: world x, z [m].
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
 };
 
 /// Keys of the random draws; equal for all sensors of a room.
@@ -34,20 +35,22 @@ class SharedError {
   /// Prepares of() for this view.  Afterwards the results of of() depend only on these arguments
   /// and its own; what is kept between calls is a cache.
   void look(const View& view, const ColouredError& coloured, const SharedKeys& keys);
-  /// The error of one joint in sensor space, of unit variance per axis.  Joints of the core have a
-  /// part of it in common.
+  /// The error of one joint in sensor space, of unit variance per axis.  Core joints have a part of
+  /// it in common.
   [[nodiscard]] Eigen::Vector3d of(JointId id, const ColouredError& coloured) const;
 
  private:
-  static constexpr std::size_t kOrders = 3;              // 1; cos and sin of twice the view
-  static constexpr std::size_t kRows = kJointCount + 1;  // the last: what the core has in common
+  static constexpr std::size_t kOrders = 3;  // Constant, and cos and sin of twice the view angle.
+  // The last row is what the core joints have in common.
+  static constexpr std::size_t kRows = kJointCount + 1;
   using Corner = std::array<std::array<Eigen::Vector3d, kOrders>, kRows>;
 
   void fill(const Eigen::Vector2d& cell, const SharedKeys& keys);
 
   std::array<Corner, 4> corners_{};
-  std::array<double, 4> weights_{};       ///< Of the corners; squares sum to one.
-  std::array<double, kOrders> orders_{};  ///< Of the orders, for this view; squares sum to one.
+  std::array<double, 4> weights_{};  ///< Weights of the corners; their squares sum to one.
+  /// Values of the orders for this view; their squares sum to one.
+  std::array<double, kOrders> orders_{};
   Eigen::Matrix3d sensor_from_body_ = Eigen::Matrix3d::Identity();
   Eigen::Vector2d cell_ = Eigen::Vector2d::Constant(-1.0);
   bool filled_ = false;

@@ -28,8 +28,8 @@ struct Obstacles {
 [[nodiscard]] bool blocks(const Box& box, const Eigen::Vector3d& end);
 
 /// The share of rays to each joint of body `self` that reach it, in [0, 1].  The body's own
-/// capsules do not block a ray if they contain the joint, because a joint lies inside its own limb.
-/// If the profile has no rays, all joints are visible.
+/// capsules do not block rays to its core joints, nor to a joint that is inside them, as it is in
+/// its own limb. If the profile has no rays, all joints are visible.
 [[nodiscard]] std::array<double, kJointCount> visible_share(const Skeleton<SensorSpace>& body,
                                                             std::size_t self,
                                                             const Obstacles& obstacles,

@@ -24,8 +24,8 @@ Skeleton<SensorSpace> mirrored_labels(const Skeleton<SensorSpace>& body) {
   return swapped;
 }
 
-/// Turns every joint beside the spine about the vertical through the spine: those of the upper half
-/// of the body by the shoulders' error, those of the lower half by the hips'.
+/// Turns every joint except those of the spine about the vertical through the spine: joints of the
+/// legs by the error of the hips' yaw, the others by that of the shoulders'.
 void turn_laterals(Skeleton<SensorSpace>& body, double shoulder_error, double hip_error) {
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const auto id = static_cast<JointId>(i);

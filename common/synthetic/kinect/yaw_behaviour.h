@@ -2,8 +2,8 @@
 //
 // Up to `reliable` the yaw shown is right; beyond, that of shoulders and hips lags behind.  Beyond
 // flip_to_rear the skeleton is shown as if the person faced the sensor, so left and right are
-// exchanged; this lasts until the yaw is below flip_to_front again (hysteresis).  A person whom the
-// SDK sees for the first time is taken to face the sensor.
+// swapped; this lasts until the yaw is below flip_to_front again (hysteresis).  When the SDK sees a
+// person for the first time, the mean of the two angles decides.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +15,18 @@ namespace chorus::synthetic::kinect {
 
 /// What one sensor's SDK remembers of one body.
 struct FlipState {
-  bool rear = false;   ///< Labels are exchanged.
-  double blend = 0.0;  ///< 0: front, 1: rear; in between while the SDK changes.
+  bool rear = false;   ///< True while left and right are swapped.
+  double blend = 0.0;  ///< 0: front, 1: rear; in between during the transition.
   bool met = false;    ///< True once `rear` has been decided.
 };
 
-/// The yaw that the SDK shows for a true yaw [rad]; `slope`: of the shown over the true yaw beyond
-/// the reliable angle.  Odd and continuous; for a person in the front state.
+/// The yaw that the SDK shows for a true yaw [rad] of a person in the front state.  Beyond the
+/// reliable angle it grows `slope` times as fast as the true yaw.  Odd and continuous.
 [[nodiscard]] double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour);
 
-/// One sensor's own angles of exchange: flip_to_rear and flip_to_front of the profile, both moved
-/// by the same deviation of up to flip_own, and flip_to_front by a further one of up to
-/// flip_back_own; it never exceeds flip_to_rear.
+/// One sensor's own angles: flip_to_rear and flip_to_front of the profile, both moved by the same
+/// deviation of up to flip_own, and flip_to_front by a further one of up to flip_back_own, but not
+/// above flip_to_rear.
 [[nodiscard]] YawBehaviour own_behaviour(YawBehaviour behaviour, std::uint64_t seed,
                                          std::uint64_t sensor);
 
@@ -34,13 +34,13 @@ struct FlipState {
 /// (0: directly facing the sensor).
 void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour);
 
-/// The error of the yaw that the SDK shows for the shoulders, not counting exchanged labels [rad,
-/// >= 0].
+/// The error of the yaw that the SDK shows for the shoulders, apart from swapped labels [rad, >=
+/// 0].
 [[nodiscard]] double misjudged_yaw(double facing, const FlipState& state,
                                    const YawBehaviour& behaviour);
 
-/// The skeleton as the SDK would show it: trunk and limbs turned about the spine, labels exchanged
-/// in the rear state.
+/// The skeleton as the SDK would show it: trunk and limbs turned about the spine, labels swapped in
+/// the rear state.
 [[nodiscard]] Skeleton<SensorSpace> as_shown(const Skeleton<SensorSpace>& body, double facing,
                                              const FlipState& state, const YawBehaviour& behaviour);
 

@@ -20,9 +20,10 @@ namespace {
 constexpr std::uint64_t kBumpPurpose = 731;
 constexpr std::size_t kDraws = 20;
 constexpr std::size_t kQuickDraws = 1;
-constexpr Duration kPushedAt = std::chrono::seconds(180);  // sensors are known by then
+constexpr Duration kPushedAt =
+    std::chrono::seconds(180);  // by then the watch knows what is usual for each sensor
 constexpr Duration kFollowedFor =
-    std::chrono::seconds(60);    // after the push: the sensor is placed anew meanwhile
+    std::chrono::seconds(60);    // after the push; in this time the sensor is registered again
 constexpr double kShift = 0.05;  // [m]
 constexpr double kTurn = deg(2);
 constexpr double kEight = 8.0 * 3600.0;  // [s]
@@ -67,7 +68,7 @@ double detected_after(const RoomLog& log, const Push& push) {
   return kNoRatio;
 }
 
-/// Number of false alarms: all before the push, and after it those that name another sensor.
+/// Number of false alarms: all before the push, and after it those that name only another sensor.
 std::size_t wrong_alarms(const RoomLog& log, const Push& push) {
   return static_cast<std::size_t>(
       std::ranges::count_if(log.alarms, [&](const RoomLog::Alarm& alarm) {
@@ -119,7 +120,7 @@ void measure_pushed(Report& report, const BumpCase& each) {
   report_pushed(report, each, draws);
 }
 
-/// Two people, six sensors, nobody touches anything.
+/// Counts the alarms in a room with two people and six sensors, none of which is moved.
 void measure_quiet(Report& report) {
   const Duration length = report.quick() ? std::chrono::seconds(60) : std::chrono::seconds(24 * 60);
   const auto logs = over_draws(report.quick() ? kQuickDraws : kDraws, [&](std::size_t i) {

@@ -23,7 +23,7 @@ SensorId sensor_of(std::size_t place) {
 }
 
 std::vector<Eigen::Isometry3d> places_of(const RoomSetting& setting) {
-  constexpr std::size_t kSeenTogether = 3;  // fewer sensors stand side by side
+  constexpr std::size_t kSeenTogether = 3;  // two sensors stand like two of a ring of three
   synthetic::Ring ring;
   ring.count = std::max(setting.sensors, kSeenTogether);
   auto places = ring_places(ring);
@@ -38,7 +38,8 @@ Eigen::Isometry3d pushed(const Eigen::Isometry3d& place, const Push& push) {
   return out;
 }
 
-/// One sensor before and after the push, with the next frame that it will deliver.
+/// A sensor, which is replaced by another object when it is pushed, and the next frame that it
+/// will deliver.
 struct Lane {
   std::unique_ptr<BodySensor> sensor;
   std::optional<SensorFrame> next;

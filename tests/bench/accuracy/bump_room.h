@@ -1,5 +1,5 @@
-// A room in everyday use, one of whose sensors is pushed: the fusion server's core on the frames of
-// simulated sensors, frame by frame, with its own registration.
+// A room in everyday use in which one sensor is pushed: the fusion server's core, with its own
+// registration, processes the frames of simulated sensors one by one.
 #pragma once
 
 #include <optional>
@@ -39,11 +39,11 @@ struct RoomLog {
   std::vector<Alarm> alarms;                  ///< One entry for each alarm that is raised.
   std::optional<Duration> placed_again = {};  ///< When the pushed sensor was registered again.
   double place_again_error = 0.0;             ///< Error of its pose at the end [m].
-  /// By how much the step of a person's trunk from one instant to the next exceeds the true step,
-  /// at most [m]: before the push, and from then on.
+  /// Largest distance between the step of a person's trunk from one instant to the next and the
+  /// true step [m]: before the push, and from then on.
   double step_before = 0.0;
   double step_after = 0.0;
-  double body_error_before = 0.0;  ///< Mean error of the trunk, 10 s before the push [m].
+  double body_error_before = 0.0;  ///< Mean error of the trunk in the 10 s before the push [m].
   double body_error_after = 0.0;   ///< The same in the last 10 s.
   double walked = 0.0;             ///< Simulated time [s].
 };

@@ -31,7 +31,7 @@ using namespace synthetic;
 constexpr Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
 constexpr double kDistance = 2.6;  // from the sensor to the middle of the walk [m]
 
-/// The person's true orientation towards the sensor.
+/// Names of the person's true orientations towards the sensor.
 constexpr std::array<const char*, 3> kViews{"facing", "side", "rear"};
 
 std::size_t view_of(double facing) {

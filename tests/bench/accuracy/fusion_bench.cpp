@@ -24,7 +24,8 @@ using synthetic::PathKind;
 
 constexpr Duration kSweepLength = std::chrono::seconds(5);
 constexpr std::size_t kQuickDraws = 2;
-constexpr Duration kQuickLength = std::chrono::seconds(10);  // the shortest walk to register from
+constexpr Duration kQuickLength =
+    std::chrono::seconds(10);  // the shortest walk from which sensors are registered
 
 using Draws = std::vector<std::vector<Scored>>;
 
@@ -183,7 +184,8 @@ void sweep(Report& report) {
   }
 }
 
-/// The claim of the first issue: white noise only, registered from the same walk.
+/// With white noise only, and registered from the same walk, fusion must be better than the best
+/// single sensor in every draw.
 void measure_gauss(Report& report) {
   FusionCase gauss{"workshop6-gauss", contest_of("gauss", 6, PathKind::Random)};
   gauss.contest.own_registration = true;
@@ -201,7 +203,7 @@ std::vector<FusionCase> all_cases() {
 
 /// Fails on a gross regression, before anybody reads the table.
 void hold_to_ceiling(Report& report, const Comparison& found) {
-  constexpr double kCeiling = 60.0;  // [mm] about twice the present; 97 before sides were resolved
+  constexpr double kCeiling = 60.0;  // [mm] about twice the present error
   report.condition(fmt::format("{}: our mean joint error is below {} mm", kMainCase, kCeiling),
                    found.spread_of(kOurs).median < kCeiling);
 }

@@ -24,7 +24,7 @@ struct CostCase {
   const char* name;
   std::size_t sensors;
   std::size_t persons;
-  double most_p99_ms;  ///< Limit that the condition sets.
+  double most_p99_ms;  ///< Limit of fuse_p99_ms, checked in full runs only.
 };
 constexpr std::array kCostCases{CostCase{"cost-10x6", 10, 6, 2.0},
                                 CostCase{"scale-64x2", 64, 2, 5.0}};
@@ -40,7 +40,7 @@ Workshop workshop_of(const Report& report, const CostCase& each) {
   return draw_workshop(setting);
 }
 
-/// Time of every instant from frames to snapshot [ms].
+/// Processing time of every instant, from its frames to the snapshot [ms].
 std::vector<double> step_times(const Workshop& workshop, fusion::Method method) {
   pipeline::PipelineConfig config;
   config.fusion.method = method;
@@ -71,7 +71,7 @@ void report_times(Report& report, const CostCase& each) {
     const double spent = percentile(ours, share);
     report.row(each.name, metric, spent, "ms", "flip-fixed-mean", spent / percentile(mean, share));
   }
-  if (report.quick()) return;  // a build without optimisation says nothing
+  if (report.quick()) return;  // may be a build without optimisation, whose times mean nothing
   report.condition(
       fmt::format("{}: one instant is fused in less than {} ms, p99", each.name, each.most_p99_ms),
       percentile(ours, 0.99) < each.most_p99_ms);

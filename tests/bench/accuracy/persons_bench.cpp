@@ -1,5 +1,6 @@
-// Identities: our association compared with a first attempt and with the sensors' own ids; with
-// single sources of error scaled up and down, and with parts of the association left out.
+// Identities: our association compared with assignment to the nearest neighbour and with the
+// sensors' own ids; with single sources of error scaled up and down, and with parts of the
+// association left out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -120,7 +121,7 @@ void report_figure(Report& report, const std::string& name, const Draws& draws,
   if (figure.better == Better::Higher) comparison.report_wins(report);
 }
 
-/// Reports the mean over the draws, in which methods still differ where their medians are zero.
+/// Reports our mean over the draws, because the median is often zero and then shows no difference.
 void report_mean_ghosts(Report& report, const std::string& name, const Draws& draws) {
   double sum = 0.0;
   for (const Identities& found : draws)

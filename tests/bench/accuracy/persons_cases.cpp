@@ -38,11 +38,12 @@ std::vector<Eigen::Isometry3d> ring(std::size_t count, double radius = 3.0) {
 /// What the sensors see at one instant, before it is assigned to people.
 using Sights = associate::Scene;
 
-/// A method: returns the people at each instant, and may remember anything from instant to instant.
+/// A method of association: returns the people at each instant, and may remember anything from one
+/// instant to the next.
 using Grouper = std::function<std::vector<Person>(const Sights& sights)>;
 
-/// Reports every occluded joint as inferred.  Profile A reports many of them as tracked, close to
-/// their true positions, so its sensors would see through the screen.
+/// Makes the sensors report every occluded joint as inferred.  With profile A alone, they would
+/// report many of them as tracked, close to their true positions, and thus see through the screen.
 void know_the_occluded(synthetic::kinect::Profile& profile, std::size_t) {
   profile.visibility.inferred_occluded = 1.0;
 }
@@ -190,7 +191,8 @@ bool is_exchanged(const Person& person, const Skeleton<WorldSpace>& exact) {
 std::vector<PersonsCase> persons_cases() {
   constexpr Duration kFiveMinutes = std::chrono::minutes(5);
   constexpr Duration kMinute = std::chrono::minutes(1);
-  // Profile C renders images; the cost of occlusion grows with the square of the people.
+  // Profile C renders images, and the cost of occlusion grows with the square of the number of
+  // people.
   constexpr Duration kRendered = std::chrono::seconds(12);
   constexpr Duration kOfFour = std::chrono::seconds(20);
   constexpr Duration kOfSix = std::chrono::seconds(15);
@@ -227,7 +229,8 @@ Identities identities_in(const PersonsCase& each, std::uint64_t seed,
   for (const Contestant& contestant : contestants) {
     const Identity found = identity_of(contestant.rolls);
     const auto [known, fresh] = identities.emplace(contestant.name, found);
-    // Each sensor's ids are a contestant, all of one name: only the best one is kept.
+    // The ids that each sensor gives take part as well, all under the same name; only the best
+    // result is kept.
     if (!fresh && found.idf1 > known->second.idf1) known->second = found;
   }
   return identities;

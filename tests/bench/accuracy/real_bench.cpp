@@ -189,7 +189,7 @@ Result<std::vector<record::FrameRecording>> plain_views() {
   return views;
 }
 
-/// Adds a row per camera alone; returns the best one's error.
+/// Adds a row for each camera by itself; returns the error of the best one [mm].
 double add_single_cameras(Report& report, const ImportedSet& set,
                           const std::vector<record::FrameRecording>& plain) {
   double best = std::numeric_limits<double>::infinity();

@@ -22,7 +22,8 @@ namespace chorus::bench {
 /// Compares the times between frames with those of profile A.
 [[nodiscard]] Result<void> time_labanotation(Report& report, const std::filesystem::path& folder);
 
-/// How often left and right are right after the pipeline, each recording fused as a single sensor.
+/// Reports how often left and right are correct after the pipeline; each recording is fused as a
+/// single sensor.
 [[nodiscard]] Result<void> side_labanotation(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_keraal(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_ntu(Report& report, const std::filesystem::path& folder);

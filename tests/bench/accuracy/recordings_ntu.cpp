@@ -18,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using registration::WalkTrack;
 
-/// Frame -> camera -> the pose seen ("C002 1 0 x y z depthX depthY state").
+/// The pose that each camera saw, by frame and camera.  A row of the file is "C002 1 0 x y z
+/// depthX depthY state": camera, frame, joint, position [m], ...
 std::map<int, std::map<std::string, Skeleton<SensorSpace>>> read_poses(const fs::path& file) {
   std::map<int, std::map<std::string, Skeleton<SensorSpace>>> poses;
   std::ifstream text(file);

@@ -100,7 +100,7 @@ struct Census {
   std::size_t copies = 0;    ///< Complete takes of which two views have the same numbers.
   std::size_t refused = 0;   ///< Of these, takes that the importer refuses as copies.
   std::size_t wrongly = 0;   ///< Complete takes without copies that the importer refuses as copies.
-  std::size_t pairs = 0;     ///< Pairs of walks.
+  std::size_t pairs = 0;     ///< Pairs of views of a walk.
   std::size_t accepted = 0;  ///< Pairs that were accepted as registered.
   Closure closure;
 };

@@ -48,8 +48,8 @@ struct Share {
 };
 
 struct Shares {
-  Share as_labelled;  ///< Frames in which the sensor's labels are right.
-  Share exchanged;    ///< Frames in which they are swapped.
+  Share as_labelled;  ///< Bodies whose labels by the sensor are correct.
+  Share exchanged;    ///< Bodies whose labels by the sensor are swapped.
 };
 
 /// The sensor's body nearest to a fused one.

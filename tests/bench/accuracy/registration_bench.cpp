@@ -47,8 +47,8 @@ void watch(Report& report, const RegistrationCase& each, const std::vector<Score
                    median(position) < kCeiling);
 }
 
-/// Measures the claim for white noise, which is older than the sensor model and is kept so that it
-/// can be repeated.
+/// Checks an earlier claim, which was made for white noise before there was the sensor model; it
+/// is kept so that it can be repeated.
 void measure_gauss(Report& report) {
   Setting setting;
   setting.profile = synthetic::kGaussProfile;
@@ -98,8 +98,8 @@ void sweep_stress(Report& report) {
 /// One of the short walks, and its result.
 struct ShortWalk {
   Score score;
-  /// True for a uniform circle or a straight line.  A circle does not determine a clock, in
-  /// principle.
+  /// True for a uniform circle or a straight line.  In principle, a circle does not determine a
+  /// clock offset.
   bool marked = false;
   double offset_error = kNoRatio;  ///< Error of the pair's clock offset, as found from the motion
                                    ///< [ms]; NaN: none was found.
@@ -195,7 +195,7 @@ void measure_short_walks(Report& report, const std::string& name, std::size_t co
                    percent(unmarked_refused, unmarked) <= kMaxRefused);
 }
 
-/// Measures `count` short walks: a thousand, or fewer, because 200 show nearly as much.
+/// Measures `count` short walks: a thousand in a full run; 200 of them show nearly as much.
 void measure_all_short_walks(Report& report, std::size_t count) {
   measure_short_walks(report, "walks-1000-synced", count, true);
   measure_short_walks(report, "walks-1000", count, false);
@@ -207,13 +207,14 @@ void measure_all_short_walks(Report& report, std::size_t count) {
 
 /// The outcome for the sensors of one ring.
 struct RingFate {
-  /// True if the sensor that followed somebody else got no place, and a reason.
+  /// True if the sensor that followed somebody else got no place but a reason.
   bool odd_named = false;
   std::size_t refused = 0;  ///< Number of other sensors that were refused.
   std::size_t lost = 0;     ///< Number of other sensors that were placed more than 100 mm off.
 };
 
-/// A ring of four, 20 s; with `bystander`, one of its sensors followed somebody else all the time.
+/// Registers a ring of four sensors from a walk of 20 s; with `bystander`, one of the sensors
+/// followed somebody else all the time.
 RingFate one_ring(std::uint64_t seed, bool bystander) {
   constexpr std::size_t kSensors = 4;
   constexpr std::uint64_t kStranger = 5000;  // added to the seed of the walk

@@ -47,7 +47,7 @@ std::vector<RegistrationMethod> methods_of(const RegistrationCase& each) {
   return methods;
 }
 
-/// [length][method]
+/// The scores of one draw, by length and then by method.
 using DrawScores = std::vector<std::vector<Score>>;
 
 DrawScores one_draw(const RegistrationCase& each, std::uint64_t seed) {
@@ -82,7 +82,7 @@ double percent_of(const std::vector<Score>& draws, Count count) {
   return asked == 0 ? kNoRatio : 100.0 * static_cast<double>(counted) / static_cast<double>(asked);
 }
 
-/// Percentage of the sensors that have a place.
+/// Percentage of the placed sensors that `count` counts.
 template <class Count>
 double percent_of_placed(const std::vector<Score>& draws, Count count) {
   std::size_t placed = 0;
@@ -95,7 +95,7 @@ double percent_of_placed(const std::vector<Score>& draws, Count count) {
                      : 100.0 * static_cast<double>(counted) / static_cast<double>(placed);
 }
 
-/// Reports the errors on the floor that our method states, and whether they are right.
+/// Reports the horizontal errors that our method states, and how often they hold.
 void report_stated(Report& report, const std::string& name, const std::vector<Score>& draws) {
   std::vector<double> stated;
   std::vector<double> off;
@@ -140,7 +140,8 @@ std::vector<RegistrationCase> disturbed_rings(const std::string& profile) {
        {std::pair{"circle", PathKind::Circle}, {"line", PathKind::Line}}) {
     Setting walked = ring(profile);
     walked.walk = path;
-    // The untimed ICP fails on both walks by a metre and takes most of the time: run it once.
+    // The untimed ICP fails on both walks by a metre and takes most of the time, so it runs for
+    // profile A only.
     cases.push_back({fmt::format("ring6-{}-{{}}s-{}", name, profile),
                      walked,
                      {30},

@@ -11,7 +11,7 @@ struct RegistrationCase {
   /// "ring6-{}s-A": the braces stand for the length.
   std::string name;
   Setting setting;
-  std::vector<int> lengths;  ///< [s]; each is a beginning of the longest walk.
+  std::vector<int> lengths;  ///< [s]; shorter walks are beginnings of the longest one.
   std::vector<RegistrationMethod> beside;
   bool corrected = false;    ///< Stamps are corrected as the server does.
   bool last_only = false;    ///< Scores only the last sensor.

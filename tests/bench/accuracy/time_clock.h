@@ -19,10 +19,11 @@ struct NamedClock {
   std::function<ClockMethod()> make;  ///< Makes a new one without exchanges.
 };
 
-/// The server's method, and those it is compared with: the least delay of the last 30 s, one stamp
-/// half a round trip ago, the mean or median of Cristian's offsets, and what NTP achieves.
+/// The server's method, and those it is compared with: the exchange with the least delay of the
+/// last 30 s, a single stamp taken to be half a round trip old, the mean or median of Cristian's
+/// offsets, and no correction, which shows what NTP achieves.
 [[nodiscard]] std::vector<NamedClock> clock_methods();
-/// The server's method, and variants that leave one part out.
+/// The server's method, and variants with a shorter window or without one part.
 [[nodiscard]] std::vector<NamedClock> clock_ablations();
 
 /// A host's clock and the network in front of it.

@@ -34,6 +34,8 @@ struct Agreement {
 /// Fuses the bundled landmarks, and every picture of the bundled videos, offline, so that the speed
 /// of this computer does not matter.
 [[nodiscard]] Result<void> four_views(Report& report);
+/// Fuses takes of eight real cameras and compares them with Vicon, where that data is at hand.
+[[nodiscard]] Result<void> eight_views(Report& report);
 /// Fuses the bundled videos with real processes.
 [[nodiscard]] Result<void> live_views(Report& report);
 /// Measures how many pictures a second a runner processes on one core.

@@ -20,7 +20,7 @@ namespace {
 
 using importers::ImportedSet;
 
-/// Joints that every network gives as one landmark, so that networks can be compared.
+/// Joints for which every network has a landmark of its own, so that networks can be compared.
 constexpr std::array kLimbs{JointId::ShoulderLeft, JointId::ShoulderRight, JointId::ElbowLeft,
                             JointId::ElbowRight,   JointId::WristLeft,     JointId::WristRight,
                             JointId::HipLeft,      JointId::HipRight,      JointId::KneeLeft,
@@ -34,7 +34,7 @@ Result<ImportedSet> published() {
 
 using Tracks = std::vector<registration::WalkTrack>;
 
-/// Lens and file of a camera, as the demo has them.
+/// The lens and the video of a camera, as the demo configures them.
 Result<camera::CameraSettings> settings_of(const std::string& id) {
   std::ifstream file(fmt::format("{}/{}.json", kFourVideos, id));
   const auto all = nlohmann::json::parse(file, nullptr, false, true);

@@ -58,7 +58,7 @@ class Cell {
   [[nodiscard]] static Result<Cell> start(CellPlan plan);
 
   [[nodiscard]] Result<void> start_sensor(int index);
-  /// Sets what the sensor gets at its next start.
+  /// Changes the settings with which the sensor is started the next time.
   void change_sensor(int index, Settings settings) { plan_.of_sensor[index] = std::move(settings); }
   [[nodiscard]] Result<void> start_fusion();
   /// Waits until every placed sensor contributes to one body.
@@ -75,7 +75,7 @@ class Cell {
     return sensor_ports_.at(static_cast<std::size_t>(index));
   }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
-  /// The list "sensors" of the server, JSON.
+  /// The value of the server's setting "sensors", JSON.
   [[nodiscard]] std::string polled() const;
   /// s1, s2, ... and the honest neighbours that have a place.
   [[nodiscard]] std::vector<std::string> placed() const;

@@ -1,5 +1,5 @@
-// Causes in a small tracker of real processes what goes wrong in a workshop: case after case, and
-// checks what must hold in each.
+// Runs a small tracker of real processes and causes, case by case, what goes wrong in a workshop;
+// checks what must hold in each case.
 #include <algorithm>
 #include <chrono>
 #include <iostream>

@@ -22,7 +22,7 @@ namespace chorus::bench {
 /// Pose of place `index` of `count` on the ring of simulated sensors.
 [[nodiscard]] Eigen::Isometry3d place_of(int index, int count);
 
-/// A sensor that says whatever its script says, at 30 Hz.
+/// A sensor that serves what its script returns, at 30 Hz.
 class Guest {
  public:
   struct Said {

@@ -21,7 +21,8 @@ struct LinkModel {
   double jitter = 0.0;  ///< Additional delay: uniform from 0 to this.
 };
 
-/// Where a pump listens and where it connects to.  Made for the pump's io_context.
+/// Where a pump listens and where it connects to.  The functions are called with the pump's
+/// io_context.
 struct PumpEnds {
   std::function<net::Acceptor(asio::io_context&)> listen;
   std::function<net::Socket(asio::io_context&)> socket;

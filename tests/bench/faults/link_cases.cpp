@@ -84,8 +84,7 @@ Result<void> one_bad(Trial& trial, const LinkModel& link) {
 Result<void> used_later(Trial& trial, Cell& cell) {
   constexpr int kAsked = 60;
   constexpr double kMin = 95.0;
-  constexpr double kTolerance =
-      20.0;  // joint counts are not frame counts; both are averages [percent]
+  constexpr double kTolerance = 20.0;  // the server counts joints, we count frames [percent]
   const Watch watch(cell.port());
   const Timestamp begun = now();
   int with = 0;

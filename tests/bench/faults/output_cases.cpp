@@ -87,7 +87,7 @@ constexpr std::string_view kModels("\4\0\0\0", 4);      // message 4
 constexpr std::string_view kKeepAlive("\12\0\0\0", 4);  // message 10
 constexpr char kFrameMessage = 7;
 
-/// Acts like the vendor's clients: connects, asks for models, keeps alive; true: frames come.
+/// True if frames come.  Acts like the vendor's clients: connects, asks for models, keeps alive.
 bool natnet_serves(const End& end) {
   const auto client = datagrams_to(end);
   (void)client.say(kConnect);

@@ -21,8 +21,8 @@ constexpr double kReturn = 1.5;    // until a sensor that returns contributes ag
 constexpr double kFollowed = 0.3;  // the same after its host's clock was set [s]
 constexpr double kPatience = 8.0;
 
-/// Waits until all sensors contribute again for a second, at most kPatience, which exceeds every
-/// limit.
+/// Waits until all sensors have contributed again for a second, but at most kPatience, which is
+/// longer than every limit.
 void wait_for_return(const Watch& watch, const Cell& cell, Timestamp since) {
   (void)wait_until(kPatience,
                    [&] { return std::isfinite(recovery(watch.seen(), since, cell.placed())); });
@@ -83,7 +83,7 @@ Result<void> frozen_mid_answer(Trial& trial) {
 /// A bad sensor alongside two good ones, which must not be affected.
 struct Beside {
   Neighbour neighbour;
-  /// Set once the cell has settled; null: the sensor misbehaves from the start.
+  /// Is set to true once the cell has settled; null: the sensor misbehaves from the start.
   std::atomic<bool>* misbehaves = nullptr;
   double watched = 4.0;   ///< [s]
   bool must_tell = true;  ///< /sensors/ must report an error of the bad sensor.

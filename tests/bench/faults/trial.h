@@ -46,7 +46,7 @@ class Trial {
   double age_p90_ms = kNotMeasured;
 };
 
-/// An error means that the case could not be set up; that counts as failed.
+/// Runs a case.  An error means that the case could not be set up; that counts as failed.
 using RunCase = std::function<Result<void>(Trial&)>;
 
 struct FaultCase {

@@ -51,7 +51,7 @@ struct LiveCell {
 /// Starts a cell and waits until `persons` bodies are fused.
 [[nodiscard]] Result<LiveCell> start_cell(int sensors, int persons);
 
-/// What one VRPN client that reads the first person sees.
+/// Measurements of one VRPN client that reads the first person.
 struct Lateness {
   std::vector<double> beyond_capture;  ///< Per frame: time since the last capture it needed [s].
   double output_hz = 0.0;
@@ -74,7 +74,7 @@ struct ClientAnswers {
   std::uint64_t lost = 0;      ///< Connections closed by the server.
 };
 
-/// All clients on one thread and one epoll set.
+/// Runs all clients on one thread with one epoll set.
 class ClientCrowd {
  public:
   ClientCrowd(const LiveCell& cell, const ClientCounts& counts);

@@ -109,7 +109,8 @@ double cores_of(const ChildProcess& process, double seconds) {
   return (process.cpu_seconds() - before) / elapsed;
 }
 
-/// Gaps in each stream, found by the sequence numbers of the recorded frames.
+/// What a recording contains.  `lost`: frames missing according to the sequence numbers in each
+/// stream.
 struct Contents {
   std::size_t frames = 0;
   std::uint64_t lost = 0;

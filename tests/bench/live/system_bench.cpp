@@ -242,7 +242,8 @@ Result<void> run_case(Report& report, const SystemCase& asked) {
 
 using Hosts = std::array<HostError, kSystemSensors>;
 
-// Clocks behind and ahead of the server by amounts typical without NTP, and drifting.
+// Clocks that are behind or ahead of the server's by amounts that are typical without NTP, and
+// that drift.
 constexpr Hosts kApart{{{-150, 30}, {400, -50}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
 // The clocks of kApart; during the watch, two of them are set right, as by NTP: by 150 ms and by
 // 400 ms.

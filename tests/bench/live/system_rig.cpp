@@ -96,7 +96,8 @@ Result<ChildProcess> start_sensor(const SystemCase& asked, int index, std::uint1
   return ChildProcess::start("chorus-sensor", words);
 }
 
-/// Exact up to the time a service takes to start: the drift in that time is negligible.
+/// The clock of a host whose service starts at `start`; that it starts a little later makes no
+/// difference, because the drift in that time is negligible.
 synthetic::HostClock clock_of(const HostError& error, Timestamp start) {
   constexpr double kMilli = 1e-3;
   constexpr double kMillionth = 1e-6;

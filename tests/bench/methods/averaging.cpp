@@ -25,7 +25,8 @@ double spread(const std::vector<Eigen::Vector3d>& points, const std::vector<std:
   return sum;
 }
 
-/// All points that can be reached from `start`; they are removed from `left`.
+/// All points that can be reached from `start` by steps of at most `reach`; they are removed from
+/// `left`.
 std::vector<std::size_t> reached_from(std::size_t start, const std::vector<Eigen::Vector3d>& points,
                                       double reach, std::vector<std::size_t>& left) {
   std::vector<std::size_t> members{start};

@@ -67,8 +67,8 @@ struct NamedSighted {
   Sighted which;
 };
 
-/// The groups of joints: all of them, then by how many views saw them, then by whether they are at
-/// rest.
+/// The groups of joints: all of them, and then by how many views saw them, combined with whether
+/// they are at rest.
 std::vector<NamedSighted> sighted_apart() {
   using enum Sighted::Motion;
   std::vector<NamedSighted> all{{"", {}}};
@@ -130,7 +130,7 @@ double distance_to(const Eigen::Vector3d& core, const Body& exact) {
   return std::hypot(off.x(), off.z());
 }
 
-/// Of several candidates the one nearest to the truth, within reach.
+/// The candidate whose core is nearest to the truth's, within kReach; end() if there is none.
 template <class Candidates, class Core>
 auto nearest(const Candidates& candidates, const Body& exact, const Core& core) {
   auto best = candidates.end();
@@ -152,7 +152,7 @@ Person with_true_labels(Person person, const Body& exact) {
   return person;
 }
 
-/// A draw, its place in the world, and the views of all people in it.
+/// A draw, the registration that is used for it, and the views of all people in it.
 struct Stage {
   Workshop workshop;
   Registration registration;
@@ -189,7 +189,8 @@ Stage stage_of(const Contest& contest, bool with_bound) {
   return stage;
 }
 
-/// The person at that moment as the contender gets it; none if there is none.
+/// The person at that moment, with the views as the contender gets them; none if association found
+/// nobody there.
 std::optional<Person> given_at(const Stage& stage, std::size_t at, const Contender& contender) {
   const Body& exact = stage.exact[at];
   if (contender.bound && stage.confided.empty()) return std::nullopt;

@@ -19,7 +19,7 @@ namespace chorus::bench {
 /// How a figure is to be read.
 enum class Kind {
   Error,   ///< Lower is better.
-  Stated,  ///< Of covariances, for methods that state one; neither direction is better.
+  Stated,  ///< About stated covariances, for methods that state them; neither direction is better.
 };
 
 /// A figure of a method.

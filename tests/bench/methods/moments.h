@@ -43,12 +43,12 @@ void visit_moments(const std::vector<registration::WalkTrack>& tracks,
                    const std::function<void(Moment)>& visit,
                    const pipeline::PipelineConfig& config = {});
 
-/// Visits the input of association at each instant of the period.
+/// Visits the input of association at each instant of the time span.
 void visit_scenes(const std::vector<registration::WalkTrack>& tracks,
                   const Registration& registration, const Period& period,
                   const std::function<void(const associate::Scene&)>& visit);
 
-/// All moments of the period.
+/// All moments of the time span.
 [[nodiscard]] std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& tracks,
                                              const Registration& registration, const Period& period,
                                              const pipeline::PipelineConfig& config = {});

@@ -20,11 +20,11 @@ namespace chorus::bench::baselines {
 struct SharedErrors {
   double joints = 0.0;  ///< Where both see the same side.
   double neck = 0.0;    ///< The same for neck and chest.
-  double twice = 0.0;   ///< Its part that varies with twice the angle between the views.
+  double twice = 0.0;   ///< Fraction that varies with twice the angle between the views.
 };
 
-/// The views' joints must carry their true mean square errors (judge.h, confided()); the result
-/// states its covariance.  Joint views without one are left out.
+/// Computes the body `bound` (see above) and states its covariance.  The views' joints must carry
+/// their true mean square errors (judge.h, confided()); joint views without one are left out.
 [[nodiscard]] Body linear_bound(const Person& person, const SharedErrors& shared);
 
 /// Computes a body from a person's views and the truth.

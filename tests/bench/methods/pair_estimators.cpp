@@ -23,7 +23,7 @@ constexpr std::size_t kMaxPoints = 300;  // as in registration/icp.cpp
 constexpr std::size_t kMinPoints = 10;
 constexpr double kSettled = 1e-6;  // [m], [rad]
 
-/// Both skeletons' spaces, levelled where both floors are known.
+/// Transforms that level the spaces of both skeletons, if both floors are known.
 struct Levels {
   bool both = false;
   Eigen::Isometry3d level_from_target = Eigen::Isometry3d::Identity();

@@ -19,7 +19,7 @@ using registration::WalkTrack;
 constexpr double kLost = 0.1;       // a sensor farther off counts as not registered [m]
 constexpr double kChi2Of2 = 5.991;  // 95 % with two degrees of freedom
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// Variance factor, because successive pairs are correlated.
+// Factor by which successive pairs, which are correlated, typically increase the variance.
 constexpr double kTypicalInflation = 19.0;
 const Eigen::Vector3d kCentreInScene(0, 1, 0);
 

@@ -18,7 +18,8 @@ inline constexpr std::array kSources{
     NamedSource{"coloured", Coloured},     NamedSource{"white", White}, NamedSource{"gross", Gross},
     NamedSource{"delivery", Delivery},     NamedSource{"clock", Clock}};
 
-/// The factors applied to each: 0 switches it off, 1 leaves it unchanged.
+/// The factors that are applied to each source of errors: 0 switches it off, 1 leaves it
+/// unchanged.
 inline constexpr std::array kFactors{0.0, 0.5, 1.0, 2.0, 3.0};
 
 }  // namespace chorus::bench

@@ -85,8 +85,8 @@ void compare_with_logs(Report& report, std::span<const LogClaim> claims, const L
   }
 }
 
-/// Compares the simulated field of view with that of a real depth camera, fitted to real joints and
-/// their pixels.
+/// Compares the simulated field of view with that of a real depth camera, which was computed from
+/// real joints and their pixels.
 void compare_view(Report& report) {
   const kinect::ViewLimits view = kinect::nominal_profile("A").view;
   check(report, {"log-view", "width_deg", "deg", {69.9, 69.9}, 0.01},
@@ -174,7 +174,8 @@ MannequinFigures mannequin_figures(std::uint64_t seed) {
   return figures;
 }
 
-/// (b) The mannequin (Otto Figs. 5-8).  Jitter may be 0.2 to 1.3 times Otto's bound.
+/// (b) Compares the mannequin's figures with Otto Figs. 5-8.  Jitter may be 0.2 to 1.3 times
+/// Otto's bound.
 void compare_with_mannequin(Report& report) {
   const std::vector<MannequinFigures> all = over_seeds(report, mannequin_figures);
   const auto values_of = [&](double MannequinFigures::*figure) {
@@ -212,7 +213,8 @@ constexpr Pair kTable1[] = {
     {0, 9.6}, {45, 16.0}, {90, 17.8}, {135, 26.6}, {180, 12.3}};  // Otto Table 1
 constexpr std::uint64_t kSetUps = 11;  // a single one is uncertain by 20 %
 
-/// (c) The paper's ICP, 10 s, twenty walks per set-up; the condition is on the median set-up.
+/// (c) Repeats Table 1 with the paper's ICP: twenty walks of 10 s for each set-up.  The median
+/// over the set-ups is checked.
 std::vector<TableOneBar> compare_with_table1(Report& report) {
   std::vector<TableOneBar> bars;
   for (const Pair& pair : kTable1) {

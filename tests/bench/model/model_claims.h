@@ -8,8 +8,8 @@
 
 namespace chorus::bench {
 
-/// A published or measured interval; our value passes within a tolerance of its ends, but never
-/// beyond the limit.
+/// A published or measured interval; our value may lie outside it by a tolerance, but never beyond
+/// the limit.
 struct Range {
   double least;
   double most;

@@ -50,7 +50,7 @@ Scene pair_scene(const TableOneSetting& setting, std::uint64_t walk) {
 std::optional<Eigen::Vector2d> place_of(const kinect::Profile& profile,
                                         const TableOneSetting& setting, int run) {
   const Scene scene = pair_scene(setting, setting.seed * 1000 + static_cast<std::uint64_t>(run));
-  // The sensors and their errors stay the same; only the walk and the hour differ.
+  // The sensors and their errors stay the same; only the walk and its time differ.
   const Timestamp begin = kSomeTime + std::chrono::minutes(run);
   std::vector<WalkTrack> tracks;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -1,4 +1,5 @@
-// Otto 7.2-7.3, Table 1: two sensors, a slow walk of 10 s, ICP on neck clouds, twenty times.
+// Repeats Otto 7.2-7.3, Table 1: two sensors, a slow walk of 10 s, ICP on neck clouds, twenty
+// times.
 #pragma once
 
 #include <cstdint>

@@ -30,7 +30,7 @@ constexpr int kMaxTicks = 50;
 constexpr std::array<std::string_view, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                    "#b8860b", "#56b4e9", "#333333"};
 
-/// 1, 2 or 5 times a power of ten.
+/// A step between ticks: 1, 2 or 5 times a power of ten.
 double round_step(double range) {
   const double rough = range / kAimedTicks;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));

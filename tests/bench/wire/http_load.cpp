@@ -44,7 +44,8 @@ bool wait_until_it_answers(std::uint16_t port) {
   return false;
 }
 
-/// Debian's defaults, plus settings that make nginx fast for one small file.
+/// nginx's configuration: Debian's defaults, plus settings that make nginx fast for one small
+/// file.
 std::string nginx_config(const std::string& folder, std::uint16_t port) {
   std::ostringstream text;
   text << "daemon off; master_process off; worker_processes 1;\n"

@@ -59,8 +59,8 @@ struct LongPollLoad {
   double run_seconds = 5.0;
 };
 
-/// What long polls measured.  The server under test must begin every document with "# <steady ns>",
-/// when it was made.
+/// What long polls measured.  The server under test must begin every document with the time when
+/// it was made, "# <steady ns>".
 struct LongPollAges {
   /// Age of the document when received [s], one per answer after the warm-up.
   std::vector<double> ages;

@@ -60,8 +60,8 @@ struct OutputRow {
 /// Every output that has connections.
 [[nodiscard]] const std::vector<OutputRow>& output_rows();
 
-/// The cheapest possible output: the same hand-over and thread, and `count` datagrams of `bytes`
-/// bytes per frame, whatever the frame contains.
+/// The cheapest possible output: it uses the same hand-over and thread, and sends `count`
+/// datagrams of `bytes` bytes per frame, whatever the frame contains.
 [[nodiscard]] OpenedOutput bare_datagrams(std::size_t count, std::size_t bytes);
 
 }  // namespace chorus::bench

@@ -1,5 +1,6 @@
-// chorus-bench publish: how long a fused frame takes to a client of each output, and how long from
-// capture to a VRPN client of the real server; and whether 400 clients delay anybody.
+// chorus-bench publish: measures how long a fused frame takes to a client of each output, how long
+// it takes from capture to a VRPN client of the real server, and whether 400 clients delay
+// anybody.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -41,7 +41,7 @@ void check(const Reply& reply, std::span<const char> datagram) {
 
 }  // namespace
 
-/// Datagrams, each preceded by a byte for its sender and a byte for its length.
+/// The input holds datagrams, each preceded by a byte for its sender and a byte for its length.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size < 1) return 0;
   CommandDesk made = desk((bytes[0] & 1) != 0);

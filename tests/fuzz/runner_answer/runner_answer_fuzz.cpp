@@ -19,7 +19,8 @@ constexpr const char* kUsualHello =
     R"({"type": "hello", "version": 1, "name": "n", "layout": "mediapipe_33"})";
 constexpr double kFocalSigma = 0.1;
 
-/// Checks the frame as rays, and as the device places it.
+/// Checks the bodies as they were read, as rays, and again after they were placed as the device
+/// does it.
 void check_answer(bridge::PushedFrame frame) {
   fuzz::check_bodies(frame.bodies, kQuestion.captured);
   PlacingErrors errors;

@@ -119,7 +119,7 @@ TEST(Events, LittleWaitsForAReaderWhoStopsForAWhile) {
     return make_document("application/json", '"' + std::string(5'500, 'x') + '"', options);
   };
   service.frame->publish(usual(1));
-  constexpr int kReceiveBuffer = 16 * 1024;  // The kernel makes 32 KiB of it.
+  constexpr int kReceiveBuffer = 16 * 1024;  // The kernel doubles it.
   RawClient client(service.server.port(), kReceiveBuffer);
   client.say(subscribe());
   (void)client.hear_until("x\"\n\n");
@@ -129,7 +129,8 @@ TEST(Events, LittleWaitsForAReaderWhoStopsForAWhile) {
     (void)service.ask("/frames/1");  // By then the server's thread has seen the publish.
   }
   const std::string heard = client.hear_until("id: " + std::to_string(kLast) + "\n");
-  // Six frames are in the reader's own kernel and cannot be dropped any more.
+  // About six frames are already in the receive buffer of the reader's kernel and cannot be
+  // dropped.
   EXPECT_LE(times(heard, "id: "), 9u);
 }
 

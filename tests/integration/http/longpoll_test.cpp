@@ -1,4 +1,5 @@
-// Prefer: wait with If-None-Match: held until the document changes; otherwise the answer is 304.
+// A request with Prefer: wait and If-None-Match is held until the document changes; if it does not
+// change in time, the answer is 304.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

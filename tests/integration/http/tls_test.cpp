@@ -125,7 +125,8 @@ TEST(Tls, AWebSocketCarriesEveryVersion) {
   EXPECT_THAT(client.hear_until("{\"n\":1}"), HasSubstr("101 Switching Protocols"));
   service.frame->publish(test::frame_document(2));
   EXPECT_THAT(client.hear_until("{\"n\":2}"), HasSubstr("{\"n\":2}"));
-  // During a write the server would close without a close frame.
+  // Waits until nothing is being written: during a write the server would close without a close
+  // frame.
   std::this_thread::sleep_for(100ms);
   std::thread stopping([&] { service.server.stop(); });
   EXPECT_THAT(client.hear_all(), HasSubstr("\x88\x02\x03\xe9"));  // a close frame: going away

@@ -34,7 +34,8 @@ class DatagramReceiver {
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string target() const { return "127.0.0.1:" + std::to_string(port_); }
 
-  /// Also receives what is sent to this group on this port; false if the machine cannot.
+  /// Also receives what is sent to this group on this port; false if this machine has no
+  /// multicast.
   [[nodiscard]] bool join(const char* group, const char* interface = "0.0.0.0") {
     ip_mreq request{};
     ::inet_pton(AF_INET, group, &request.imr_multiaddr);

@@ -87,7 +87,7 @@ TEST_F(HostileVrpn, AClientThatNeverReadsIsClosedAndCostsNobodyElse) {
   RawClient deaf(server->port(), 4096);
   deaf.say(vrpn_cookie());
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
-  // Six persons for a client that wants everything: 55 kB a frame.
+  // A client that subscribes to everything gets 55 kB a frame for six persons.
   EXPECT_TRUE(publish_until(
       [&] {
         (void)good.next(milliseconds(1));

@@ -1,4 +1,4 @@
-// Pictures of a calibration board through a known lens, or only its exact corners.
+// Pictures of a calibration board through a known lens, or only the corners in such a picture.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace chorus::testing {
 
-/// Projects by Brown's model; OpenCV's axes.
+/// Projects a point by Brown's lens model.  The camera's axes are OpenCV's: x right, y down, z
+/// forward.
 [[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& x_in_camera,
                                         const Intrinsics& camera);
 
@@ -26,12 +27,13 @@ struct PoseWishes {
   std::uint64_t seed = 1;
 };
 
-/// camera_from_board, in the board's axes of black_parts() (x right, y up, z to the viewer) [m].
+/// Poses of the board: camera_from_board, for the board's axes of black_parts() (x right, y up, z
+/// towards the viewer) [m].
 [[nodiscard]] std::vector<Eigen::Isometry3d> board_poses(const calibration::Board& board,
                                                          const Intrinsics& camera,
                                                          const PoseWishes& wishes);
 
-/// The inner corners that lie in the picture, each off by `noise` [px].
+/// The inner corners that lie in the picture, with Gaussian noise of `noise` [px] along each axis.
 [[nodiscard]] calibration::View seen_corners(const calibration::Board& board,
                                              const Intrinsics& camera,
                                              const Eigen::Isometry3d& camera_from_board,
@@ -46,7 +48,7 @@ struct Flaws {
 class BoardCamera {
  public:
   BoardCamera(const calibration::Board& board, const Intrinsics& camera);
-  /// Grey.
+  /// An 8-bit grey picture.
   [[nodiscard]] cv::Mat picture(const Eigen::Isometry3d& camera_from_board, const Flaws& flaws,
                                 std::uint64_t seed) const;
 

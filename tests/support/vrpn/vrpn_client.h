@@ -32,7 +32,7 @@ struct VrpnPose {
   std::int32_t sensor = -1;
   Eigen::Vector3d position;
   Eigen::Quaterniond orientation;
-  double interval = 0.0;  ///< Time of a velocity's rotation [s].
+  double interval = 0.0;  ///< Of a velocity: the time in which it turns by `orientation` [s].
 };
 
 /// The pose or the velocity that a message holds; none unless its payload has exactly the right

@@ -37,7 +37,7 @@ Result<void> write_known(const char* path) {
   return writer->close();
 }
 
-/// Two sensors of a ring of two, one person, for two seconds.
+/// Writes two seconds of one person seen by two sensors on a ring.
 Result<void> write_session(const char* path) {
   auto writer = CellWriter::create(path, {{{"title", "probe"}}, false});
   if (!writer) return pass(writer);

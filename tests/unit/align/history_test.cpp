@@ -37,7 +37,7 @@ TEST(HistoryPush, TheSameCaptureTimeIsTakenOnce) {
   history.push(frame_at(milliseconds(0)));
   history.push(frame_at(milliseconds(33)));
   EXPECT_EQ(history.push(frame_at(milliseconds(33))), PushVerdict::Duplicate);
-  // As a cache would do.
+  // A cache may send an older frame again.
   EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Duplicate);
   EXPECT_EQ(history.frames().size(), 2u);
 }
@@ -65,7 +65,7 @@ TEST(HistoryPush, AClockThatWasSetBackIsBelievedAtTheThirdFrame) {
   }
 }
 
-/// A device that starts anew numbers its frames from the beginning.
+/// A device that restarts numbers its frames from the beginning.
 TEST(HistoryPush, ADeviceThatRestartsWithAnotherClockIsBelievedAtTheThirdFrame) {
   History history;
   history.push(numbered(100, std::chrono::seconds(10)));

@@ -69,7 +69,7 @@ TEST(PointFilter, LearnsAVelocityAndForgetsAfterALongGap) {
   for (int i = 0; i < 100; ++i) filter.update(at_frame(i), {0.04 * i, 0, 0}, 1e-4);  // 1 m/s
   EXPECT_NEAR(filter.at(at_frame(99))->x(), 3.96, 1e-3);
   EXPECT_NEAR(filter.at(at_frame(104))->x(), 4.16, 5e-3);
-  // The filter never goes back in time.
+  // Asked for an earlier time, the filter answers with its newest state.
   EXPECT_NEAR(filter.at(at_frame(50))->x(), filter.at(at_frame(99))->x(), 1e-12);
   filter.update(at_frame(200), {9, 0, 0}, 1e-4);
   EXPECT_EQ(filter.at(at_frame(200))->x(), 9);

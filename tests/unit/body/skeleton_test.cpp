@@ -17,7 +17,8 @@ using testing::SkeletonNear;
 using testing::standing_person;
 using testing::VectorNear;
 
-// A world skeleton cannot be registered again, and a sensor skeleton cannot be used as a world one.
+// A world skeleton cannot be moved into the world again, nor a sensor skeleton be used as a world
+// one.
 template <class Body>
 concept GoesToWorld = requires(const Eigen::Isometry3d& pose, const Body& body) {
   to_world(pose, body);

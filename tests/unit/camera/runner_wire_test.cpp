@@ -77,7 +77,8 @@ TEST(RunnerWire, PixelsBecomeRays) {
   EXPECT_EQ(body.captured, kNoon);
   const Joint& head = body.skeleton[JointId::Head];
   EXPECT_TRUE(head.bears());
-  // A quarter of the focal length to the right of the centre; the sensor's x points left.
+  // The pixel is a quarter of the focal length to the right of the centre; the sensor's x points
+  // left.
   EXPECT_NEAR((head.position - Eigen::Vector3d(-0.25, 0, 1).normalized()).norm(), 0.0, 1e-9);
   EXPECT_TRUE(head.covariance.known());
 }

@@ -72,9 +72,9 @@ TEST(Replacing, ProvisionalOnesFollowEachOtherDuringAWalk) {
       should_replace(provisional, adopted_ring(Verdict::Good, {1, 2}), SolveKind::Provisional));
 }
 
-/// The candidate's offsets refer to another common clock, which is 30 ms off ours.  The held s2
-/// shows this: its offset is 75 instead of 100 ms, and its least age shows that its clock has
-/// drifted by 5 ms.
+/// The candidate's offsets refer to another common clock, which is 30 ms off ours.  s2, which
+/// already has a place, shows this: its offset is 75 instead of 100 ms, and its least age shows
+/// that its clock has drifted by 5 ms.
 TEST(Extending, TakesTheNewcomersClockByOurCommonClock) {
   using std::chrono::milliseconds;
   Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
@@ -91,8 +91,8 @@ TEST(Extending, TakesTheNewcomersClockByOurCommonClock) {
   EXPECT_EQ(wider->clocks.at(named("s4")).added, milliseconds(-20));
   EXPECT_NEAR(chorus::seconds(wider->clocks.at(named("s4")).sigma), 0.005, 1e-6);
 
-  // Where the clocks of all held sensors are known by exchange, our common clock is the one they
-  // were compared with.
+  // If the clocks of all placed sensors are known from clock exchanges, our common clock is the
+  // one that they were compared with.
   current.clocks.clear();
   candidate.clocks[named("s2")] = {milliseconds(1), milliseconds(4), milliseconds(1), {}};
   const auto known = adopted(current, candidate, SolveKind::Provisional, true);

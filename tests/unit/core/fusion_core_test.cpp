@@ -105,7 +105,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, milliseconds(500));
   SensorFrame back = sight(0, milliseconds(300));
-  back.sequence = ~std::uint64_t{0};  // a later frame of the sensor
+  back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
   EXPECT_EQ(core.fates(sensor_id("s1")).backwards, 1u);
   SensorFrame stranger = sight(0, milliseconds(600));
@@ -231,7 +231,7 @@ TEST(FusionCore, TheRateMayChangeWhileRunning) {
   EXPECT_GT(after.front().instant, before.back().instant);
 }
 
-/// What run_delayed() saw; it runs as run() does, but frame i of the last sensor comes
+/// Result of run_delayed(), which runs as run() does, except that frame i of the last sensor comes
 /// `lateness(i)` late.
 struct Delayed {
   Answers live;
@@ -284,7 +284,8 @@ TEST(FusionCore, OneBadLinkCostsTheOthersAtMostThirtyMillisecondsAndIsUsedAfterw
   FusionCore core(config(), ring());
   const Delayed with = run_delayed(core, std::chrono::seconds(10), bad);
   EXPECT_LT(p90(with.ages), before + 0.030);
-  // A second later almost all instants include the late sensor, under the ids already published.
+  // After the first second, almost all instants include the late sensor once they are amended,
+  // under the ids already published.
   std::map<std::uint64_t, const Snapshot*> afterwards;
   for (const Snapshot& snapshot : with.live) afterwards[snapshot.sequence] = &snapshot;
   for (const Snapshot& snapshot : with.amended) {
@@ -329,7 +330,7 @@ TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
   (void)run(core, Duration{0}, milliseconds(500));
   EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   SensorFrame back = sight(0, milliseconds(300));
-  back.sequence = ~std::uint64_t{0};  // a later frame of the sensor
+  back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
   EXPECT_NE(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + std::chrono::seconds(4)), "");

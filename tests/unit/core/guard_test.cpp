@@ -32,8 +32,8 @@ TEST(Alarms, AreSentencesForPeople) {
   EXPECT_THAT(sentence_of(sensor_id("s3"), drift, now, true), HasSubstr("s3 has drifted"));
 }
 
-/// A person on a circle; each sensor has its own phase.  Sensor `pushed` is pushed by `push` along
-/// the world's x.
+/// A person walks on a circle; each sensor has its own phase.  The sensor `pushed_` stands `push_`
+/// away from its registered place along the world's x.
 class Pushed : public ::testing::Test {
  protected:
   Pushed() : core_(watched(), ring()) {}

@@ -136,7 +136,7 @@ TEST(RegistrationSession, ASlowSolveRestsTwiceAsLongAsItWorked) {
   EXPECT_EQ(walk(session, std::chrono::seconds(0), std::chrono::seconds(7)).size(), 1u);
   session.solved_in(std::chrono::seconds(3));
   EXPECT_TRUE(walk(session, std::chrono::seconds(7), milliseconds(7500)).empty());
-  // This is 9 s after the first solve was due.
+  // The first solve took 3 s and is followed by a rest of 6 s, so the next one is due now.
   EXPECT_EQ(walk(session, milliseconds(14500), std::chrono::seconds(1)).size(), 1u);
 }
 

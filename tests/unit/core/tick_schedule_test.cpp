@@ -58,7 +58,7 @@ TEST(TickSchedule, NoInstantIsLostOrDoubledOverAMinuteOfUnevenWork) {
   int answers = 0;
   for (int i = 0; now < kFirstTick + std::chrono::seconds(60); ++i) {
     const Tick tick = schedule.next(now);
-    // Frames arrive unevenly; now and then nothing is ready for longer than the deadline.
+    // Frames arrive unevenly: at every seventh step, the instant is not ready yet.
     const Duration wait = schedule.wait(now, i % 7 != 0);
     if (wait > Duration{0}) {
       now += std::min<Duration>(wait, milliseconds(1 + i % 11));

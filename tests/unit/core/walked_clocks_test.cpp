@@ -16,7 +16,7 @@ using testing::sensor_id;
 
 constexpr Duration kFrame = milliseconds(33);
 constexpr Duration kLatency = milliseconds(10);
-constexpr Duration kOff = milliseconds(200);  // the sensor's clock is behind ours by so much
+constexpr Duration kOff = milliseconds(200);  // the sensor's clock is behind ours by this
 
 /// A frame without bodies, of a clock that is `behind` ours, `t` after the start.
 SensorFrame frame_at(Duration t, Duration behind, Duration latency = kLatency) {
@@ -69,7 +69,8 @@ TEST(WalkedClocks, AHostThatBeginsToAnswerWithItsTimeIsBelievedInstead) {
   WalkedClocks clocks;
   (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);
   SensorFrame corrected = frame_at(std::chrono::seconds(5), Duration{0});
-  corrected.clock_sigma = 0.02;  // worse than what the walk told, but about the same stamps
+  corrected.clock_sigma =
+      0.02;  // less precise than what the walk found, but it is for these very stamps
   EXPECT_EQ(clocks.take(corrected, walked()), -kOff);
 }
 

@@ -58,7 +58,7 @@ TEST(Discovery, WithoutTlsAnAddressIsAllThatTellsAStrangerApart) {
               ElementsAre(sensor));
 }
 
-/// An avahi-browse that prints this, for as long as it lives.
+/// While it exists, the first avahi-browse in PATH is a script that prints `text`.
 class Browsed {
  public:
   explicit Browsed(const std::string& text) : path_(::getenv("PATH")) {

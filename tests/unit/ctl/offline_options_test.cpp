@@ -12,7 +12,7 @@ using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
 using ::testing::HasSubstr;
 
-/// The options given by a command line of these words; after a usage error, the defaults.
+/// The configuration that a command line of these words gives.
 Result<pipeline::OfflineConfig> config_of(std::vector<std::string> words) {
   OfflineOptions options;
   CLI::App app;

@@ -1,4 +1,4 @@
-// Runs `chorus` in this process and captures its output; recordings as its input.
+// Runs `chorus` in this process and captures its output; makes recordings as its input.
 #pragma once
 
 #include <string>
@@ -35,7 +35,7 @@ inline Outcome run_chorus(const std::vector<std::string>& words) {
 
 inline constexpr int kRing = 3;
 
-/// Position at t seconds of a person who walks in a figure of eight.
+/// Position at t seconds of a person who walks on a winding path.
 inline Eigen::Vector3d walked(double t) {
   return {0.9 * std::sin(0.7 * t), 0.0, 0.8 * std::sin(1.1 * t)};
 }
@@ -67,7 +67,8 @@ class Cell {
     std::filesystem::create_directory(folder_ / "rec");
     for (int i = 0; i < kRing; ++i) {
       auto recording = walk_seen_by(i, length);
-      recording.notes["set_origin"] = to_iso8601(recording.frames.front().captured);  // one clock
+      recording.notes["set_origin"] =
+          to_iso8601(recording.frames.front().captured);  // their clocks agree
       const auto file = folder_ / "rec" / (recording.sensor.str() + ".mcap");
       EXPECT_THAT(record::write_frame_recording(file, recording), chorus::testing::IsOk());
     }

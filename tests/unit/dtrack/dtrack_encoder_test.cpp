@@ -145,7 +145,7 @@ TEST(Dtrack, BodiesAreWrittenAsCapturesShow) {
 }
 
 TEST(Dtrack, OurParserReadsTheRealCapturesWeKnow) {
-  // Two genuine datagrams: if these could not be read, the tests above would mean nothing.
+  // A line of a genuine datagram: if it could not be read, the tests above would mean nothing.
   const auto bodies = bodies_of(
       "1 [0 1.000][-475.292 -567.632 -53.704 135.5743 5.7618 -3.3069][0.993291 0.111352 0.031199 "
       "0.057393 -0.708916 0.702954 0.100393 -0.696447 -0.710551]");

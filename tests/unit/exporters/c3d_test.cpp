@@ -21,7 +21,7 @@ using chorus::testing::hide;
 using chorus::testing::IsOk;
 using chorus::testing::VectorNear;
 
-/// Words are 1-based, as in the guide.
+/// A C3D file, read word by word.  Words are counted from 1, as in the guide.
 struct DecodedC3d {
   std::string bytes;
   std::map<std::string, std::string> values;  ///< "POINT:USED" -> raw bytes

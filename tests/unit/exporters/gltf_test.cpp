@@ -192,7 +192,8 @@ TEST(GltfExport, TheMeshStandsOnTheFloorAtRestAndFollowsTheJoints) {
     lowest = std::min(lowest, place[1]);
   }
   EXPECT_NEAR(lowest, 0.0, 0.02);
-  // Vertex 0 of a bone is its parent joint, vertex 5 its child: bones come in the order of kBones.
+  // Each bone has six vertices; the first lies at its parent joint, the last at its child joint.
+  // The bones are in the order of kBones.
   const auto posed = gltf.world(0);
   for (std::size_t b = 0; b < kBones.size(); ++b) {
     EXPECT_THAT(skinned(gltf, posed, 6 * b), VectorNear(person[kBones[b].parent].position, 1e-5));

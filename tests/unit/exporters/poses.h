@@ -67,7 +67,7 @@ inline std::vector<Skeleton<WorldSpace>> breathing_walk() {
   return frames;
 }
 
-/// Three turns on the spot, five degrees per frame.
+/// A person who turns by five degrees per frame, three times around, and moves along x meanwhile.
 inline std::vector<Skeleton<WorldSpace>> turning() {
   std::vector<Skeleton<WorldSpace>> frames;
   for (int i = 0; i < 216; ++i)

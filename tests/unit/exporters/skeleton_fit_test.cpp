@@ -62,7 +62,8 @@ TEST(SkeletonFit, FollowsAWalkOfRigidBonesWithinMillimetres) {
   const auto fit = fit_skeleton(track);
   ASSERT_THAT(fit, IsOk());
   ASSERT_EQ(fit->poses.size(), track.poses.size());
-  // SpineBase and the spine's joints are weighted means of bone ends: not entirely rigid.
+  // In the walk, SpineBase and the spine's joints are weighted means of bone ends, so their
+  // distances are not quite constant.
   EXPECT_LT(fit->residual.rms, mm(8));
   EXPECT_LT(fit->residual.largest, mm(40));
 }

@@ -9,7 +9,7 @@ namespace {
 
 const PersonPrior kPrior;
 
-/// Feeds the filter the same evidence for `seconds`.
+/// Gives the filter the same evidence from walking at every step for `seconds`.
 void walk(PersonFilter& filter, double log_odds, double seconds) {
   constexpr double kStep = 0.05;
   for (double t = 0.0; t < seconds; t += kStep) {

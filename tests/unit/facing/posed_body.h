@@ -96,7 +96,8 @@ class Ring {
         flips_(std::move(flips)),
         rear_(directions_.size(), false) {}
 
-  /// Views of a body at the origin that faces `heading`; habits depend on the order of the calls.
+  /// Views of a body at the origin that faces `heading`.  Whether a sensor swaps sides depends on
+  /// what it saw in earlier calls, too.
   [[nodiscard]] Person look(const Skeleton<WorldSpace>& exact, double heading) {
     Person person{PersonId{1}, {}};
     for (std::size_t s = 0; s < directions_.size(); ++s) {

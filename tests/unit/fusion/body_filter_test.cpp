@@ -120,8 +120,8 @@ TEST(BodyFilter, AViewThatIsTooLargeAsAWholeIsShrunk) {
   EXPECT_LT(error(0.06), 0.5 * error(0.0));
 }
 
-/// A camera that guesses depth puts everything too far away along its line of sight, and states
-/// that uncertainty.
+/// Cameras that guess depth put everything too far away or too near along their lines of sight,
+/// and state that uncertainty.
 TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
   const auto exact = standing();
   const auto guessed = [&](int number) {
@@ -138,7 +138,8 @@ TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
   Room room;
   FusedBody body;
   for (int i = 0; i < 30; ++i) {
-    // One joint has a known depth; without this joint, points-and-rays would fuse the person.
+    // One joint states no covariance; otherwise points-and-rays, not the body filter, would fuse
+    // the person.
     std::vector<SensorView> views{guessed(1), guessed(2), guessed(3), guessed(4)};
     views[0].skeleton[SpineMid].covariance = {};
     body = room.at(i, views);
@@ -333,7 +334,8 @@ TEST(BodyFilter, WhatASensorErrsByIsForgottenAsThePersonTurns) {
   EXPECT_LT(after_a_turn(deg(15)), 0.3 * after_a_turn(deg(360)));
 }
 
-/// Live and from a recording that starts later: not the same, but soon close.
+/// The results of a live run and of a recording that starts later differ at first, but are soon
+/// close.
 TEST(BodyFilter, ALateStartIsForgottenWithinSeconds) {
   const auto at = [](int i) {
     const double t = 0.033 * i;

@@ -43,7 +43,7 @@ TEST(LeastSquares, ExactRaysMeetInThePoint) {
 }
 
 TEST(LeastSquares, ANearCameraCountsMoreThanAFarOne) {
-  // Two rays across x, one from 1 m and one from 4 m, and one that determines z.
+  // Two rays along z, one from 1 m and one from 4 m away, determine x; a ray along x determines z.
   std::vector<JointView> views;
   RayDraw exact(1, 0.0);
   views.push_back(exact({0, 0, -1}, {0, 0, 0}));

@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 const std::vector<SensorId> kMemorySensors{sensor(1), sensor(2)};
 constexpr Timestamp kMemoryStart = from_unix_ns(1'795'246'200'000'000'000);
 
-/// A person that is fused instant by instant.
+/// Fuses one person instant by instant and keeps the memory.
 class Seen {
  public:
   explicit Seen(Method method) { config_.method = method; }
@@ -89,7 +89,7 @@ TEST(OttoKalman, AHeavyViewPullsMoreThanALightOne) {
   Seen seen(Method::OttoKalman);
   const double x =
       seen.neck_x(milliseconds(0), {neck_view(1, {0, 1, 0}, 0.98), neck_view(2, {1, 1, 0}, 0.23)});
-  EXPECT_NEAR(x, 0.2, 1e-6);  // R0 / 1.00 against R0 / 0.25
+  EXPECT_NEAR(x, 0.2, 1e-6);  // the views' variances are R0 / 1.00 and R0 / 0.25
 }
 
 TEST(FusionMemory, CopiesGoOnApart) {

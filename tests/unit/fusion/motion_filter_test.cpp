@@ -119,7 +119,8 @@ TEST(MotionFilter, AnUnseenPointSlowsDownAndIsLessAndLessSure) {
   const auto late = filter.at(at_motion_step(59 + 90)).value();
   EXPECT_NEAR(seen.velocity.x(), 1.5, 0.05);
   EXPECT_NEAR(soon.position.x(), 0.05 * 62, 0.03);
-  EXPECT_NEAR(late.position.x() - seen.position.x(), 1.5 * 0.4, 0.05);  // the time constant
+  EXPECT_NEAR(late.position.x() - seen.position.x(), 1.5 * 0.4,
+              0.05);  // the speed times the time constant
   EXPECT_LT(late.velocity.x(), 0.01);
   EXPECT_LT(seen.variance, soon.variance);
   EXPECT_LT(soon.variance, late.variance);

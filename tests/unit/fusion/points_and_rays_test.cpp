@@ -46,12 +46,12 @@ TEST(PointsAndRays, TwoRaysMakeAJointWithItsContributors) {
   EXPECT_EQ(joint.state, JointState::Tracked);
   EXPECT_EQ(joint.measurement, Measurement::Point);
   EXPECT_EQ(body.contributors[kNeck], 0b11U);
-  // Half a degree at about 3 m.
+  // An error of half a degree is 26 mm at about 3 m.
   EXPECT_NEAR(std::sqrt(body.variance[kNeck]), 0.026, 0.01);
 }
 
 TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
-  // Two sensors: what one source alone states counts as fused already.
+  // Two sensors are needed: what a single source states counts as already fused.
   const auto person = [](double along, double across) {
     const Eigen::Vector3d sigma(across, across, along);
     Person seen{PersonId{1}, {}};
@@ -72,7 +72,8 @@ TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
   EXPECT_EQ(method_for(person(0.25, 0.025), config), Method::Mean);
 }
 
-/// Wide as it is, what a point states is a place; only rays can leave a joint open.
+/// However uncertain its depth is, a point states a position; only rays can leave a joint without
+/// one.
 TEST(PointsAndRays, APointOfGuessedDepthStaysSeenInTheBodyFilter) {
   SensorView guessed = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 3});
   guessed.skeleton[JointId::Neck].covariance =
@@ -86,7 +87,7 @@ TEST(PointsAndRays, APointOfGuessedDepthStaysSeenInTheBodyFilter) {
   EXPECT_TRUE(body.skeleton[JointId::Neck].seen());
 }
 
-/// Rounded to floats, a covariance of rank one has eigenvalues below 0.
+/// A covariance of rank one that was rounded to floats can have eigenvalues below 0.
 TEST(StatedCovariance, CanBeInvertedHoweverThinItIs) {
   const Eigen::Vector3d depth = Eigen::Vector3d(0.3, 0.5, 0.81).normalized();
   SensorView view = neck_view(1, {0, 1, 0}, 0.5);
@@ -111,7 +112,8 @@ TEST(PointsAndRays, AnswersForPeopleOfWhomThereAreRaysAloneWhateverTheMethod) {
   const FusedBody both = cell.at(
       milliseconds(33), {ray_view(1, neck), ray_view(2, neck), neck_view(3, neck, 0.5, {0, 1, 3})});
   EXPECT_EQ(both.contributors[kNeck], 0b100U);
-  // Each method keeps its own memory.
+  // Each method keeps its own memory: points-and-rays knows the neck from before, so one ray is
+  // enough.
   (void)cell.at(milliseconds(66), {ray_view(1, neck)});
   EXPECT_EQ(cell.at(milliseconds(66), {ray_view(1, neck)}).contributors[kNeck], 0b1U);
 }

@@ -83,8 +83,8 @@ TEST(Level, PutsTheFloorAtZeroAndKeepsTheYaw) {
         const Eigen::Vector3d x_in_sensor = world_from_sensor.inverse() * x_in_world;
         EXPECT_NEAR((levelled_from_sensor * x_in_sensor).y(), x_in_world.y(), 1e-9);
       }
-      // A pitched sensor still looks along +z of the levelled space: only tilt and height are
-      // removed.
+      // Levelling removes only tilt and height: even if the sensor is pitched, its line of sight
+      // has no x component in the levelled space and still points to +z.
       const Eigen::Vector3d ahead = levelled_from_sensor.linear() * Eigen::Vector3d::UnitZ();
       EXPECT_NEAR(ahead.x(), 0.0, 1e-9);
       EXPECT_GT(ahead.z(), 0.0);

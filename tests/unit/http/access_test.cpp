@@ -184,6 +184,9 @@ TEST(WrongToken, IsOneThatIsNoneOfOurs) {
   head.authorization = "Bearer reader-2";
   EXPECT_TRUE(has_wrong_token(head, kRoles));
   EXPECT_FALSE(has_wrong_token(head, kNoToken)) << "there is nothing to guess";
+  head.authorization = kBasicSecret;
+  head.method = Method::Post;
+  EXPECT_FALSE(has_wrong_token(head, kRoles)) << "right, though refused for writing";
 }
 
 TEST(OurAuthority, ThisEndOfTheConnectionOnly) {

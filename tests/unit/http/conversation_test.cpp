@@ -23,7 +23,7 @@ constexpr std::string_view kStream =
 constexpr std::string_view kPost =
     "POST /do HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n";
 
-/// Plays the shell: carries out at once the reactions that the conversation returns, as far as the
+/// Stands in for the code around a conversation: carries out its reactions at once, as far as the
 /// test permits.
 class ConversationTest : public ::testing::Test {
  protected:

@@ -81,8 +81,8 @@ TEST(Amc, ABoneTurnsAboutItsOwnAxisFrame) {
 
 TEST(Amc, RootAnglesTurnAboutFixedAxesXFirst) {
   const AsfSkeleton skeleton = two_bones();
-  // x first: -y goes to -z; then 90 deg about z leaves it there.  The other order would give -x or
-  // +x.
+  // About x first: -y goes to -z; then 90 deg about z leaves it there.  The other order would give
+  // -x or +x.
   const auto frames = parse_amc("1\nroot 0 0 0 90 0 90\nupper 0 0 0\nlower 0\n", "a.amc", skeleton);
   ASSERT_TRUE(frames) << to_string(frames.error());
   const auto ends = bone_ends(skeleton, frames->front());

@@ -71,7 +71,7 @@ TEST(Mvnx, AheadLeftUpBecomesOurWorld) {
   const auto motion = motion_from_mvnx(parse_mvnx(kSuit, "suit.mvnx").value());
   ASSERT_THAT(motion, IsOk());
   const auto& body = motion->frames[0];
-  // (forward, left, up) = (z, x, y) of a person who faces +z.
+  // The file's forward, left and up are our z, x and y, because the person faces our +z.
   EXPECT_THAT(body[JointId::SpineBase].position, VectorNear(Eigen::Vector3d(0.2, 0.9, 0.1), 1e-9));
   EXPECT_THAT(body[JointId::ShoulderLeft].position,
               VectorNear(Eigen::Vector3d(0.4, 1.4, 0.1), 1e-9));

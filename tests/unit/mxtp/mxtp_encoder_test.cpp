@@ -116,8 +116,8 @@ TEST(Mxtp, TheHeadOfWhomOnlyPartOfTheNeckIsSeenStaysOnIt) {
   EXPECT_NEAR(place_without(JointId::Neck), 1.4, 1e-5);
 }
 
-/// Makes an MVNX file from the content of a datagram.  The only point stated is jC1Head, where the
-/// neck ends: as far along it as the head's origin is.
+/// Makes an MVNX file from the content of a datagram.  The file states a single point, jC1Head,
+/// the end of the neck: it lies on the neck's z axis, as far away as the head's origin.
 motion::Mvnx file_of(const std::vector<char>& bytes) {
   constexpr std::array kLabels{"Pelvis",
                                "L5",

@@ -50,7 +50,7 @@ TEST(BoneLengths, AreThoseOfThePersonAfterFiveSeconds) {
   EXPECT_FALSE(lengths.wants(kPerson));
   for (std::size_t i = 1; i < kBoneCount; ++i) {
     EXPECT_NEAR(length((*found)[i]), shown[i].position.norm(), 1e-9) << motive_bones()[i].name;
-    // Directions as in the rest pose, only longer.
+    // The directions are those of the rest pose; only the lengths differ.
     EXPECT_NEAR((*found)[i][1] * length(motive_bones()[i].offset),
                 motive_bones()[i].offset[1] * length((*found)[i]), 1e-9);
   }

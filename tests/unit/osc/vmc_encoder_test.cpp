@@ -1,4 +1,4 @@
-// VMC read bone by bone: multiplied along the chain they give the original joints.
+// VMC's bone rotations, multiplied along the chain, give the original joints.
 #include "fusion-server/osc/vmc_encoder.h"
 
 #include <map>

@@ -29,8 +29,8 @@ Vectors read(const outlet::TrackerBody& body, const Content& content = {}) {
   return all;
 }
 
-/// Unity: about z, then x, then y, in degrees; written for right-handed matrices, which have the
-/// same form.
+/// The rotation that Unity's Euler angles [deg] describe: about z, then x, then y.  Unity is
+/// left-handed, but right-handed matrices have the same form.
 Eigen::Quaterniond unity_euler(const Eigen::Vector3d& degrees) {
   return about_up(degrees.y()) * about_x(degrees.x()) * about_z(degrees.z());
 }

@@ -22,7 +22,7 @@ Quaternion local(const Humanoid& rig, HumanBone bone) {
   return rig[parent_of(bone)].world_from_bone.conjugate() * rig[bone].world_from_bone;
 }
 
-/// Bones that are not in `turned` must have the identity as their own rotation.
+/// Expects each bone's own rotation to be the one in `turned`, or the identity if there is none.
 void expect_only(const Humanoid& rig, const std::map<HumanBone, Quaternion>& turned) {
   for (std::size_t i = 1; i < kHumanBoneCount; ++i) {
     const auto bone = static_cast<HumanBone>(i);

@@ -14,7 +14,7 @@ namespace {
 using testing::kFrameInterval;
 using testing::kStart;
 
-/// Two people who walk on one circle, opposite each other.
+/// One of two people who walk on one circle, opposite each other.
 Skeleton<WorldSpace> seen_walker(int person, double t) {
   const double angle = 0.8 * t + std::numbers::pi * person;
   return testing::standing_person({0.9 * std::sin(angle), 0, 0.9 * std::cos(angle)},
@@ -31,7 +31,7 @@ struct Cell {
 
 SensorId camera_id(int i) { return testing::sensor_id("cam" + std::to_string(i)); }
 
-/// Poses of the cameras on a ring; neighbours are at most 90 deg apart.
+/// Pose of camera `i` on a ring; neighbours are at most 90 deg apart.
 Eigen::Isometry3d place_of(const Cell& cell, int i) {
   return testing::ring_sensor(i, std::max(4, cell.cameras), 3.5, 1.5);
 }

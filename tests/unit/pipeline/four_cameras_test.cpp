@@ -114,7 +114,7 @@ TEST(FourRealCameras, WithPublishedExtrinsicsFusionBeatsTheMeanAndEverySingleCam
   }
 }
 
-/// Directions only, without depth from perspective-n-point.
+/// Fuses only the directions of the landmarks, without depth from perspective-n-point.
 TEST(FourRealCameras, AsRaysFusionFindsTheTriangulationAndTwoCamerasAreEnough) {
   Recording recording = load(true);
   ASSERT_EQ(recording.tracks.size(), 4u);

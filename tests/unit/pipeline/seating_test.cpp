@@ -13,7 +13,7 @@ constexpr Duration kKeep = std::chrono::seconds(1);
 
 using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
 
-/// A room whose people are seated instant by instant.
+/// Gives the people in a room their slots, instant by instant.
 struct Room {
   Slots at(Duration after, const std::vector<std::uint64_t>& persons) {
     std::vector<FusedBody> bodies(persons.size());

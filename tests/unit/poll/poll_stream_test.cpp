@@ -73,7 +73,7 @@ TEST(PollFsmStream, WhatItLeavesOutIsFetchedAtOnceOneByOne) {
   const Step gap = fsm.resume(streamed(5, 132), milliseconds(100), kFull);
   EXPECT_EQ(send_of(gap).resource, Resource::KeptFrame);
   EXPECT_EQ(send_of(gap).sequence, 3u);
-  // One request is in flight.
+  // There is no second request while one is in flight.
   EXPECT_FALSE(fsm.resume(streamed(6, 165), milliseconds(133), kFull).action);
   const Step next = fsm.resume(KeptAnswered{true}, milliseconds(201), kFull);
   EXPECT_TRUE(next.deliver);
@@ -88,7 +88,7 @@ TEST(PollFsmStream, OneThatEndsLeavesThePolling) {
   EXPECT_EQ(send_of(ended).resource, Resource::Frame);
   EXPECT_EQ(fsm.state(), SensorState::Live);  // polling will decide
   EXPECT_FALSE(fsm.streaming());
-  // The next stream waits a second.
+  // The next stream is opened only after a second.
   EXPECT_EQ(fsm.resume(frame(99, "\"3\""), milliseconds(80), kFull).stream, StreamOrder::None);
   EXPECT_EQ(fsm.resume(frame(1200, "\"4\""), milliseconds(1200), kFull).stream, StreamOrder::Open);
 }
@@ -173,8 +173,8 @@ TEST(PollFsmStream, ASensorThatTellsNoTimeIsHardlyAskedForIt) {
   EXPECT_EQ(asked, 0);
 }
 
-/// A follower of a stream at 30 Hz with a single gap of 250 ms; it sleeps, and its newest frame
-/// came at `now`.
+/// A follower of a stream at 30 Hz in which one frame came 0.3 s late; the follower sleeps, and
+/// its newest frame came at `now`.
 PollFsm late_once(Duration now) {
   PollFsm fsm = streaming(now - milliseconds(600));
   for (int i = 3; i <= 10; ++i)

@@ -8,7 +8,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Delivers frames from 0 on at equal intervals; returns the time of the last one.
+/// Delivers frames at equal intervals, the first one at `from`; returns the time of the last one.
 Duration run(StreamRhythm& rhythm, milliseconds apart, int frames, Duration from = {}) {
   for (int i = 0; i < frames; ++i) rhythm.saw(from + i * apart);
   return from + (frames - 1) * apart;

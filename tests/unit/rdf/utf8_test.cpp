@@ -1,4 +1,5 @@
-// Unicode 15, table 3-7: the first, the last and the neighbouring bytes of every row.
+// UTF-8 according to table 3-7 of Unicode 15: the first and the last byte of every row, and their
+// neighbours.
 #include "common/rdf/utf8.h"
 
 #include <array>

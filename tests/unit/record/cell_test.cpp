@@ -323,6 +323,13 @@ TEST(Scene, ABodyOfWhichNothingIsTrackedHasNoLines) {
   EXPECT_TRUE(scene["entities"][0]["lines"].empty());
 }
 
+TEST(Scene, RaysHaveNoPlaceAndAreNotDrawn) {
+  resource::FrameResource frame = *seen_by("s1", 0);
+  for (auto& joint : frame.bodies[0].joints) joint.measurement = Measurement::Ray;
+  const auto scene = nlohmann::json::parse(scene_update(frame, "s1"));
+  EXPECT_TRUE(scene["entities"][0]["lines"].empty());
+}
+
 TEST(Scene, TheWorldsUpIsTheViewersUp) {
   const NamedPlace place{"s1", chorus::testing::ring_sensor(1, 4)};
   const auto json = nlohmann::json::parse(frame_transforms(kStart, {place}));

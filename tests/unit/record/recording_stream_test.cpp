@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Messages of channel 1 ("/a") or 2 ("/b"), one per second, without a chunk around them.
+/// A message of channel 1 ("/a") or 2 ("/b") at a time in seconds.
 struct Entry {
   std::uint16_t channel;
   int second;
@@ -108,7 +108,8 @@ TEST(RecordingStream, HoldsFewChunksHoweverManyThereAre) {
 TEST(RecordingStream, RefusesChunksThatAreAllDueAtOnce) {
   std::string bytes = head_of_file();
   for (int i = 0; i < 2000; ++i) bytes += chunk_of({{1, 0}, {1, 5000 - i}});
-  auto stream = RecordingStream::of_bytes(bytes + end_of_file(), {.max_total_bytes = 20'000});
+  bytes += end_of_file();  // A stream reads from the caller's bytes.
+  auto stream = RecordingStream::of_bytes(bytes, {.max_total_bytes = 20'000});
   ASSERT_TRUE(stream);
   auto message = stream->next();
   while (message && *message) message = stream->next();

@@ -106,7 +106,8 @@ TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   }
 }
 
-/// Single cameras: chains of pairs leave the depth open; three rays determine it.
+/// The sensors measure depth badly, as cameras do: chains of pairs do not determine the depth, but
+/// three rays do.
 TEST(AdjustTogether, ThreeBluntSensorsFixWhatEachPairLeavesOpen) {
   double before = 0.0;
   double after = 0.0;
@@ -142,7 +143,8 @@ TEST(AdjustTogether, FloorsHoldTiltAndHeightWhereTheWalkIsCountedForLittle) {
       scene.add(watch(i, at, spec), at);
     }
     const Places found = scene.adjust(displaced(scene.truth, 0.002));
-    // Compares with another sensor, because the world itself leans with the mean of all floors.
+    // Compares the two sensors with each other, because the world's up is the mean of what all
+    // floors state and thus itself tilted.
     return difference(found.at(sensor(0)).inverse() * found.at(sensor(1)),
                       scene.truth.at(sensor(0)).inverse() * scene.truth.at(sensor(1)))
         .angle;
@@ -166,7 +168,7 @@ TEST(AdjustTogether, TheMasterKeepsItsPlaceAlongTheFloorAndItsDirectionAlone) {
   const Matrix6 shift = at_point(after.translation());
   const Matrix6 at_eye = shift * adjusted->covariances.at(sensor(0)) * shift.transpose();
   EXPECT_LT(to_mm(std::sqrt(at_eye(3, 3))), 0.1);
-  EXPECT_GT(to_mm(std::sqrt(at_eye(4, 4))), 3.0);  // three floors of 10 mm
+  EXPECT_GT(to_mm(std::sqrt(at_eye(4, 4))), 3.0);  // mean of three floors, each off by 10 mm
   EXPECT_GT(to_deg(std::sqrt(at_eye(0, 0))), 0.1);
 }
 
@@ -185,8 +187,8 @@ TEST(AdjustTogether, AnExactWalkStillLeavesYawAndPlaceUncertain) {
   EXPECT_LT(to_deg(std::sqrt(at_walk(1, 1))), 1.0);
 }
 
-/// On a circle the bias of a view rotates as the person's place changes, just as if the sensor were
-/// turned.
+/// If the person walks on a circle, the bias of a view rotates with the person's place, which
+/// looks as if the sensor were rotated.
 TEST(AdjustTogether, ACircleLeavesTheYawLessCertainThanAWalkAllOver) {
   const auto yaw_sigma = [](const Path& path) {
     const Scene scene = scene_of({.path = path, .noise = 0.0});

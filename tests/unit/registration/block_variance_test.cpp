@@ -11,8 +11,9 @@ namespace {
 
 constexpr std::array<Eigen::Index, 1> kOnly{0};
 
-/// The factor for the estimated mean of a coloured signal of unit variance with 30 samples a
-/// second: each sample has information 1, and its score is its distance from the mean.
+/// The variance factor that BlockScores finds for the estimated mean of a coloured signal of unit
+/// variance with 30 samples a second: each sample has information 1, and its score is its distance
+/// from the mean.
 double factor_of(double correlation_s, double length_s, const BlockScores::Prior& prior = {}) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -43,7 +44,8 @@ double factor_of(double correlation_s, double length_s, const BlockScores::Prior
 
 TEST(BlockScores, CountWhiteNoiseAsIndependentAndColouredAsFewer) {
   EXPECT_NEAR(factor_of(0.0, 2000), 1.0, 0.2);
-  // (1 + rho) / (1 - rho) of an AR(1) process: 2 * 30 / s * 0.2 s; blocks see most of it
+  // An AR(1) process has the factor (1 + rho) / (1 - rho), here about 2 * 30 / s * 0.2 s = 12; the
+  // blocks are long enough to show most of it.
   EXPECT_NEAR(factor_of(0.2, 2000), 12.0, 2.5);
   EXPECT_GT(factor_of(0.4, 2000), 15.0);
 }

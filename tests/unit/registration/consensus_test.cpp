@@ -95,7 +95,7 @@ TEST(CastOut, OfTwoNobodyCanSayWhoIsWrong) {
   Evidence evidence = evidence_of({}, {{sensor(0), sensor(1)}});
   EXPECT_TRUE(cast_out(evidence).empty());
   Evidence none = evidence_of({}, {{sensor(0), sensor(1)}, {sensor(0), sensor(2)}});
-  EXPECT_TRUE(cast_out(none).empty());  // none that agree would be left
+  EXPECT_TRUE(cast_out(none).empty());  // no sensors that agree would remain
 }
 
 TEST(CastOut, TwoWhoLieAreBothNamed) {

@@ -24,7 +24,8 @@ Matrix6 lopsided(double size) {
   return covariance;
 }
 
-/// J C J^T, where J is the numeric derivative of `effect` by a motion with this covariance.
+/// J C J^T for a motion with covariance C, where J is the numeric derivative of `effect` with
+/// respect to the motion.
 Matrix6 carried(const Matrix6& covariance, const std::function<Vector6(const Vector6&)>& effect) {
   constexpr double kStep = 1e-6;
   Matrix6 jacobian;
@@ -131,8 +132,8 @@ PairwiseRegistration edge_of(const Eigen::Isometry3d& target, const Eigen::Isome
   return edge.value();
 }
 
-/// Subtracts the bias of views from opposite sides; what remains is the part that the walk leaves
-/// open.
+/// Subtracts the variance that stands for the bias between views from opposite sides; what remains
+/// is the uncertainty that the walk leaves.
 Matrix6 without_bias(Matrix6 covariance) {
   covariance.bottomRightCorner<3, 3>() -= std::pow(mm(10), 2) * Eigen::Matrix3d::Identity();
   return covariance;
@@ -152,7 +153,8 @@ TEST(EdgeCovariance, IsStatedInTheTargetsOwnAxesHoweverItIsTilted) {
 TEST(EdgeCovariance, HasAFloorThatGrowsWithTheAngleBetweenTheViews) {
   const auto position_sigma = [](double angle) {
     const Matrix6 covariance = edge_of(kCovarianceTarget, ring_place(deg(angle))).covariance;
-    // At the middle of the walk, where an exact walk leaves almost no error of its own.
+    // States the covariance at the middle of the walk, where an exact walk leaves almost no error
+    // of its own.
     const Matrix6 shift = at_point(Eigen::Vector3d(0, 0, 3.1));
     const Matrix6 there = shift * covariance * shift.transpose();
     return std::sqrt(there.bottomRightCorner<3, 3>().trace() / 3.0);

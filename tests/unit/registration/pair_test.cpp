@@ -108,7 +108,7 @@ TEST(RegisterPair, TheStatedCovarianceIsOfTheRightSize) {
   EXPECT_GT(squares, 0.05 * stated);
 }
 
-/// Mean normalised squared error over many walks, a test of the whole covariance.
+/// Checks the whole covariance by the mean normalised squared error over many walks.
 TEST(RegisterPair, TheStatedCovarianceNeitherFlattersNorFrightens) {
   const Eigen::Isometry3d source = ring_place(deg(5));  // almost no bias
   double nees = 0.0;

@@ -72,7 +72,8 @@ TEST(TrailReader, RefusesWideGapsAndOtherBodies) {
   EXPECT_FALSE(narrow.at(kWalkStart + kFrame));
   TrailReader wide(trail, 2 * kFrame);
   EXPECT_TRUE(wide.at(kWalkStart + kFrame));
-  // From then on the sensor sees another body.
+  // Between the last two frames the sensor changes to another body, so nothing is interpolated
+  // there.
   EXPECT_FALSE(wide.at(kWalkStart + 2 * kFrame + kFrame / 2));
   EXPECT_TRUE(wide.at(kWalkStart + 3 * kFrame));
 }

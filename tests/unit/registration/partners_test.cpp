@@ -9,7 +9,7 @@
 namespace chorus::registration {
 namespace {
 
-/// A sensor that saw somebody move from one second to another, ten times a second.
+/// A sensor that saw somebody move from second `from` to second `to`, ten times a second.
 Walker present(int number, int from, int to) {
   Walker walker;
   walker.trail.sensor = sensor(number);
@@ -70,7 +70,7 @@ TEST(PartnersOf, WhoNeverSawThePersonTogetherIsTriedSoThatItIsTold) {
   EXPECT_EQ(partners_with(partners_of(walkers), 300), 14u);
 }
 
-/// A pair that was chosen can be refused: only edges link sensors.
+/// A pair that was tried may have been refused; only an edge connects two groups.
 TEST(UntriedLinks, AreThePairsBetweenGroupsThatNoEdgeConnects) {
   const auto walkers = crowd(4);  // 100 to 103
   const std::vector<SensorPair> tried{{sensor(100), sensor(101)}, {sensor(101), sensor(102)}};

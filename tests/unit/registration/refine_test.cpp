@@ -96,7 +96,8 @@ TEST(Refine, TheCostCountsEachSensorsDepthForLess) {
   EXPECT_EQ(cost_of(pair, at, kDepth), 0.0);
 }
 
-/// The source looks along the target's z from elsewhere: its ray must be rotated with its pose.
+/// The source is at the target's place, but rotated by 90 deg: its ray to the point, which lies
+/// along the target's z, must be rotated with its pose.
 TEST(Refine, TheSourcesDepthIsTakenWhereItLooks) {
   Refined at;
   at.target_from_source.linear() = about_y(deg(90)).toRotationMatrix();
@@ -138,7 +139,7 @@ TEST(Refine, PairsThatGoTogetherCountOnce) {
   CloudSpec alike = white;  // three joints with the same error
   alike.shared = true;
   EXPECT_NEAR(inflation(alike), 3.0, 0.4);
-  CloudSpec coloured = white;  // (1 + 0.8) / (1 - 0.8)
+  CloudSpec coloured = white;  // a correlation of 0.8 gives (1 + 0.8) / (1 - 0.8) = 9
   coloured.rho = 0.8;
   EXPECT_NEAR(inflation(coloured), 9.0, 1.8);
   EXPECT_EQ(inflation({}), 1.0);  // no residuals, no correlation

@@ -9,7 +9,7 @@
 namespace chorus::registration {
 namespace {
 
-/// Moves a fraction of the pairs by up to `reach`, each in its own direction.
+/// Moves a fraction of the pairs by up to `reach` along each axis, each pair in its own direction.
 std::vector<Pair> with_outliers(std::vector<Pair> pairs, double share, double reach) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> chance(0.0, 1.0);

@@ -198,7 +198,8 @@ TEST(Solve, TheOrderOfTheTracksDoesNotMatterAndASecondTrackOfASensorIsIgnored) {
   }
 }
 
-/// Single cameras, whose depth is inaccurate: together they determine what no chain of pairs does.
+/// Sensors whose depth is inaccurate, like single cameras, determine together what no chain of
+/// pairs does.
 TEST(Solve, FromThreeSensorsOnAllAreAdjustedTogether) {
   RegistrationConfig config;
   config.along_ratio = 8.0;

@@ -35,7 +35,8 @@ std::vector<WalkTrack> ring(const std::vector<Duration>& offsets, const WalkSpec
 
 Eigen::Vector2d circle(double t) { return {1.2 * std::sin(0.75 * t), 1.2 * std::cos(0.75 * t)}; }
 
-/// The walks' white noise of 10 mm is more than the estimator expects; its own sigma is about 3 ms.
+/// Largest error that is accepted: more than the stated sigma of about 3 ms, because the white
+/// noise of these walks, 10 mm, is more than the estimator expects.
 constexpr double kNear = 10.0;  // [ms]
 
 double milliseconds_of(Duration duration) { return 1e3 * seconds(duration); }

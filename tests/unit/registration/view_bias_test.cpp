@@ -35,7 +35,7 @@ struct BiasScene {
     axes.col(2) = Eigen::Vector3d::UnitY();
     return axes;
   }
-  /// The score when one sensor's sight is off by `off` (world).
+  /// The score if what one sensor sees is moved by `off` (world).
   [[nodiscard]] Eigen::VectorXd score(std::size_t sensor, const Eigen::Vector3d& off) const {
     PointMeasurements wrong = seen;
     wrong[sensor].x += places[sensor].linear().transpose() * off;
@@ -65,7 +65,8 @@ TEST(ViewBias, IsWhatDisplacedSightsDoToTheScores) {
   EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm());
 }
 
-/// cos^2 + sin^2 = 1 for both harmonics: one point counts three times, whichever way it goes.
+/// The five terms are a constant and the cosine and sine of two harmonics.  Each harmonic counts
+/// once, because cos^2 + sin^2 = 1, so a point counts three times, whichever way the person walks.
 TEST(ViewBias, KnowsFiveTermsWhereTheWayIsKnown) {
   const BiasScene scene;
   const Eigen::MatrixXd constant = scene.scores(std::nullopt);
@@ -79,7 +80,8 @@ TEST(ViewBias, CancelsInPartWhereThePersonTurnsAround) {
   const FusedPoint fused = fuse_point(scene.seen, scene.places, kRatio);
   bias.add(scene.seen, fused, 1.0, Eigen::Vector3d(0, 0, 1));
   bias.add(scene.seen, fused, 1.0, Eigen::Vector3d(0, 0, -1));
-  // The first harmonic cancels, the constant and the second add up: 4 (1 + 1) instead of 4 (1 + 2).
+  // The first harmonic cancels out.  The constant and the second harmonic add up over both calls,
+  // which gives 2^2 = 4 for each: 4 (1 + 1) instead of 4 (1 + 2).
   const Eigen::MatrixXd constant = scene.scores(std::nullopt);
   EXPECT_LT((bias.scores() - 8.0 * constant).norm(), 1e-9 * constant.norm());
 }

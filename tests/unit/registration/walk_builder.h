@@ -114,7 +114,7 @@ inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
   return track;
 }
 
-/// Moves every joint along its line of sight by a depth error common to all joints of a frame.
+/// Moves every joint along its line of sight by a depth error of its own.
 inline WalkTrack with_depth_error(WalkTrack track, double sigma, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, sigma);

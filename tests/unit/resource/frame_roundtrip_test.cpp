@@ -47,7 +47,7 @@ TEST(FrameRoundTrip, TheParserAndTheTemplateReaderAgree) {
   }
 }
 
-/// A frame whose ids can all be plain JSON numbers; larger ones are written as strings, which the
+/// A frame whose ids can all be plain JSON numbers; larger ids are written as strings, which the
 /// template reader leaves to the parser.
 FrameResource json_frame(std::uint64_t seed) {
   FrameResource frame = random_frame(seed, kind_of(seed));

@@ -37,7 +37,7 @@ Body turned_and_moved(Body body, const Eigen::Quaterniond& turn, const Vector3d&
   return body;
 }
 
-/// The turn from a line of sight straight ahead to the one to `place`.
+/// The rotation from a line of sight straight ahead to the one to `place`.
 Eigen::Quaterniond towards(const Vector3d& place) {
   return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), place);
 }
@@ -173,7 +173,8 @@ TEST(BodyPlacing, DepthIsWorseThanDirectionAndFocalLengthAddsToIt) {
   EXPECT_NEAR(sigma_of(2), std::hypot(alone, 0.4), 1e-3);
 }
 
-/// A shape and rays that err as `errors` says.
+/// Draws shapes with errors as large as a PlacingErrors states, and rays with errors of `sigma`
+/// [rad].
 class Draws {
  public:
   Body shape(const PlacingErrors& errors) {
@@ -214,7 +215,8 @@ TEST(BodyPlacing, ErrorsAreAsLargeAsStated) {
   for (int i = 0; i < kDraws; ++i) {
     const auto placed = place_body(draws.rays(truth, kRay), draws.shape(errors), errors);
     ASSERT_TRUE(placed) << i;
-    double one = 0.0;  // joints of one draw share their size: 200 draws count, not their joints
+    double one =
+        0.0;  // joints of a draw share its error of size, so only the 200 draws are independent
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const Vector3d off = placed->joints[j].position - truth.joints[j].position;
       one += off.dot(placed->joints[j].covariance.matrix().inverse() * off) / (3.0 * kJointCount);

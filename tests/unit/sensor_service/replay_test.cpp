@@ -31,7 +31,8 @@ record::FrameRecording recording(int frames) {
   return out;
 }
 
-/// A clock that jumps to every instant that is waited for, so that no test sleeps.
+/// Plays recordings by a clock that jumps to every instant that is waited for, so that no test
+/// sleeps.
 struct Played {
   std::shared_ptr<FakeClock> clock = std::make_shared<FakeClock>(kStart);
   std::vector<Capture> captures;

@@ -163,7 +163,8 @@ TEST(Simulated, AClockThatStepsNeitherFreezesNorFloodsIt) {
       arrived.notify_one();
     });
   });
-  // Sets the clock and lets it run until a frame of about this time has come.
+  // Sets the clock and lets it run until a frame captured since then has come; false if none
+  // comes.
   const auto delivers_from = [&](Timestamp now) {
     clock->set(now);
     for (int i = 0; i < 2000; ++i) {

@@ -107,7 +107,7 @@ TEST(ClockFilter, AStepOfTheOtherClockIsBelievedAtTheThirdContradiction) {
   EXPECT_EQ(filter.at(now)->ours_minus_theirs, -milliseconds(500));
 }
 
-/// A rate that wanders makes old estimates wrong.
+/// Since a clock's rate wanders, old exchanges must not count.
 TEST(ClockFilter, ForgetsExchangesOlderThanTheWindow) {
   ClockFilterLimits limits;
   limits.max_rate = 0.0;

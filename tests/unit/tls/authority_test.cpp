@@ -48,7 +48,8 @@ TEST(Authority, ALongNameIsCutBetweenCharacters) {
   name += "\u00e9\u00e9";  // two bytes each
   const auto issued = new_authority(name, for_days(1));
   ASSERT_TRUE(issued);
-  // Facts show each byte beyond ASCII as "?": one whole character is left.
+  // The name was cut between characters, so one whole two-byte character is left; facts show each
+  // byte beyond ASCII as "?".
   EXPECT_EQ(facts_of(issued->certificate)->subject, std::string(63, 'a') + "??");
 }
 

@@ -61,7 +61,7 @@ class SealTest : public ::testing::Test {
   [[nodiscard]] Wire wire(const std::string& host, const Identity& identity) const {
     return {Seal::of_client(workshop_.trust(), host), Seal::of_server(identity)};
   }
-  /// The reason why a client refuses.
+  /// Shakes hands, which the client must refuse; returns its reason.
   [[nodiscard]] std::string objection(Wire wire) const {
     EXPECT_FALSE(wire.shake_hands());
     EXPECT_EQ(wire.client_step, Step::Failed);

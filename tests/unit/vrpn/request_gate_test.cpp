@@ -52,8 +52,9 @@ TEST(RequestGate, MakesFewConnectionsASecond) {
   EXPECT_EQ(made(kNow + std::chrono::hours(9)), 5);
 }
 
-/// What a flood and other hosts achieve in a minute: one address asks 500 times a second, each time
-/// for another port, and every two seconds another host asks once.
+/// Counts over a minute in which one address asks 500 times a second, each time for another port,
+/// and every two seconds another host asks once: how often the flood was connected, and how many
+/// of the other hosts were refused.
 struct Flood {
   int flooded = 0;
   int refused = 0;

@@ -93,7 +93,8 @@ TEST(VrpnSession, DescribesEverythingOnceTheCookieIsComplete) {
   for (const std::string_view joint : kJointNames) {
     EXPECT_TRUE(names.contains("Body0_" + std::string(joint))) << joint;
   }
-  // No -3: the server accepts no datagrams from clients; no -4: it keeps no logs.
+  // System messages -3 and -4 are missing, because the server accepts no datagrams from clients
+  // and keeps no logs.
   EXPECT_EQ(std::set(client.decoder.system_types.begin(), client.decoder.system_types.end()),
             (std::set<std::int32_t>{-2, -1}));
 }
@@ -154,7 +155,7 @@ TEST(VrpnSession, AClientGetsTheTrackersItNames) {
   const Reports reports = encode(two_persons(), *trackers());
   Heard client;
   client.say(vrpn_cookie() + vrpn_description(-1, 0, "VRPN Control"));
-  EXPECT_EQ(client.poses(reports).size(), 98u);  // the client named no sender of ours
+  EXPECT_EQ(client.poses(reports).size(), 98u);  // it named none of ours: gets all
   client.say(vrpn_description(-1, 1, "Body1_Head"));
   EXPECT_EQ(client.poses(reports), (std::multiset<std::string>{"Body1_Head 0"}));
   client.say(vrpn_description(-1, 2, "Body0"));

@@ -24,8 +24,8 @@ constexpr Duration kStep = milliseconds(100);
 
 SensorId name(int sensor) { return sensor_id("s" + std::to_string(sensor + 1)); }
 
-/// Sensors on a ring with the errors of real ones: some last half a second, some depend on the
-/// person's orientation towards the sensor.
+/// Sensors on a ring whose errors resemble those of real ones: one part is correlated over half a
+/// second, another depends on the person's orientation towards the sensor.
 class Room : public ::testing::Test {
  protected:
   void furnish(int sensors) {
@@ -34,7 +34,7 @@ class Room : public ::testing::Test {
     slow_.assign(static_cast<std::size_t>(sensors), Vector3d::Zero());
   }
 
-  /// Moves what this sensor shows by a vector, and turns it about the sensor by `yaw`.
+  /// Shifts what this sensor shows by `by`, and turns it about the sensor by `yaw`.
   void push(int sensor, const Vector3d& by, double yaw = 0.0) {
     const Vector3d eye = testing::ring_sensor(sensor, sensors_).translation();
     Isometry3d move = Isometry3d::Identity();
@@ -55,7 +55,7 @@ class Room : public ::testing::Test {
 
   static double seconds_of(Duration d) { return chorus::seconds(d); }
 
-  /// An eight through the room.
+  /// The person, who walks in a figure of eight, at the present point of the way.
   Person person() {
     const double t = way_ / 1.1;
     const Vector3d place(std::sin(t), 0.0, 0.8 * std::sin(2.0 * t));
@@ -73,7 +73,7 @@ class Room : public ::testing::Test {
     view.sensor = name(sensor);
     view.eye = testing::ring_sensor(sensor, sensors_).translation();
     view.skeleton = exact;
-    constexpr double kKept = 0.82;  // of an error after 0.1 s
+    constexpr double kKept = 0.82;  // fraction of an error that remains after 0.1 s
     constexpr double kSigma = 0.01;
     for (double& part : slow_[at])
       part = kKept * part + kSigma * std::sqrt(1.0 - kKept * kKept) * normal_(random_);

@@ -18,7 +18,7 @@ struct Hello {
   const layout::Layout* layout = nullptr;  ///< Never null after reading.
   /// Turns the pusher's axes into ours; a reflection when the pusher's axes are left-handed.
   Eigen::Matrix3d sensor_from_pusher = Eigen::Matrix3d::Identity();
-  std::optional<FloorPlane> floor;    ///< In sensor space.
+  std::optional<FloorPlane> floor;    ///< The floor in sensor space.
   std::optional<Intrinsics> camera;   ///< The camera of the pixels that the pusher sends.
   std::optional<double> pixel_sigma;  ///< Standard deviation of a pixel coordinate [px].
   double focal_sigma = 0.0;           ///< Standard deviation of the focal length, relative to it.

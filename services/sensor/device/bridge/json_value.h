@@ -54,8 +54,8 @@ inline constexpr double kMaxPixels = 1e5;
 /// Reads a non-negative integer, or a string of its decimal digits, because JavaScript's numbers
 /// are exact only up to 2^53.
 [[nodiscard]] Result<std::uint64_t> read_whole(const nlohmann::json& value, const At& at);
-/// Reads nanoseconds since 1970, as an integer or a string of its digits; refuses times before
-/// 2001.
+/// Reads nanoseconds since 1970, as an integer or a string of its digits; refuses times before 2001
+/// or after 2223.
 [[nodiscard]] Result<Timestamp> read_stamp(const nlohmann::json& value, const At& at);
 
 }  // namespace chorus::bridge

@@ -78,7 +78,7 @@ class LineConnection : public std::enable_shared_from_this<LineConnection> {
   std::string text_;
   std::deque<std::string> unsent_;  ///< The first one is being sent.
   std::size_t unsent_bytes_ = 0;
-  bool over_ = false;  ///< Ends when everything in unsent_ has been sent.
+  bool over_ = false;  ///< True: the connection ends once unsent_ is empty.
 };
 
 void LineConnection::on_read(error_code failed, std::size_t size) {

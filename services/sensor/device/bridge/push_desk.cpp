@@ -10,7 +10,7 @@
 namespace chorus::bridge {
 namespace {
 
-constexpr std::size_t kQueue = 64;                        // frames
+constexpr std::size_t kQueue = 64;                        // Largest number of frames that wait.
 constexpr Duration kMaxRepeat = std::chrono::seconds(1);  // as in SensorService
 constexpr auto kShut = std::chrono::seconds(1);
 constexpr std::uint64_t kWidestGap = 1000;

@@ -37,11 +37,12 @@ struct PushStatus {
   std::string state;   ///< "waiting" (for a program), "silent" or "live".
   std::string reason;  ///< Human-readable: why the state is not live.
   std::optional<Pusher> pusher;
-  Timestamp since{};           ///< When the pusher took the sensor.
-  std::uint64_t frames = 0;    ///< Frames accepted from this pusher.
-  std::uint64_t refused = 0;   ///< Messages of this pusher that were refused.
-  std::uint64_t left_out = 0;  ///< Frames of this pusher beyond the maximum rate.
-  std::string last_error;      ///< The error for the last refused message.
+  Timestamp since{};          ///< When the pusher took the sensor.
+  std::uint64_t frames = 0;   ///< Frames accepted from this pusher.
+  std::uint64_t refused = 0;  ///< Messages of this pusher that were refused.
+  /// Frames of this pusher beyond the maximum rate, or sent before its clock was known.
+  std::uint64_t left_out = 0;
+  std::string last_error;  ///< The error for the last refused message.
   std::optional<ClockEstimate> clock;
 };
 
@@ -98,7 +99,7 @@ class PushDesk {
     PushStatus status;
     SteadyTime sat_down{};
     std::optional<SteadyTime> last_frame;
-    std::optional<std::uint64_t> last_count;  ///< The pusher's number of its last frame.
+    std::optional<std::uint64_t> last_count;  ///< The number that the pusher gave its last frame.
     /// True if a message was refused after the last frame.
     bool refused_since = false;
   };

@@ -14,7 +14,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr auto kHelloWithin = std::chrono::seconds(5);
-// Longest time without a message or an answer to our question for the time.
+// Longest time without a message from the program; its answers to our questions for the time count,
+// too.
 constexpr auto kSilentFor = std::chrono::seconds(30);
 constexpr auto kClockEvery = std::chrono::seconds(1);
 constexpr auto kErrorEvery = std::chrono::seconds(1);

@@ -11,7 +11,7 @@
 
 namespace chorus::bridge {
 
-/// Opens a dialogue; Unavailable when there are too many connections.
+/// Opens a dialogue; Unavailable when there are too many connections, or just after a flood.
 [[nodiscard]] Result<std::unique_ptr<http::Dialogue>> open_dialogue(
     const std::shared_ptr<PushDesk>& desk, std::string via, std::string address);
 

@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 using layout::Landmark;
 
 constexpr double kMaxVariance = 1e8;  // [m^2]
-constexpr double kMaxShape = 10.0;    // From the shape's origin [m].
+constexpr double kMaxShape = 10.0;    // Limit of a coordinate in a shape [m].
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 
 /// An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
@@ -146,7 +146,7 @@ Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at)
   return landmark;
 }
 
-/// Reads a landmark of `world`; its uncertainty is that of its pixel.
+/// Reads the position of a landmark of `world`; its state and its error are those of its pixel.
 Result<Landmark> read_shape_point(const Json& value, const Hello& /*hello*/, const At& at) {
   if (value.is_null()) return Landmark{};
   const auto element = read_element<3>(value, {-kMaxShape, kMaxShape}, at);

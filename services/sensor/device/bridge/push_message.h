@@ -20,7 +20,7 @@ struct ClockAnswer {
 
 struct PushedFrame {
   std::optional<std::uint64_t> sequence;  ///< The pusher's own frame number.
-  Timestamp captured;                     ///< By the pusher's clock; common to all bodies.
+  Timestamp captured;                     ///< Capture time of all bodies, by the pusher's clock.
   /// In sensor space; bodies without joints are left out.
   std::vector<BodyFrame> bodies;
   /// The shape of each body according to the message's `world` (body_placing.h); without joints

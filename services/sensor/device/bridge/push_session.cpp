@@ -90,7 +90,7 @@ Result<Heard> PushSession::on(Hello hello) {
     if (!seat) return pass(seat);
     seat_ = *seat;
   }
-  if (hello_ && hello_->layout != hello.layout) placer_ = {};  // other bones
+  if (hello_ && hello_->layout != hello.layout) placer_ = {};  // The new layout has other bones.
   hello_ = std::move(hello);
   return Heard::Hello;
 }

@@ -30,14 +30,15 @@ struct CameraSettings {
   bool loop = true;  ///< True: a file starts again at its end.
   /// Time from light to arrival, used if the camera has no clock that shows it.
   Duration latency = std::chrono::milliseconds(60);
-  double max_rate_hz = 30.0;          ///< Most images per second that the runner gets.
+  double max_rate_hz = 30.0;  ///< Largest number of pictures per second that the runner gets.
   std::vector<std::string> runner{};  ///< The command; empty: the runner that comes with Chorus.
   std::string model = "movenet";      ///< Passed to the runner as --model, unless empty.
   bool depth_from_size = false;  ///< Delivers points instead of rays, if the runner supports it.
   std::optional<FloorPlane> floor = {};  ///< Made from height and pitch, if they are configured.
   std::optional<Intrinsics> intrinsics = {};
-  double focal_sigma = 0.0;  ///< Standard deviation of their focal length, relative to it.
-  double fov = deg(65.0);    ///< Across the image's longer side [rad], if nothing better is known.
+  double focal_sigma = 0.0;  ///< Relative standard deviation of the focal length in `intrinsics`.
+  /// Field of view across the picture's longer side [rad], used if nothing better is known.
+  double fov = deg(65.0);
   double fov_sigma = deg(6.0);  ///< Standard deviation of that value [rad].
 };
 

@@ -21,8 +21,8 @@ struct CameraReport {
   std::uint64_t looked_at = 0;  ///< Number of pictures that the runner looked at.
   std::uint64_t connects = 0;   ///< How often the source was opened.
   std::uint64_t starts = 0;     ///< How often the runner was started.
-  double answer_ms = 0.0;       ///< The runner's time per image, smoothed.
-  double latency_ms = 0.0;      ///< From light to landmarks, smoothed.
+  double answer_ms = 0.0;       ///< The runner's time per picture [ms], smoothed.
+  double latency_ms = 0.0;      ///< Time from light to landmarks [ms], smoothed.
 };
 
 class CameraState {

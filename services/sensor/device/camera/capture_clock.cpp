@@ -7,8 +7,8 @@ namespace chorus::camera {
 namespace {
 
 constexpr Duration kOldest = std::chrono::seconds(2);
-// Two quartz clocks drift apart by less than this.  Without the allowance we would fall behind a
-// slow stream.
+// Two quartz clocks drift apart at less than this rate.  Without this allowance, capture times
+// would fall behind if the stream's clock is slow.
 constexpr double kDrift = 200e-6;
 constexpr Duration kBreak = std::chrono::seconds(2);
 

@@ -43,7 +43,7 @@ SensorFrame frame_of(const Film& film, Timestamp captured, std::uint64_t sequenc
 }
 
 bool wanted(const Film& film, const FilmFrames& out, Timestamp captured) {
-  // A picture is used from this share of a step on, because pictures are not evenly spaced.
+  // A picture is used once this share of a step has passed, because pictures are not evenly spaced.
   constexpr double kNearly = 0.9;
   return out.frames.empty() ||
          seconds(captured - out.frames.back().captured) * film.settings.max_rate_hz >= kNearly;

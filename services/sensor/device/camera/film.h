@@ -18,7 +18,7 @@ struct Film {
 };
 
 struct FilmFrames {
-  std::vector<SensorFrame> frames;  ///< One per picture; `received` equals `captured`.
+  std::vector<SensorFrame> frames;  ///< One per picture used; `received` equals `captured`.
   std::string runner;               ///< The runner's name.
   std::string layout;
   Lens lens;

@@ -74,7 +74,7 @@ bool Grabber::is_over(const VideoMoment& taken) const {
 /// True if the runner should get this picture: limits the rate to max_rate_hz, and to one picture a
 /// second while a file is read too slowly.
 bool Grabber::is_wanted(Timestamp captured) const {
-  // A picture is used from this share of a step on, because pictures are not evenly spaced.
+  // A picture is used once this share of a step has passed, because pictures are not evenly spaced.
   constexpr double kNearly = 0.9;
   if (!given_ || captured < *given_) return true;
   const Duration since = captured - *given_;

@@ -16,7 +16,7 @@ namespace chorus::camera {
 
 struct Shot {
   Picture picture;
-  Timestamp captured;  ///< By this host's clock.
+  Timestamp captured;  ///< Capture time, by this host's clock.
 };
 
 class Grabber {
@@ -45,7 +45,7 @@ class Grabber {
   StreamClock stream_;
   FilePace pace_;
   std::optional<Timestamp> given_;  ///< Capture time of the last picture passed on.
-  Duration late_{0};                ///< By how much a file's last picture was late.
+  Duration late_{0};                ///< Delay of the last picture of a file.
   Duration over_{0};                ///< Position in the file that was due when the file was opened.
 };
 

@@ -33,10 +33,11 @@ class RunnerProcess {
   RunnerProcess& operator=(const RunnerProcess&) = delete;
 
   /// Writes to the process.  Unavailable when it has ended; the message contains its exit status
-  /// and its last output.  Timeout when it does not read.
+  /// and its last line on standard error.  Timeout when it does not read.
   [[nodiscard]] Result<void> send(std::string_view bytes, Duration within,
                                   const std::stop_token& stop);
-  /// The next line of the process's output, without the line feed; errors as for send().
+  /// The next line of the process's output, without the line feed.  Errors as for send(), and
+  /// TooLarge for a line of more than 256 kB.
   [[nodiscard]] Result<std::string> read_line(Duration within, const std::stop_token& stop);
   /// Reads the process's standard error.  Unavailable when the process has ended.
   [[nodiscard]] Result<void> listen();
@@ -56,7 +57,7 @@ class RunnerProcess {
   [[nodiscard]] bool reap();
   [[nodiscard]] Error obituary();
 
-  std::string name_;  ///< For messages.
+  std::string name_;  ///< Name in messages.
   pid_t pid_ = -1;
   int input_ = -1;  ///< Our end of the process's standard input; of its output and error below.
   int output_ = -1;

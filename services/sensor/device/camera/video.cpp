@@ -15,7 +15,8 @@
 namespace chorus::camera {
 namespace {
 
-constexpr int kPatienceMs = 5000;  // [ms]; for opening a stream, and for its next picture.
+// Longest wait for opening a stream, and for its next picture [ms].
+constexpr int kPatienceMs = 5000;
 constexpr double kUsualRate = 30.0;
 constexpr int kSmallWebcam = 640;  // Wider pictures are fast enough only if compressed.
 

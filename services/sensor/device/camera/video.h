@@ -23,7 +23,7 @@ class Video {
   /// The picture that next() found; converting it to pixels costs about half as much as decoding
   /// it.
   [[nodiscard]] virtual Result<Picture> picture() = 0;
-  /// For files only.
+  /// The times of a file's pictures; only for files.
   [[nodiscard]] virtual FileTiming timing() const = 0;
   /// For files only: continues near this position.
   virtual void skip_to(Duration position) = 0;

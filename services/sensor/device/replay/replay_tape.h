@@ -15,7 +15,7 @@ namespace chorus::sensor_service {
 struct TapeSpan {
   Timestamp first;
   Timestamp last;
-  std::uint64_t frames = 0;  ///< At least one; playing may leave out some.
+  std::uint64_t frames = 0;  ///< Number of frames, at least one; playing may leave out some.
   Duration step{0};          ///< The usual time between two frames.
 };
 

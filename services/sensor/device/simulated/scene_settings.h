@@ -23,7 +23,8 @@
 
 namespace chorus::sensor_service {
 
-inline constexpr double kFarthest = 100.0;  ///< Of anything from the room's origin [m].
+/// Limit of every coordinate in the room [m].
+inline constexpr double kFarthest = 100.0;
 inline constexpr int kMaxSeed = 1'000'000'000;
 
 struct SceneSettings {

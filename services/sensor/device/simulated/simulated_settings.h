@@ -5,10 +5,10 @@
 //   ring.pitch_deg [13]
 //   pose.x_m [0]    pose.y_m [1.6]    pose.z_m [0]    pose.yaw_deg [0]    pose.pitch_deg [0]
 //                           instead of the ring
-//   profile [gauss | A | B | C]
-//   profile_draw [0]        0: the nominal parameters, else drawn by this seed
+//   profile [gauss | A | B | C | D]
+//   profile_draw [0]        0: the nominal parameters; otherwise they are drawn with this seed
 //   noise.seed [1]
-//   noise.along_mm [25]     this and the following for profile gauss
+//   noise.along_mm [25]     this and the noise keys below: only for profile gauss
 //   noise.across_mm [10]
 //   noise.turn_deg [4]
 //   noise.jitter_ms [2]

@@ -81,8 +81,8 @@ TEST(NtuSkeleton, RefusesBadFilesNamingTheLine) {
   }
 }
 
-/// The quaternion order, checked with the recordings: the joint's y axis lies along the bone that
-/// ends there.
+/// Checks the order of a quaternion's components: in the recordings, a joint's y axis lies along
+/// the bone that ends there.
 TEST(NtuSkeleton, ReadsTheSharedRecordings) {
   const auto folder = shared_recordings() / "ntu_rgbd_kinect2";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "runs where " << folder << " is there";

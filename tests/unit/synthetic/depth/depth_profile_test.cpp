@@ -46,7 +46,8 @@ TEST(DepthProfile, EachSourceScalesItsOwnParametersOnly) {
   EXPECT_DOUBLE_EQ(with_source(nominal, Source::Clock, 3.0).clock.offset, 3 * nominal.clock.offset);
 }
 
-// As for profile A (kinect/profile_test.cpp): published results belong to this code.
+// As with profile A (kinect/profile_test.cpp), published results were computed with exactly this
+// code.
 TEST(DepthProfile, IsFrozen) { EXPECT_EQ(frozen_depth_hash(), "1c105da3f830"); }
 
 }  // namespace

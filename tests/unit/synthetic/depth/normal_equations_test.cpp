@@ -5,7 +5,7 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-/// A weak prior keeps every node in place, so that the equations have a solution.
+/// Equations that keep every node in place with this weight, so that they have a solution.
 NormalEquations anchored(double weight) {
   NormalEquations equations;
   for (int node = 0; node < kNodeCount; ++node) {

@@ -37,8 +37,8 @@ TEST(WithSource, TouchesItsOwnParametersOnly) {
   }
 }
 
-/// What a profile does to a minute of frames: distances of seen joints from the truth of their own
-/// labels [m], counts, and the largest error of a stamp [s].
+/// Effect of a profile on a minute of frames: distances of seen joints from the true joints of the
+/// same name [m], counts, and the largest error of a stamp [s].
 struct Effect {
   double worst = 0.0;
   double mean = 0.0;
@@ -116,7 +116,7 @@ TEST(WithSource, EachAloneDoesItsOwnHarm) {
   EXPECT_LT(clock.worst, 1e-9) << "the stamp errs, not the place";
 }
 
-/// The strength of the effect that this source has, in any unit.
+/// Strength of the effect of this source, in a unit that depends on the source.
 double harm(Source source, const Effect& effect) {
   if (source == Source::Clock) return effect.clock;
   if (source == Source::Delivery) return -static_cast<double>(effect.bodies);

@@ -97,7 +97,7 @@ TEST(ShownState, ChangesInRunsNotPerFrame) {
     before = now;
   }
   EXPECT_NEAR(static_cast<double>(inferred) / kFrames, 0.3, 0.05);
-  // If it were drawn anew for each frame, it would change in 2 * 0.3 * 0.7 of the frames.
+  // If the state were drawn anew for each frame, it would change in 2 * 0.3 * 0.7 of the frames.
   EXPECT_LT(changes, 0.42 * kFrames / 5);
   EXPECT_GT(changes, 100);
 }

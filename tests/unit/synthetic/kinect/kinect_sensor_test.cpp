@@ -147,7 +147,8 @@ bool is_exchanged(const Skeleton<SensorSpace>& body, const Skeleton<SensorSpace>
   return better > 0;
 }
 
-/// Errors of the seen joints during a minute, each divided by the rms error that its joint states.
+/// Mean squared error of the seen joints over three draws of a minute each, in units of the mean
+/// square error that each joint states.
 struct Honesty {
   double square = 0.0;  ///< Mean per axis: 1 is consistent.
   double count = 0.0;
@@ -233,7 +234,8 @@ TEST(KinectSensor, OfProfileDHasOneScaleForAllBonesOfAFrameAndNeverExchangesLabe
 
 TEST(KinectSensor, WhomItFindsAgainFromBehindItTakesToFaceIt) {
   Scene scene = room();
-  // Turned by 100 deg, which is between the angles of exchange, so that only the past decides.
+  // The person is turned by 100 deg.  This lies between the angles at which left and right are
+  // swapped and swapped back, so only the past decides.
   scene.people = {[](Duration) {
     return testing::standing_person({0, 0, 2.0}, deg(180) + deg(100));
   }};

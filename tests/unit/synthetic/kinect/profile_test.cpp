@@ -16,7 +16,7 @@ nlohmann::json file() {
   return nlohmann::json::parse(text, nullptr, true, true);
 }
 
-/// The value in SI units, by the unit at the end of the name.
+/// Converts the value to SI units according to the unit at the end of the name.
 double si(const std::string& name, double value) {
   if (name.ends_with("_deg")) return value * std::acos(-1.0) / 180.0;
   if (name.ends_with("_mm") || name.ends_with("_ms")) return value * 1e-3;
