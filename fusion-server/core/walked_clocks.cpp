@@ -11,7 +11,7 @@ constexpr Duration kSilence = std::chrono::seconds(1);
 // A frame may be younger than all before by less than this through chance.
 constexpr Duration kJitter = std::chrono::milliseconds(20);
 constexpr Duration kSetBack =
-    std::chrono::milliseconds(100);  // ages that grow by more show that the clock was set back
+    std::chrono::milliseconds(100);  // a link may delay frames by less for seconds
 constexpr int kBelieved = 3;         // younger frames in a row
 // A smaller change of the correction is not applied.  The clock offsets found from a walk are
 // accurate to twice this.
