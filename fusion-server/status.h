@@ -120,11 +120,40 @@ struct SensorAccuracy {
   bool operator==(const SensorAccuracy&) const = default;
 };
 
+/// When the result of a session comes into use.
+enum class Adoption {
+  AtOnce,
+  /// After somebody has accepted it, if another registration is in use; else at once.
+  WhenAccepted,
+};
+
+/// What a proposed registration would change for one sensor.
+struct PlaceChange {
+  SensorId sensor;
+  /// 95 % radii of the sensor's place on the floor, relative to the master [m], in the registration
+  /// in use and in the proposed one; none: it has no place there, or the radius is not known.
+  std::optional<double> radius_now;
+  std::optional<double> radius_then;
+  /// How far the sensor would move [m] and turn [rad]; none: it has no place in one of the two.
+  std::optional<double> shift;
+  std::optional<double> turn;
+
+  bool operator==(const PlaceChange&) const = default;
+};
+
+/// The result of a session that waits until somebody accepts or declines it.
+struct Proposal {
+  std::uint64_t session = 0;
+  Registration registration;  ///< In the world of the one in use.
+  std::vector<PlaceChange> changes;
+};
+
 /// One registration session: its progress, then its outcome.
 struct SessionStatus {
   std::uint64_t id = 0;  ///< Increases with each session; never reused.
   SessionState state = SessionState::Done;
   bool automatic = false;  ///< True if the server started it without a client's request.
+  Adoption adoption = Adoption::AtOnce;
   Timestamp started;
   double elapsed = 0.0;             ///< Length of the walk collected so far [s].
   double target = 0.0;              ///< Length of the walk that is wanted [s].
@@ -164,6 +193,7 @@ struct RegistrationProgress {
   std::uint64_t next_session = 1;       ///< Id of the next one.
   std::vector<std::string> awaits;      ///< What is missing at present, as sentences for people.
   std::optional<Registration> earlier;  ///< The one in use before; an undo returns to it.
+  std::optional<Proposal> proposal;     ///< Waits to be accepted or declined.
   std::vector<std::string> alarms;      ///< Sensors that were moved, as sentences for people.
   StorageStatus storage;
   std::uint64_t commands = 0;  ///< How many commands of clients were carried out.

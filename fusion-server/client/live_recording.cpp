@@ -7,6 +7,7 @@
 #include "common/base/json.h"
 #include "common/record/frame_recording.h"
 #include "common/resource/floor_plane_resource.h"
+#include "fusion-server/client/recorded_clock.h"
 #include "fusion-server/client/service_client.h"
 #include "fusion-server/wire/registration_file.h"
 
@@ -27,27 +28,6 @@ bool is_a(const nlohmann::json& self, const std::string& type) {
 }
 
 Timestamp received(const http::ClientResponse& answer) { return from_unix_ns(answer.received_ns); }
-
-Duration from_milliseconds(double ms) { return from_seconds(ms / 1e3); }
-
-/// The clock model that /sensors/ reports, exact to the microsecond, without the correction found
-/// from a walk, which is recorded with the registration.
-record::ClockModel clock_of(const nlohmann::json& sensor) {
-  record::ClockModel clock;
-  const bool walked = sensor.contains("clockFromWalkMilliseconds");
-  const double offset = number_at(sensor, "clockOffsetMilliseconds") -
-                        (walked ? number_at(sensor, "clockFromWalkMilliseconds") : 0.0);
-  constexpr double kLeast = 5e-4;  // [ms]
-  if (walked && std::abs(offset) < kLeast) return clock;
-  const double uncertainty = number_at(sensor, "clockUncertaintyMilliseconds");
-  if (!std::isfinite(offset) || !std::isfinite(uncertainty)) return clock;
-  clock.ours_minus_theirs = from_milliseconds(offset);
-  clock.uncertainty = from_milliseconds(uncertainty);
-  const auto corrected = sensor.find("clockCorrected");
-  if (corrected != sensor.end() && corrected->is_boolean() && corrected->get<bool>())
-    clock.applied = clock.ours_minus_theirs;
-  return clock;
-}
 
 record::CellHead head_of(const nlohmann::json& self, bool tracker) {
   record::CellHead head;

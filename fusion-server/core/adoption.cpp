@@ -274,6 +274,20 @@ Registration without(Registration current, const SensorId& sensor, const std::st
   return current;
 }
 
+void keep_configured(Registration& registration, const std::set<SensorId>& sensors) {
+  const auto gone = [&](const auto& entry) { return !sensors.contains(entry.first); };
+  std::erase_if(registration.sensors, gone);
+  std::erase_if(registration.verdicts, gone);
+  std::erase_if(registration.clocks, gone);
+  std::erase_if(registration.edges, [&](const PairwiseRegistration& edge) {
+    return !sensors.contains(edge.source) || !sensors.contains(edge.target);
+  });
+  if (registration.sensors.empty() || registration.sensors.contains(registration.master)) return;
+  registration.master = std::ranges::min_element(registration.sensors, {}, [](const auto& entry) {
+                          return entry.second.error;
+                        })->first;
+}
+
 std::set<SensorId> unplaced(const Registration& current, const std::set<SensorId>& seeing) {
   std::set<SensorId> missing;
   for (const SensorId& sensor : seeing) {

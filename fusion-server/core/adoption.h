@@ -42,6 +42,11 @@ void note_refusals(Registration& current, const Registration& candidate);
 [[nodiscard]] Registration without(Registration current, const SensorId& sensor,
                                    const std::string& reason);
 
+/// Removes what concerns sensors that are not configured any more.  If the master is one of them,
+/// the best of the others becomes the master, because a registration without its master could not
+/// be read again.
+void keep_configured(Registration& registration, const std::set<SensorId>& sensors);
+
 /// The sensors among `seeing` (those that saw a body lately) that have no place.
 [[nodiscard]] std::set<SensorId> unplaced(const Registration& current,
                                           const std::set<SensorId>& seeing);

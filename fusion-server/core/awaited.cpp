@@ -92,6 +92,7 @@ void say_session(const Situation& s, bool walking, std::vector<std::string>& out
 }
 
 void say_start(const Situation& s, bool walking, std::vector<std::string>& out) {
+  if (s.proposes) return;  // no session starts by itself
   if (!s.automatic) {
     out.emplace_back(
         "sessions do not start by themselves: run chorus register (POST /registration)");
@@ -108,6 +109,10 @@ void say_start(const Situation& s, bool walking, std::vector<std::string>& out) 
 
 std::vector<std::string> awaited(const Situation& s) {
   std::vector<std::string> out;
+  if (s.proposes)
+    out.emplace_back(
+        "new places wait for your decision: chorus register --accept puts them into use, "
+        "chorus register --decline keeps the old ones");
   const auto missing =
       those(s, [&](const SensorId& sensor) { return !s.registration.sensors.contains(sensor); });
   if (missing.empty() && s.session == nullptr && !s.sensors.empty()) return out;

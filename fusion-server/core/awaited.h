@@ -19,10 +19,12 @@ struct Situation {
   bool automatic = true;                   ///< Sessions start by themselves.
   std::optional<Duration> retry;           ///< Time until a session may start by itself again.
   Timestamp now;
-  double wanted = 0.05;  ///< A 95 % radius of a sensor's place up to this is good enough [m].
+  double wanted = 0.05;   ///< A 95 % radius of a sensor's place up to this is good enough [m].
+  bool proposes = false;  ///< A registration waits to be accepted.
 };
 
-/// One sentence per need; empty when every sensor has a place and no session is running.
+/// One sentence per need; empty when every sensor has a place, no session is running, and no
+/// registration waits to be accepted.
 [[nodiscard]] std::vector<std::string> awaited(const Situation& situation);
 
 }  // namespace chorus::core

@@ -255,6 +255,20 @@ Result<void> FusionCore::undo() {
   return done;
 }
 
+Result<void> FusionCore::accept() {
+  Registration before = registration();
+  auto done = registrar_.accept();
+  if (done) take_over(std::move(before));
+  return done;
+}
+
+/// After a change of places in the same world.
+void FusionCore::take_over(Registration before) {
+  hindsight_.forget();  // all earlier answers were given by other places
+  guard_.replaced(before, registration());
+  if (!before.sensors.empty()) before_ = std::move(before);
+}
+
 /// Forgets what is remembered about people, because it is in coordinates of the old world.
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
@@ -267,10 +281,7 @@ void FusionCore::leave_world() {
 Outcome FusionCore::solved(Solution solution, Timestamp now) {
   Registration before = registration();
   const Outcome outcome = registrar_.solved(std::move(solution), now);
-  if (outcome == Outcome::Nothing) return outcome;
-  hindsight_.forget();  // earlier instants were fused with other places
-  guard_.replaced(before, registration());
-  if (!before.sensors.empty()) before_ = std::move(before);
+  if (outcome != Outcome::Nothing) take_over(std::move(before));
   return outcome;
 }
 
@@ -279,6 +290,7 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
   progress.sessions = registrar_.sessions();
   progress.next_session = registrar_.next_session();
   progress.earlier = earlier();
+  progress.proposal = registrar_.proposal();
   progress.awaits = registrar_.awaits(now);
   for (const SensorId& sensor : config_.sensors) {
     const auto told = alarm(sensor);

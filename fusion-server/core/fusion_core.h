@@ -50,8 +50,9 @@ class FusionCore {
   [[nodiscard]] Duration idle(Timestamp now);
 
   /// See Registrar.
-  [[nodiscard]] Result<std::uint64_t> start_session(Duration target, Timestamp now) {
-    return registrar_.start(target, now);
+  [[nodiscard]] Result<std::uint64_t> start_session(Duration target, Timestamp now,
+                                                    Adoption adoption = Adoption::AtOnce) {
+    return registrar_.start(target, now, adoption);
   }
   [[nodiscard]] Result<void> cancel_session(std::uint64_t session, Timestamp now) {
     return registrar_.cancel(session, now);
@@ -62,6 +63,9 @@ class FusionCore {
   [[nodiscard]] Result<void> move_origin(const Origin& origin);
   /// As Registrar::undo.
   [[nodiscard]] Result<void> undo();
+  /// As Registrar::accept and Registrar::decline.
+  [[nodiscard]] Result<void> accept();
+  [[nodiscard]] Result<void> decline() { return registrar_.decline(); }
   [[nodiscard]] const std::optional<Registration>& earlier() const { return registrar_.earlier(); }
   void set_earlier(Registration registration) { registrar_.set_earlier(std::move(registration)); }
   [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now) { return registrar_.due_job(now); }
@@ -109,6 +113,7 @@ class FusionCore {
   };
 
   void leave_world();
+  void take_over(Registration before);
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
   void displace_moved(Timestamp instant);
   bool count(const SensorFrame& frame, align::PushVerdict verdict);

@@ -5,9 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "fusion-server/core/accuracy.h"
 #include "fusion-server/core/awaited.h"
 #include "fusion-server/core/closure.h"
-#include "fusion-server/registration/error_radius.h"
+#include "fusion-server/core/common_clock.h"
 
 namespace chorus::core {
 namespace {
@@ -19,48 +20,6 @@ constexpr Duration kFirstRetry = std::chrono::seconds(30);
 constexpr int kMaxDoublings = 5;  // at most 16 minutes
 /// After a session was cancelled by hand, none starts by itself for this long.
 constexpr Duration kAfterCancel = std::chrono::seconds(60);
-
-void keep_configured(Registration& registration, const std::set<SensorId>& sensors) {
-  const auto gone = [&](const auto& entry) { return !sensors.contains(entry.first); };
-  std::erase_if(registration.sensors, gone);
-  std::erase_if(registration.verdicts, gone);
-  std::erase_if(registration.clocks, gone);
-  std::erase_if(registration.edges, [&](const PairwiseRegistration& edge) {
-    return !sensors.contains(edge.source) || !sensors.contains(edge.target);
-  });
-  // A registration without its master among the sensors could not be read again.
-  if (registration.sensors.empty() || registration.sensors.contains(registration.master)) return;
-  registration.master = std::ranges::min_element(registration.sensors, {}, [](const auto& entry) {
-                          return entry.second.error;
-                        })->first;
-}
-
-/// How well this solve places each sensor that took part in the walk.
-std::vector<SensorAccuracy> accuracy_of(const Registration& candidate) {
-  std::vector<SensorAccuracy> all;
-  for (const auto& [sensor, verdict] : candidate.verdicts) {
-    SensorAccuracy own{sensor, {}};
-    const auto place = candidate.sensors.find(sensor);
-    if (place != candidate.sensors.end())
-      own.radius = registration::radius_on_floor(place->second.covariance);
-    all.push_back(std::move(own));
-  }
-  return all;
-}
-
-/// Whether the walk could end here: the candidate is good, it places all sensors that are placed
-/// now, and every sensor that took part has a place known to within `target`.  If `target` is zero:
-/// never.
-bool accurate_enough(const Registration& candidate, const Registration& current, double target) {
-  if (!std::ranges::all_of(current.sensors,
-                           [&](const auto& one) { return candidate.sensors.contains(one.first); }))
-    return false;
-  const auto all = accuracy_of(candidate);
-  const bool good = target > 0 && all.size() > 1 && candidate.verdict == Verdict::Good;
-  return good && std::ranges::all_of(all, [&](const SensorAccuracy& own) {
-           return own.radius && *own.radius <= target;
-         });
-}
 
 }  // namespace
 
@@ -96,9 +55,10 @@ void Registrar::begin(Duration target, bool automatic, Timestamp now) {
   if (sessions_.size() > kSessionsKept) sessions_.pop_back();
 }
 
-Result<std::uint64_t> Registrar::start(Duration target, Timestamp now) {
-  if (sessions_.empty() || !running(sessions_.front())) {
+Result<std::uint64_t> Registrar::start(Duration target, Timestamp now, Adoption adoption) {
+  if (!busy()) {
     begin(target, false, now);
+    sessions_.front().adoption = adoption;
     return sessions_.front().id;
   }
   SessionStatus& current = sessions_.front();
@@ -109,12 +69,13 @@ Result<std::uint64_t> Registrar::start(Duration target, Timestamp now) {
                             current.id));
   }
   current.automatic = false;
+  current.adoption = adoption;
   session_.retarget(target);
   return current.id;
 }
 
 Result<void> Registrar::cancel(std::uint64_t session, Timestamp now) {
-  if (sessions_.empty() || !running(sessions_.front()) || sessions_.front().id != session)
+  if (!busy() || sessions_.front().id != session)
     return fail(ErrorCode::NotFound, "registration", "this session does not run");
   if (take_back()) {
     sessions_.front().reasons = {"cancelled; its provisional registration was withdrawn"};
@@ -127,7 +88,7 @@ Result<void> Registrar::cancel(std::uint64_t session, Timestamp now) {
 }
 
 void Registrar::end_session(SessionState state) {
-  if (sessions_.empty() || !running(sessions_.front())) return;
+  if (!busy()) return;
   SessionStatus& current = sessions_.front();
   show_progress(current);
   current.state = state;
@@ -147,6 +108,7 @@ void Registrar::forget() {
   if (before_) registration_ = *before_;  // a session's own result is not worth going back to
   end_session(SessionState::Cancelled);
   if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
+  drop_proposal("given up: the registration it was compared with was forgotten");
   lacks_displaced_ = false;
   keep_earlier(registration_);
   retries_.clear();
@@ -161,7 +123,7 @@ void Registrar::keep_earlier(const Registration& used) {
 }
 
 Result<void> Registrar::undo() {
-  if (!sessions_.empty() && running(sessions_.front()))
+  if (busy())
     return fail(ErrorCode::Conflict, "registration",
                 "a registration session is running; wait for its end or cancel it");
   if (!earlier_)
@@ -170,6 +132,7 @@ Result<void> Registrar::undo() {
   keep_configured(back, config_.sensors);
   if (back.sensors.empty())
     return fail(ErrorCode::NotFound, "registration", "none of its sensors is configured any more");
+  drop_proposal("given up: the registration before was put into use");
   earlier_.reset();
   keep_earlier(registration_);
   lacks_displaced_ = false;
@@ -179,23 +142,27 @@ Result<void> Registrar::undo() {
 
 bool Registrar::displace(const SensorId& sensor, const std::string& reason) {
   constexpr std::ptrdiff_t kLeastPlaced = 3;
-  const bool busy = !sessions_.empty() && running(sessions_.front());
   const auto placed = std::ranges::count_if(registration_.sensors, [&](const auto& entry) {
     return config_.sensors.contains(entry.first);
   });
-  if (busy || placed < kLeastPlaced || !registration_.sensors.contains(sensor)) return false;
+  if (busy() || placed < kLeastPlaced || !registration_.sensors.contains(sensor)) return false;
   retries_.erase(sensor);
+  drop_proposal("given up: " + reason);
   if (!std::exchange(lacks_displaced_, true)) keep_earlier(registration_);
   replace(without(registration_, sensor, reason));
   return true;
 }
 
 Result<void> Registrar::move_origin(const Origin& origin) {
-  if (!sessions_.empty() && running(sessions_.front()))
+  if (busy())
     return fail(ErrorCode::Conflict, "origin",
                 "a registration session is running; wait for its end or cancel it");
   auto next = with_origin(registration_, origin);
   if (!next) return pass(next);
+  if (proposal_) {
+    if (auto moved = with_origin(proposal_->registration, origin))
+      proposal_->registration = std::move(*moved);
+  }
   lacks_displaced_ = false;
   keep_earlier(registration_);
   replace(std::move(*next));
@@ -218,8 +185,7 @@ bool Registrar::waits(const SensorId& sensor, Timestamp now) const {
 }
 
 void Registrar::start_by_itself(Timestamp now) {
-  const bool busy = !sessions_.empty() && running(sessions_.front());
-  if (!config_.session.automatic || busy || now < not_before_) return;
+  if (!config_.session.automatic || busy() || proposal_ || now < not_before_) return;
   const std::set<SensorId> seeing = last_seen_.seeing(now);
   // A single sensor has no partner to be registered with, unless it is the only one there is.
   const bool enough = seeing.size() >= 2 || (seeing.size() == 1 && config_.sensors.size() == 1);
@@ -280,11 +246,11 @@ std::vector<std::string> Registrar::shortfalls(const Registration& candidate) co
 
 Outcome Registrar::solved(Solution solution, Timestamp now) {
   solving_ = false;
-  const bool wanted =
-      !sessions_.empty() && running(sessions_.front()) && sessions_.front().id == solution.session;
+  const bool wanted = busy() && sessions_.front().id == solution.session;
   if (!wanted || solution.given_up) return Outcome::Nothing;
   session_.solved_in(solution.cost);
   note_closure(solution.registration);
+  keep_near_ours(solution.registration);
   // Places of sensors that are no longer configured must not constrain the new registration.
   keep_configured(registration_, config_.sensors);
   if (before_) keep_configured(*before_, config_.sensors);
@@ -303,6 +269,7 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
     current.target = seconds(session_.target());
     session_.finish();
   }
+  if (asks_first(current)) return Outcome::Nothing;
   auto next = successor(registration_, candidate, SolveKind::Provisional);
   if (!next) return Outcome::Nothing;
   if (!before_) before_ = registration_;
@@ -316,9 +283,11 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
 Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   SessionStatus& current = sessions_.front();
   auto next = successor(before_ ? *before_ : registration_, candidate, SolveKind::Final);
+  if (next && asks_first(current)) return propose(std::move(*next), candidate, now);
   current.adopted = next.has_value();
   Outcome outcome = Outcome::Adopted;
   if (next) {
+    drop_proposal("replaced by the result of a later session");
     if (!std::exchange(lacks_displaced_, false)) keep_earlier(before_ ? *before_ : registration_);
     replace(std::move(*next));
   } else {
@@ -359,7 +328,7 @@ void Registrar::back_off(const Registration& candidate, Timestamp now) {
 
 std::vector<SessionStatus> Registrar::sessions() const {
   std::vector<SessionStatus> all(sessions_.begin(), sessions_.end());
-  if (!all.empty() && running(all.front())) show_progress(all.front());
+  if (busy()) show_progress(all.front());
   return all;
 }
 
@@ -368,8 +337,9 @@ std::vector<std::string> Registrar::awaits(Timestamp now) const {
   Situation situation{
       config_.sensors,           registration_, last_seen_, nullptr,
       config_.session.automatic, std::nullopt,  now,        config_.registration.good_position};
-  if (!all.empty() && running(all.front())) situation.session = &all.front();
+  if (busy()) situation.session = &all.front();
   situation.retry = retry_in(now);
+  situation.proposes = proposal_.has_value();
   return awaited(situation);
 }
 

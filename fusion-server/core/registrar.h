@@ -2,7 +2,9 @@
 //
 // It uses no thread, socket or clock: frames, requests and solutions go in, solve jobs come out.
 // Provisional registrations belong to the session, and are withdrawn when its final solve is
-// refused.  A sensor that could not be placed does not start sessions again and again.
+// refused.  A sensor that could not be placed does not start sessions again and again.  A result
+// that has to be accepted first waits as a proposal: until it is accepted or declined, until the
+// registration in use becomes another one, or until the server ends.
 #pragma once
 
 #include <deque>
@@ -61,7 +63,8 @@ class Registrar {
 
   /// Starts a session, or takes over an automatic one that is running, and returns its id; Conflict
   /// when the running one was started by hand.
-  [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now);
+  [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now,
+                                            Adoption adoption = Adoption::AtOnce);
   /// Cancels this session and withdraws what it changed; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
   /// Cancels the session and forgets the registration; the next one is moved into the same world.
@@ -70,6 +73,13 @@ class Registrar {
   /// Conflict while a session is running; NotFound when there is no previous one, or when none of
   /// its sensors is configured any more.
   [[nodiscard]] Result<void> undo();
+  /// Puts the proposed registration into use.  Conflict while a session is running; NotFound when
+  /// none is proposed.
+  [[nodiscard]] Result<void> accept();
+  /// Keeps the registration in use and forgets the proposed one; NotFound when none is proposed.
+  [[nodiscard]] Result<void> decline();
+  /// No session starts by itself while there is one.
+  [[nodiscard]] const std::optional<Proposal>& proposal() const noexcept { return proposal_; }
   /// The registration that undo() goes back to; set at the start from what is stored.
   [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }
   void set_earlier(Registration registration) { earlier_ = std::move(registration); }
@@ -99,6 +109,7 @@ class Registrar {
     Timestamp not_before;
   };
 
+  [[nodiscard]] bool busy() const { return !sessions_.empty() && running(sessions_.front()); }
   void begin(Duration target, bool automatic, Timestamp now);
   void start_by_itself(Timestamp now);
   void end_session(SessionState state);
@@ -107,6 +118,9 @@ class Registrar {
                                                const Registration& candidate, SolveKind kind) const;
   void replace(Registration next);
   void keep_earlier(const Registration& used);
+  [[nodiscard]] bool asks_first(const SessionStatus& session) const;
+  Outcome propose(Registration next, const Registration& candidate, Timestamp now);
+  void drop_proposal(const std::string& reason);
   [[nodiscard]] bool take_back();
   Outcome settle_provisional(const Registration& candidate);
   Outcome settle_final(const Registration& candidate, Timestamp now);
@@ -127,6 +141,7 @@ class Registrar {
   std::optional<Registration> before_;
   /// What undo() goes back to; never a provisional registration of a session.
   std::optional<Registration> earlier_;
+  std::optional<Proposal> proposal_;
   /// True if `earlier_` is from before a sensor was displaced; the session that registers the
   /// sensor again keeps `earlier_`.
   bool lacks_displaced_ = false;

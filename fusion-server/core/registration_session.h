@@ -14,15 +14,16 @@
 #include "fusion-server/core/coverage.h"
 #include "fusion-server/flow.h"
 #include "fusion-server/registration/registration.h"
+#include "fusion-server/status.h"
 
 namespace chorus::core {
 
 struct SessionConfig {
   bool automatic = true;  ///< Sessions start by themselves when a sensor that sees a body has no
                           ///< place yet.
-  Duration target = std::chrono::seconds(30);      ///< Length of walk until the final solve.
-  Duration first_solve = std::chrono::seconds(6);  ///< Length of walk until the first provisional
-                                                   ///< solve.
+  Adoption adoption = Adoption::AtOnce;        ///< Of sessions that clients start without saying.
+  Duration target = std::chrono::seconds(30);  ///< Length of walk until the final solve.
+  Duration first_solve = std::chrono::seconds(6);  ///< The same until the first provisional one.
   Duration solve_every = std::chrono::seconds(2);
   /// A longer pause with nobody in view does not count as walking.
   Duration max_pause = std::chrono::milliseconds(500);

@@ -11,7 +11,7 @@ constexpr Duration kSilence = std::chrono::seconds(1);
 // A frame may be younger than all before by less than this through chance.
 constexpr Duration kJitter = std::chrono::milliseconds(20);
 constexpr Duration kSetBack =
-    std::chrono::milliseconds(100);  // ages that grow by more show that the clock was set back
+    std::chrono::milliseconds(100);  // a link may delay frames by less for seconds
 constexpr int kBelieved = 3;         // younger frames in a row
 // A smaller change of the correction is not applied.  The clock offsets found from a walk are
 // accurate to twice this.
@@ -24,17 +24,34 @@ Duration followed(const ClockOffset& clock, const std::optional<Duration>& least
   return clock.added + (*least_age - *clock.least_age);
 }
 
+/// Whether the host's own estimate, of this standard deviation, is better than with the offset.  An
+/// estimate that has become better since the walk has moved by what it has become better by, which
+/// the offset knows nothing of.
+bool outdone(const ClockOffset& clock, double clock_sigma) {
+  if (!exchanges_time(clock_sigma) || !exchanges_time(seconds(clock.stated))) return false;
+  const double own = clock_sigma * clock_sigma;
+  const double moved = std::max(0.0, seconds(clock.stated) * seconds(clock.stated) - own);
+  return own <= seconds(clock.sigma) * seconds(clock.sigma) + moved;
+}
+
 }  // namespace
 
 void LeastAge::forget_until(Timestamp received) {
   while (!entries_.empty() && entries_.front().received < received) entries_.pop_front();
 }
 
+void LeastAge::note_stamp(Timestamp received, Timestamp stamp) {
+  constexpr int kBack = 2;  // one may have been overtaken on its way
+  back_ = stamp < newest_stamp_ ? back_ + 1 : 0;
+  if (back_ >= kBack) went_back_ = received;
+  if (back_ == 0 || back_ >= kBack) newest_stamp_ = stamp;
+}
+
 void LeastAge::add(Timestamp received, Duration age) {
+  note_stamp(received, received - age);
   if (!last_ || received < *last_ || received - *last_ > kSilence) since_ = received;
   if (last_ && received < *last_) entries_.clear();  // our own clock was set
   last_ = received;
-  settled_ |= received - since_ >= kBeforeTrust;
   const bool younger = !entries_.empty() && age < entries_.front().age - kJitter;
   younger_ = younger ? younger_ + 1 : 0;
   if (younger && younger_ < kBelieved) return;
@@ -43,14 +60,21 @@ void LeastAge::add(Timestamp received, Duration age) {
   forget_until(received - kAgeWindow);
   const Timestamp lately = received - kBeforeTrust;
   const auto recent = std::ranges::lower_bound(entries_, lately, {}, &Entry::received);
-  const bool set_back =
-      since_ <= lately && recent != entries_.end() && recent->age > entries_.front().age + kSetBack;
+  const bool possible = std::max(since_, went_back_) > entries_.front().received;
+  const bool set_back = since_ <= lately && possible && recent != entries_.end() &&
+                        recent->age > entries_.front().age + kSetBack;
   if (set_back) forget_until(lately);
+  if (since_ <= lately) value_ = entries_.front().age;
 }
 
-std::optional<Duration> LeastAge::value() const {
-  if (entries_.empty() || !settled_) return std::nullopt;
-  return entries_.front().age;
+/// Once the host's own estimate is better than the offset it stays so for this registration: that
+/// it gets worse again makes the offset no better, and frames must not move to and fro.
+bool WalkedClocks::holds(State& state, const ClockOffset& clock, const SensorFrame& frame,
+                         const Registration& registration) {
+  if (state.outdone_by == registration.version) return false;
+  if (!outdone(clock, frame.clock_sigma)) return holds_for(clock, frame.clock_sigma);
+  state.outdone_by = registration.version;
+  return false;
 }
 
 Duration WalkedClocks::take(const SensorFrame& frame, const Registration& registration) {
@@ -59,7 +83,7 @@ Duration WalkedClocks::take(const SensorFrame& frame, const Registration& regist
     state.least.add(frame.received, frame.received - frame.captured);
   const Duration before = state.applied ? state.applied->added : Duration{0};
   const auto found = registration.clocks.find(frame.sensor);
-  if (found == registration.clocks.end() || !holds_for(found->second, frame.clock_sigma)) {
+  if (found == registration.clocks.end() || !holds(state, found->second, frame, registration)) {
     state.applied.reset();
     return -before;
   }

@@ -7,6 +7,7 @@
 // has measured along with the offset.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
@@ -16,14 +17,17 @@
 namespace chorus::core {
 
 /// The least of a sensor's recent ages, from capture by its own stamps to receipt.  A frame that is
-/// younger than all before it by more than jitter counts only if it is the third in a row.  If all
-/// ages grow by more than a link would delay frames for seconds, because the clock was set back,
-/// this is believed after three seconds; if they grow less, only after the whole window.
+/// younger than all before it by more than jitter counts only if the next two are, too.  A clock
+/// that was set back is believed after three seconds, if stamps went back or if it may have
+/// happened in a pause: a link that has become slower delays frames, and their stamps go on.  That
+/// an old delay has ended is believed only after the whole window.  After a pause the value stays
+/// as it was until frames have come for three seconds, because the first ones may have been held
+/// back.
 class LeastAge {
  public:
   void add(Timestamp received, Duration age);
-  /// None until frames have once come for three seconds without a pause of more than one.
-  [[nodiscard]] std::optional<Duration> value() const;
+  /// None until frames have come for three seconds without a longer pause, once.
+  [[nodiscard]] std::optional<Duration> value() const { return value_; }
 
  private:
   struct Entry {
@@ -31,12 +35,16 @@ class LeastAge {
     Duration age;
   };
   void forget_until(Timestamp received);
+  void note_stamp(Timestamp received, Timestamp stamp);
 
   std::deque<Entry> entries_;  ///< Ages increase from front to back, so the first is the least.
   std::optional<Timestamp> last_;
-  Timestamp since_;  ///< The start of the present series of frames without a pause.
-  bool settled_ = false;
-  int younger_ = 0;  ///< Number of frames in a row that are younger than all before.
+  Timestamp since_;  ///< Received without a pause since then.
+  std::optional<Duration> value_;
+  int younger_ = 0;  ///< Frames in a row that are younger than all before.
+  Timestamp newest_stamp_;
+  int back_ = 0;         ///< Frames in a row whose stamps are before the newest one.
+  Timestamp went_back_;  ///< Received when stamps had gone back.
 };
 
 /// What is added to one sensor's capture times.
@@ -66,7 +74,13 @@ class WalkedClocks {
   struct State {
     LeastAge least;
     std::optional<WalkedClock> applied;
+    /// Version of the registration whose offset is no longer added because the host's own estimate
+    /// has become better.
+    std::optional<std::uint64_t> outdone_by;
   };
+
+  [[nodiscard]] static bool holds(State& state, const ClockOffset& clock, const SensorFrame& frame,
+                                  const Registration& registration);
 
   std::map<SensorId, State> states_;
 };

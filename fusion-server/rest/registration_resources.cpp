@@ -30,7 +30,7 @@ bool busy(const RegistrationProgress& progress) {
 
 }  // namespace
 
-Result<Duration> parse_session_request(std::string_view body, Duration fallback) {
+Result<SessionRequest> parse_session_request(std::string_view body, SessionRequest fallback) {
   const auto wrong = [](std::string message) {
     return fail(ErrorCode::InvalidArgument, "registration", std::move(message));
   };
@@ -38,16 +38,22 @@ Result<Duration> parse_session_request(std::string_view body, Duration fallback)
   const auto json = object_of(body, "registration", R"({"seconds": 30})");
   if (!json) return pass(json);
   for (const auto& [key, value] : json->items()) {
-    if (key != "seconds") return wrong("\"" + key + "\" is not known; only \"seconds\" is");
+    if (key == "seconds") {
+      const double wanted = value.is_number() ? value.get<double>() : std::nan("");
+      if (!(wanted >= kMinSession && wanted <= kMaxSession)) {
+        return wrong("\"seconds\" is a number from " + log::number_text(kMinSession) + " to " +
+                     log::number_text(kMaxSession));
+      }
+      fallback.target = from_seconds(wanted);
+    } else if (key == "adopt") {
+      const auto named = wire::adoption_named(value.is_string() ? value.get<std::string>() : "");
+      if (!named) return wrong("\"adopt\" is \"at-once\" or \"when-accepted\"");
+      fallback.adoption = *named;
+    } else {
+      return wrong("\"" + key + "\" is not known; \"seconds\" and \"adopt\" are");
+    }
   }
-  if (json->empty()) return fallback;
-  const auto& value = json->at("seconds");
-  const double wanted = value.is_number() ? value.get<double>() : std::nan("");
-  if (!(wanted >= kMinSession && wanted <= kMaxSession)) {
-    return wrong("\"seconds\" is a number from " + log::number_text(kMinSession) + " to " +
-                 log::number_text(kMaxSession));
-  }
-  return from_seconds(wanted);
+  return fallback;
 }
 
 Result<core::Origin> parse_origin_request(std::string_view body) {
@@ -88,8 +94,8 @@ void RegistrationResources::show() {
 }
 
 Result<http::ActionResult> RegistrationResources::post(const http::Request& request) {
-  const auto target = parse_session_request(request.body, control_.default_target());
-  if (!target) return pass(target);
+  const auto wish = parse_session_request(request.body, control_.defaults());
+  if (!wish) return pass(wish);
   const std::scoped_lock lock(mutex_);
   if (!live_->current()) {
     return fail(ErrorCode::Unavailable, "registration", "the server is starting; ask again");
@@ -108,9 +114,10 @@ Result<http::ActionResult> RegistrationResources::post(const http::Request& requ
     sessions.insert(sessions.begin(), std::move(started));
   }
   sessions.front().automatic = false;
-  sessions.front().target = seconds(*target);
+  sessions.front().adoption = wish->adoption;
+  sessions.front().target = seconds(wish->target);
   const std::uint64_t id = sessions.front().id;
-  control_.start(*target, id, ++asked_);
+  control_.start(*wish, id, ++asked_);
   show();
   return http::ActionResult{http::status::kAccepted, live_->current(), wire::session_path(id)};
 }
@@ -123,6 +130,7 @@ http::ActionResult RegistrationResources::forget() {
   const std::scoped_lock lock(mutex_);
   end_newest();
   const std::uint64_t version = registration_.version;
+  progress_.proposal.reset();
   registration_ = Registration{};
   registration_.version = version;
   control_.forget(++asked_);
@@ -155,10 +163,38 @@ Result<http::ActionResult> RegistrationResources::undo() {
   if (!progress_.earlier)
     return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
   const std::uint64_t version = registration_.version + 1;
+  progress_.proposal.reset();
   std::swap(registration_, *progress_.earlier);
   if (progress_.earlier->sensors.empty()) progress_.earlier.reset();
   registration_.version = version;
   control_.undo(++asked_);
+  show();
+  return http::ActionResult{http::status::kOk, live_->current(), {}};
+}
+
+Result<http::ActionResult> RegistrationResources::accept() {
+  const std::scoped_lock lock(mutex_);
+  if (busy(progress_))
+    return fail(ErrorCode::Conflict, "registration",
+                "a registration session is running; wait for its end, or DELETE " +
+                    wire::session_path(progress_.sessions.front().id));
+  if (!progress_.proposal)
+    return fail(ErrorCode::NotFound, "registration", "no registration waits to be accepted");
+  const std::uint64_t version = registration_.version + 1;
+  progress_.earlier = std::exchange(registration_, std::move(progress_.proposal->registration));
+  progress_.proposal.reset();
+  registration_.version = version;
+  control_.decide(true, ++asked_);
+  show();
+  return http::ActionResult{http::status::kOk, live_->current(), {}};
+}
+
+Result<http::ActionResult> RegistrationResources::decline() {
+  const std::scoped_lock lock(mutex_);
+  if (!progress_.proposal)
+    return fail(ErrorCode::NotFound, "registration", "no registration waits to be accepted");
+  progress_.proposal.reset();
+  control_.decide(false, ++asked_);
   show();
   return http::ActionResult{http::status::kOk, live_->current(), {}};
 }
@@ -210,6 +246,10 @@ void RegistrationResources::add_routes(http::Router& router) {
                 [this](const Request& request, const PathParams&) { return move_origin(request); });
   router.action(Method::Post, "/registration/undo",
                 [this](const Request&, const PathParams&) { return undo(); });
+  router.action(Method::Post, "/registration/accept",
+                [this](const Request&, const PathParams&) { return accept(); });
+  router.action(Method::Post, "/registration/decline",
+                [this](const Request&, const PathParams&) { return decline(); });
   router.action(Method::Delete, one, [this](const Request&, const PathParams& params) {
     return cancel(params.at("id"));
   });

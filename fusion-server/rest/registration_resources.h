@@ -1,6 +1,6 @@
 // /registration and its sessions over HTTP: GET reads, POST starts a session, moves the world's
-// origin, or goes back to the previous registration; DELETE forgets the registration or cancels a
-// session.
+// origin, accepts or declines a proposed registration, or goes back to the previous one; DELETE
+// forgets the registration or cancels a session.
 #pragma once
 
 #include <functional>
@@ -19,17 +19,25 @@ namespace chorus::rest {
 inline constexpr double kMinSession = 8.0;
 inline constexpr double kMaxSession = 300.0;
 
+/// What a client asks for when it starts a session.
+struct SessionRequest {
+  Duration target = std::chrono::seconds(30);
+  Adoption adoption = Adoption::AtOnce;
+};
+
 /// What the routes ask of the owner of the registration.  The functions must only post a task and
 /// return.  `ticket` counts the requests: RegistrationProgress::commands says how many have been
 /// carried out.
 struct RegistrationControl {
-  std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
+  std::function<void(const SessionRequest& request, std::uint64_t session, std::uint64_t ticket)>
+      start;
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
   std::function<void(std::uint64_t ticket)> forget;
   std::function<void(const core::Origin& origin, std::uint64_t ticket)> move_origin;
   std::function<void(std::uint64_t ticket)> undo;
-  /// Length of a session unless the request specifies one.
-  std::function<Duration()> default_target = [] { return std::chrono::seconds(30); };
+  std::function<void(bool accept, std::uint64_t ticket)> decide;
+  /// What holds for a session unless the request says otherwise.
+  std::function<SessionRequest()> defaults = [] { return SessionRequest{}; };
 };
 
 /// Thread-safe.  A client's request affects every answer after its own: until the owner has carried
@@ -46,6 +54,8 @@ class RegistrationResources {
   [[nodiscard]] http::ActionResult forget();
   [[nodiscard]] Result<http::ActionResult> move_origin(const http::Request& request);
   [[nodiscard]] Result<http::ActionResult> undo();
+  [[nodiscard]] Result<http::ActionResult> accept();
+  [[nodiscard]] Result<http::ActionResult> decline();
   [[nodiscard]] Result<http::ActionResult> cancel(const std::string& id);
   [[nodiscard]] Result<http::DocumentPtr> session(const std::string& id) const;
   [[nodiscard]] Result<SessionStatus> find(const std::string& id) const;
@@ -62,9 +72,10 @@ class RegistrationResources {
   std::uint64_t version_ = 0;
 };
 
-/// Reads a body such as {"seconds": 30}; an empty body or object gives `fallback`.  InvalidArgument
-/// for anything else.
-[[nodiscard]] Result<Duration> parse_session_request(std::string_view body, Duration fallback);
+/// Reads a body such as {"seconds": 30, "adopt": "when-accepted"}; what is omitted, or all of an
+/// empty body, is as in `fallback`.  InvalidArgument for anything else.
+[[nodiscard]] Result<SessionRequest> parse_session_request(std::string_view body,
+                                                           SessionRequest fallback);
 
 /// Reads a body such as {"x": 1.5, "z": -2, "yawDegrees": 90}, in the present world; what is
 /// omitted is 0.  InvalidArgument for anything else.

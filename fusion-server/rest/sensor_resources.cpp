@@ -34,6 +34,8 @@ void add_clock(resource::Node& node, const SensorStatus& sensor) {
   if (sensor.walked_offset) {
     put("clockUncertaintyMilliseconds", 2 * sensor.walked_sigma.value_or(Duration{0}));
     put("clockFromWalkMilliseconds", *sensor.walked_offset);
+    if (sensor.clock_uncertainty)
+      put("clockUncertaintyWithoutWalkMilliseconds", *sensor.clock_uncertainty);
   } else if (sensor.clock_uncertainty) {
     put("clockUncertaintyMilliseconds", *sensor.clock_uncertainty);
   }

@@ -190,12 +190,14 @@ struct FusionServer::Impl {
 std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   auto router = std::make_shared<http::Router>();
   rest::RegistrationControl control;
-  control.default_target = [this] {
+  control.defaults = [this] {
     const std::scoped_lock lock(mutex);
-    return config.live.session.target;
+    const core::SessionConfig& session = config.live.session;
+    return rest::SessionRequest{session.target, session.adoption};
   };
-  control.start = [this](Duration target, std::uint64_t session, std::uint64_t ticket) {
-    loop->ask(StartSession{target, session, ticket});
+  control.start = [this](const rest::SessionRequest& request, std::uint64_t session,
+                         std::uint64_t ticket) {
+    loop->ask(StartSession{request.target, request.adoption, session, ticket});
   };
   control.cancel = [this](std::uint64_t session, std::uint64_t ticket) {
     loop->ask(CancelSession{session, ticket});
@@ -205,6 +207,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
     loop->ask(MoveOrigin{origin, ticket});
   };
   control.undo = [this](std::uint64_t ticket) { loop->ask(Undo{ticket}); };
+  control.decide = [this](bool accept, std::uint64_t ticket) { loop->ask(Decide{accept, ticket}); };
   frames.emplace(serving, service::FrameHistory{config.at_start.history});
   frame_sink.emplace(*frames);
   frames->predict_with([this] { return frame_sink->predicted(clock->now()); });

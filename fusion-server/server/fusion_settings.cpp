@@ -214,6 +214,9 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
   double target = chorus::seconds(live.session.target);
   reader.read("seconds", target, rest::kMinSession, rest::kMaxSession);
   live.session.target = from_seconds(target);
+  std::size_t adoption = static_cast<std::size_t>(live.session.adoption);
+  reader.read_choice("adopt", adoption, {"at-once", "when-accepted"});
+  live.session.adoption = static_cast<Adoption>(adoption);
   reader.read("target_m", live.session.target_radius, 0.0, 1.0);
   reader.read_s("first_solve_s", live.session.first_solve, std::chrono::seconds(2),
                 std::chrono::seconds(60));

@@ -118,6 +118,8 @@ void PipelineLoop::obey(Command command) {
     move_origin(*move);
   } else if (const auto* back = std::get_if<Undo>(&command)) {
     undo(*back);
+  } else if (const auto* choice = std::get_if<Decide>(&command)) {
+    decide(*choice);
   } else {
     core_.reconfigure(std::move(std::get<core::CoreConfig>(command)));
   }
@@ -134,7 +136,7 @@ void PipelineLoop::start_session(const StartSession& wish) {
       wish.session < progress.next_session &&
       !(running(progress.sessions.front()) && progress.sessions.front().id == wish.session);
   if (over) return;
-  if (const auto started = core_.start_session(wish.target, now)) {
+  if (const auto started = core_.start_session(wish.target, now, wish.adoption)) {
     log::info("registration session started",
               {{"session", *started}, {"seconds", seconds(wish.target)}});
   }
@@ -176,6 +178,18 @@ void PipelineLoop::undo(const Undo& wish) {
   keeper_.keep(worker_, core_.registration(), core_.earlier());
 }
 
+void PipelineLoop::decide(const Decide& wish) {
+  obeyed_ = wish.ticket;
+  const auto done = wish.accept ? core_.accept() : core_.decline();
+  if (!done) {
+    log::warn("proposed registration not decided", {{"reason", to_string(done.error())}});
+    return;
+  }
+  log::info(wish.accept ? "proposed registration accepted" : "proposed registration declined",
+            {{"version", core_.registration().version}});
+  if (wish.accept) keeper_.keep(worker_, core_.registration(), core_.earlier());
+}
+
 void PipelineLoop::publish(Snapshot snapshot) {
   const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
   for (Sink* sink : options_.sinks) sink->publish(shared);
@@ -195,13 +209,16 @@ void PipelineLoop::take_solutions() {
     const Timestamp moment = options_.clock->now();
     const core::Outcome outcome = core_.solved(std::move(solution), moment);
     const Registration& now = core_.registration();
-    const auto sessions = core_.progress(moment).sessions;
+    const auto progress = core_.progress(moment);
+    const auto& sessions = progress.sessions;
     if (outcome == core::Outcome::Adopted) {
       log::info("registration adopted", {{"version", now.version},
                                          {"solve", name_of(kind)},
                                          {"verdict", wire::name_of(now.verdict)},
                                          {"sensors", now.sensors.size()},
                                          {"reasons", joined(now.reasons)}});
+    } else if (progress.proposal && progress.proposal->session == sessions.front().id) {
+      log::info("registration proposed", {{"session", progress.proposal->session}});
     } else if (kind == core::SolveKind::Final && !sessions.empty()) {
       log::warn(outcome == core::Outcome::Withdrawn ? "registration withdrawn"
                                                     : "registration not adopted",

@@ -25,6 +25,7 @@ namespace chorus::server {
 // Requests from other threads.  Tickets increase; Status contains the last one carried out.
 struct StartSession {
   Duration target{0};
+  Adoption adoption = Adoption::AtOnce;
   std::uint64_t session = 0;  ///< The id that was returned to the client.
   std::uint64_t ticket = 0;
 };
@@ -42,8 +43,13 @@ struct MoveOrigin {
 struct Undo {
   std::uint64_t ticket = 0;
 };
+/// Puts the proposed registration into use, or forgets it.
+struct Decide {
+  bool accept = false;
+  std::uint64_t ticket = 0;
+};
 using Command =
-    std::variant<StartSession, CancelSession, Forget, MoveOrigin, Undo, core::CoreConfig>;
+    std::variant<StartSession, CancelSession, Forget, MoveOrigin, Undo, Decide, core::CoreConfig>;
 
 struct LoopOptions {
   core::CoreConfig core;
@@ -83,6 +89,7 @@ class PipelineLoop {
   void forget(const Forget& wish);
   void move_origin(const MoveOrigin& wish);
   void undo(const Undo& wish);
+  void decide(const Decide& wish);
   void publish(Snapshot snapshot);
   void solve(core::SolveJob job);
   void take_solutions();

@@ -89,9 +89,9 @@ void Watch::add(Residual residual, Timestamp instant) {
 void Watch::close(Watched& sensor) {
   sensor.recent.push_back(block_of(sensor.open, sensor.began));
   sensor.open.clear();
-  if (sensor.recent.size() > kLongestWindow) {
+  if (sensor.recent.size() > kWindow) {
     const bool suspicious = sensor.shift.sigmas >= config_.least_sigmas &&
-                            sensor.shift.mean.norm() >= config_.least_shift;
+                            sensor.shift.middle.norm() >= config_.least_shift;
     if (!suspicious) sensor.usual.learn(sensor.recent.front());
     sensor.recent.pop_front();
   }
@@ -110,9 +110,8 @@ void Watch::judge(Watched& sensor) const {
 /// The sensor's shift or drift [m]; zero unless the sensor counts as moved or drifted.
 double Watch::size_of(const Watched& sensor) const {
   if (sensor.recent.empty()) return 0.0;
-  const double shift = sensor.shift.mean.norm();
-  const bool moved = sensor.shift.lasting && sensor.shift.sigmas >= config_.least_sigmas &&
-                     shift >= config_.least_shift;
+  const double shift = sensor.shift.middle.norm();
+  const bool moved = sensor.shift.sigmas >= config_.least_sigmas && shift >= config_.least_shift;
   if (moved) return shift;
   return sensor.drift >= config_.least_drift ? sensor.drift : 0.0;
 }
@@ -133,7 +132,7 @@ std::optional<Finding> Watch::finding() const {
     worst = &sensor;
   }
   if (worst == nullptr) return std::nullopt;
-  found.drifted = worst->shift.mean.norm() < found.shift;
+  found.drifted = worst->shift.middle.norm() < found.shift;
   found.since = found.drifted ? last_ : worst->shift.since;
   const auto& others = found.drifted ? worst->recent.back().others : worst->shift.others;
   if (others.size() == 1) {
@@ -146,8 +145,8 @@ std::optional<Finding> Watch::finding() const {
 
 std::optional<double> Watch::shift_of(const SensorId& sensor) const {
   const auto own = sensors_.find(sensor);
-  if (own == sensors_.end() || own->second.recent.size() < kWindows.front()) return std::nullopt;
-  return own->second.shift.mean.norm();
+  if (own == sensors_.end() || own->second.recent.size() < kWindow) return std::nullopt;
+  return own->second.shift.middle.norm();
 }
 
 void Watch::forget() { sensors_.clear(); }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/units.h"
+
 namespace chorus::wire {
 namespace {
 
@@ -172,6 +174,31 @@ Node earlier_node(const Registration& registration) {
            {"solved", registration.solved}}};
 }
 
+/// A registration that waits to be accepted, and what it would change.
+Node proposal_node(const Proposal& proposal) {
+  constexpr int kDigits = 4;
+  const Registration& proposed = proposal.registration;
+  Node node{"_",
+            {"ProposedRegistration"},
+            {{"sessionId", static_cast<std::int64_t>(proposal.session)},
+             {"verdict", std::string(name_of(proposed.verdict))},
+             {"reasons", proposed.reasons},
+             {"solved", proposed.solved}}};
+  std::vector<Node> changes;
+  for (const PlaceChange& change : proposal.changes) {
+    changes.push_back({"_", {"PlaceChange"}, {{"sensorId", change.sensor.str()}}});
+    const auto put = [&](const char* key, const std::optional<double>& value) {
+      if (value) changes.back().properties.emplace_back(key, Decimal{*value, kDigits});
+    };
+    put("presentRadius", change.radius_now);
+    put("expectedRadius", change.radius_then);
+    put("moves", change.shift);
+    if (change.turn) put("turnsDegrees", to_deg(*change.turn));
+  }
+  node.properties.emplace_back("changes", std::move(changes));
+  return node;
+}
+
 /// Sensors that took part in a walk but have no place.
 std::vector<Node> unplaced_nodes(const Registration& registration) {
   std::vector<Node> nodes;
@@ -214,6 +241,17 @@ std::string_view name_of(SessionState state) noexcept {
   return "done";
 }
 
+std::string_view name_of(Adoption adoption) noexcept {
+  return adoption == Adoption::AtOnce ? "at-once" : "when-accepted";
+}
+
+std::optional<Adoption> adoption_named(std::string_view name) noexcept {
+  for (const Adoption value : {Adoption::AtOnce, Adoption::WhenAccepted}) {
+    if (name_of(value) == name) return value;
+  }
+  return std::nullopt;
+}
+
 std::string session_path(std::uint64_t id) {
   return "/registration/sessions/" + std::to_string(id);
 }
@@ -232,6 +270,7 @@ Node session_node(const SessionStatus& session, const std::vector<std::string>& 
   out.emplace_back("sessionId", static_cast<std::int64_t>(session.id));
   out.emplace_back("state", std::string(name_of(session.state)));
   out.emplace_back("automatic", session.automatic);
+  out.emplace_back("adopt", std::string(name_of(session.adoption)));
   out.emplace_back("started", session.started);
   out.emplace_back("elapsedSeconds", Decimal{session.elapsed, kDigits});
   out.emplace_back("targetSeconds", Decimal{session.target, kDigits});
@@ -263,6 +302,8 @@ Node registration_node(const Registration& registration, const RegistrationProgr
     node.properties.emplace_back("solved", registration.solved);
   }
   if (progress.earlier) node.properties.emplace_back("earlier", earlier_node(*progress.earlier));
+  if (progress.proposal)
+    node.properties.emplace_back("proposal", proposal_node(*progress.proposal));
   add_storage(node, progress.storage);
   node.properties.emplace_back("session", newest_session(progress));
   node.properties.emplace_back("sessions", session_refs(progress));

@@ -32,4 +32,8 @@ namespace chorus::wire {
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
 [[nodiscard]] std::optional<Verdict> verdict_named(std::string_view name) noexcept;
 
+/// "at-once" or "when-accepted", as in the configuration.
+[[nodiscard]] std::string_view name_of(Adoption adoption) noexcept;
+[[nodiscard]] std::optional<Adoption> adoption_named(std::string_view name) noexcept;
+
 }  // namespace chorus::wire

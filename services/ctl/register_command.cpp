@@ -36,6 +36,9 @@ struct RegisterArguments {
   double seconds = 30.0;  // a walk through a room, as in the guide
   bool fresh = false;
   bool cancel = false;
+  bool propose = false;
+  bool accept = false;
+  bool decline = false;
   bool undo = false;
   bool history = false;
   bool json = false;
@@ -55,7 +58,9 @@ bool idle(const nlohmann::json& registration) {
 
 /// Starts a session, or joins one that is already running.
 Result<std::string> start(const ServiceClient& server, const RegisterArguments& arguments) {
-  const auto started = server.post("/registration", {{"seconds", arguments.seconds}});
+  nlohmann::json wish{{"seconds", arguments.seconds}};
+  if (arguments.propose) wish["adopt"] = "when-accepted";
+  const auto started = server.post("/registration", wish);
   if (started) return session_of(*started, arguments.url);
   if (started.error().code != ErrorCode::Conflict) return pass(started);
   const auto registration = server.get("/registration");
@@ -137,13 +142,38 @@ Result<nlohmann::json> follow(const ServiceClient& server, const std::string& pa
               "it, chorus register --cancel ends it)");
 }
 
+/// What the proposed registration would change, and how to decide.
+std::string proposal_report(const nlohmann::json& proposal) {
+  std::vector<std::vector<std::string>> rows{
+      {"sensor", "95 % now [mm]", "95 % then [mm]", "moves [mm]", "turns [deg]"}};
+  for (const auto& change : part_at(proposal, "changes")) {
+    const auto millimetres = [&](const char* key) {
+      return shown(to_mm(client::number_at(change, key)), 0);
+    };
+    rows.push_back({text_at(change, "sensorId"), millimetres("presentRadius"),
+                    millimetres("expectedRadius"), millimetres("moves"),
+                    shown(client::number_at(change, "turnsDegrees"), 1)});
+  }
+  return fmt::format(
+      "proposed, not in use: {}\n{}chorus register --accept puts it into use, chorus register "
+      "--decline keeps the old one\n",
+      text_at(proposal, "verdict"), table(std::move(rows)));
+}
+
+/// Whether this session's result waits to be accepted.
+bool proposed_by(const nlohmann::json& session, const nlohmann::json& registration) {
+  const double waiting = client::number_at(part_at(registration, "proposal"), "sessionId");
+  return waiting == client::number_at(session, "sessionId");
+}
+
 /// Reports the session's own verdict; a registration that was in use before does not count.
 int report(const nlohmann::json& session, const nlohmann::json& registration, bool json) {
   const std::string verdict = text_at(session, "verdict");
   const auto adopted = session.find("adopted");
   const bool in_use = adopted != session.end() && adopted->is_boolean() && adopted->get<bool>();
   const bool done = text_at(session, "state") == "done";
-  const bool good = done && in_use && (verdict == "Good" || verdict == "Provisional");
+  const bool waits = done && proposed_by(session, registration);
+  const bool good = waits || (done && in_use && (verdict == "Good" || verdict == "Provisional"));
   if (json) {
     nlohmann::json whole = session;
     whole["registration"] = registration;
@@ -154,7 +184,8 @@ int report(const nlohmann::json& session, const nlohmann::json& registration, bo
       for (const std::string& reason : lines_at(session, "reasons"))
         std::cerr << "  " << reason << '\n';
     }
-    std::cout << registration_report(registration);
+    std::cout << (waits ? proposal_report(part_at(registration, "proposal"))
+                        : registration_report(registration));
   }
   return good ? kExitOk : kExitFailed;
 }
@@ -218,10 +249,23 @@ Result<int> undo(const ServiceClient& server, bool json) {
   return kExitOk;
 }
 
+/// Accepts or declines the proposed registration.
+Result<int> decide(const ServiceClient& server, const RegisterArguments& arguments) {
+  const char* path = arguments.accept ? "/registration/accept" : "/registration/decline";
+  const auto registration = server.post(path, nlohmann::json::object());
+  if (!registration || arguments.json) return print_json(registration);
+  std::cout << (arguments.accept ? "the proposed registration is in use; chorus register --undo "
+                                   "goes back to the one before\n"
+                                 : "declined; the registration from before stays in use\n")
+            << registration_report(*registration);
+  return kExitOk;
+}
+
 Result<int> run_register(const RegisterArguments& arguments) {
   const auto server = ServiceClient::of(arguments.url);
   if (!server) return pass(server);
   if (arguments.cancel) return cancel(*server, arguments);
+  if (arguments.accept || arguments.decline) return decide(*server, arguments);
   if (arguments.undo) return undo(*server, arguments.json);
   if (arguments.history) return history(*server, arguments.json);
   if (arguments.fresh) {
@@ -244,22 +288,24 @@ Run add_register(CLI::App& options) {
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
       ->check(number_range(rest::kMinSession, rest::kMaxSession))
       ->capture_default_str();
-  auto* fresh = options.add_flag("--fresh", arguments->fresh,
-                                 "Forget the registration there is before starting");
-  auto* cancelled =
-      options
-          .add_flag("--cancel", arguments->cancel,
-                    "End the session that runs; the registration is then what it was before")
-          ->excludes(fresh);
-  auto* undone = options
-                     .add_flag("--undo", arguments->undo,
-                               "Go back to the registration before this one; twice changes nothing")
-                     ->excludes(fresh)
-                     ->excludes(cancelled);
-  options.add_flag("--history", arguments->history, "List the last sessions, and start none")
-      ->excludes(fresh)
-      ->excludes(cancelled)
-      ->excludes(undone);
+  auto* propose = options.add_flag(
+      "--propose", arguments->propose,
+      "Leave the registration in use as it is until the new one is accepted (--accept, --decline)");
+  std::vector<CLI::Option*> apart{
+      options.add_flag("--fresh", arguments->fresh,
+                       "Forget the registration there is before starting"),
+      options.add_flag("--accept", arguments->accept, "Put the proposed registration into use"),
+      options.add_flag("--decline", arguments->decline,
+                       "Forget the proposed registration; the one in use stays"),
+      options.add_flag("--cancel", arguments->cancel,
+                       "End the session that runs; the registration is then what it was before"),
+      options.add_flag("--undo", arguments->undo,
+                       "Go back to the registration before this one; twice changes nothing"),
+      options.add_flag("--history", arguments->history, "List the last sessions, and start none")};
+  for (std::size_t i = 0; i < apart.size(); ++i) {
+    apart[i]->excludes(propose);
+    for (std::size_t j = 0; j < i; ++j) apart[i]->excludes(apart[j]);
+  }
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_register(*arguments); };
 }

@@ -67,12 +67,13 @@ std::string clocks_shown(const nlohmann::json& registration) {
     clocks.emplace_back(name, offset);
     sigmas[name] = client::number_at(sensor, "clockUncertaintyMilliseconds");
   }
-  // The common clock is that of the sensor whose uncertainty is zero.
+  // The sensor that the others are compared with is the one whose uncertainty is zero.
   const auto common =
       std::ranges::find_if(clocks, [&](const auto& each) { return sigmas[each.first] == 0.0; });
   if (common == clocks.end()) return {};
   std::string text;
-  for (const auto& [name, offset] : clocks) {
+  for (const auto& [name, added] : clocks) {
+    const double offset = added - common->second;
     const double open = kSigmas95 * sigmas[name];
     if (name == common->first || std::abs(offset) <= open) continue;
     text +=

@@ -55,7 +55,7 @@ function ofTheAlarms({ alarms = [] }) {
   return { tone: 'bad', sentence: `${what}.`, next };
 }
 
-function ofTheRegistration({ session, sensors = {}, awaits = [], verdict }) {
+function ofTheRegistration({ session, sensors = {}, awaits = [], verdict, proposal }) {
   const placed = Object.keys(sensors).length;
   if (session?.state === 'solving') return { tone: 'warn', sentence: 'The walk is over: the places are being solved.', next: '' };
   if (session?.state === 'collecting') {
@@ -65,6 +65,7 @@ function ofTheRegistration({ session, sensors = {}, awaits = [], verdict }) {
   if (placed === 0) {
     return { tone: 'warn', sentence: 'It is not known yet where the sensors stand.', next: awaits.at(-1) ?? 'Walk through the room.' };
   }
+  if (proposal) return { tone: 'warn', sentence: 'New places wait for your decision.', next: 'Accept them, or keep the old ones: under Registration.' };
   if (verdict === 'Good') return null;
   return { tone: 'warn', sentence: '', next: '' };
 }

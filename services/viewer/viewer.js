@@ -7,6 +7,7 @@ import { Resource, clock, follow, link } from './poll.js';
 import { EllipsoidView, FusedView, RawView, frustum } from './skeleton_view.js';
 import { jointLines } from './certainty.js';
 import { showCoverage } from './coverage.js';
+import { offerDecision, showProposal } from './proposal.js';
 import { rateOf, showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
 import { Readout } from './readout.js';
 import { freshness, stateOf } from './state.js';
@@ -121,8 +122,11 @@ follow(resource('registration'), 1000, (registration) => {
   known.registration = registration;
   placeSensors(registration);
   showRegistration(registration);
+  showProposal(registration.proposal);
   followSession(registration).catch(failed);
 }, failed);
+
+offerDecision((path) => new URL(path, base).href);
 
 /// The map of the walk, while a session runs.
 let session = null;
@@ -160,6 +164,7 @@ function forget() {
   const unknown = Object.keys(known.sensors ?? {}).map((id) => [id, { state: 'unknown' }]);
   showSensors(Object.fromEntries(unknown), (id) => sensorView(id).color);
   showRegistration({});
+  showProposal(null);
 }
 
 // ---- drawing -------------------------------------------------------------------------------------------------

@@ -80,6 +80,13 @@ export async function startFakeFusion(files, world = usualWorld()) {
   };
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
+    if (request.method === 'POST') {
+      const allowed = !world.token || request.headers.authorization === `Bearer ${world.token}`;
+      world.posted = [...(world.posted ?? []), `${pathname} ${allowed ? 200 : 401}`];
+      if (allowed) delete world.registration.proposal;
+      response.writeHead(allowed ? 200 : 401, { 'Content-Type': 'application/json' });
+      return response.end(JSON.stringify(allowed ? world.registration : { detail: 'a token is needed' }));
+    }
     const clock = `${serverNow()}000000`;
     if (answers[pathname]) {
       const tag = pathname === '/frame' ? `"${sequence}"` : `"${Date.now()}"`;

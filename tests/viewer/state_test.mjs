@@ -20,6 +20,7 @@ test('good is only what is live, registered and seen', () => {
   assert.equal(said({ frame: { bodies: [{}, { carriedFor: 0.4 }] } }), 'good: Live: 2 people (1 out of sight), 2 sensors.');
   assert.equal(said({ frame: { bodies: [] } }), 'calm: Nobody is in sight.');
   assert.equal(said({ registration: { ...GOOD, verdict: 'Provisional', reasons: ['short'] } }), 'warn: Live: one person. The places are provisional.');
+  assert.equal(said({ registration: { ...GOOD, proposal: { changes: [] } } }), 'warn: New places wait for your decision.');
   assert.equal(said({ registration: { ...GOOD, unplaced: { s5: { reasons: ['coat stand'] } } } }), 'warn: Live: one person. s5 has no place.');
 });
 

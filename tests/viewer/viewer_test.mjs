@@ -112,6 +112,34 @@ test('reasons, what is awaited, and what is not stored are shown without a regis
   server.stop();
 });
 
+test('a proposed registration is shown beside the old one, and accepted or declined', async () => {
+  const world = usualWorld();
+  world.sensors = { s1: live(), s2: live() };
+  const proposal = { sessionId: 7, verdict: 'Good', changes: [
+    { sensorId: 's1', presentRadius: 0, expectedRadius: 0, moves: 0, turnsDegrees: 0 },
+    { sensorId: 's2', expectedRadius: 0.0231, moves: 0.117, turnsDegrees: 1.26 }] };
+  world.registration.proposal = proposal;
+  const server = await startFakeFusion(FILES, world);
+  const { page } = await openViewer(browser, server.url);
+  await headline(page, /^New places wait for your decision\.$/);
+  assert.deepEqual(await page.locator('#changes tr:nth-child(2) td').allTextContents(), ['s2', '–', '23 mm', '117 mm', '1.3°']);
+  await picture(page, 'proposal');
+  await page.click('#accept');
+  await page.waitForSelector('#proposal', { state: 'hidden' });
+  world.token = 'secret';
+  world.registration.proposal = proposal;
+  await page.waitForSelector('#decline', { state: 'visible' });
+  page.once('dialog', (dialog) => dialog.dismiss());
+  await page.click('#decline');
+  await page.waitForFunction(() => document.getElementById('decision').textContent === 'a token is needed');
+  page.once('dialog', (dialog) => dialog.accept('secret'));
+  await page.click('#decline');
+  await page.waitForSelector('#proposal', { state: 'hidden' });
+  assert.deepEqual(world.posted, ['/registration/accept 200', '/registration/decline 401', '/registration/decline 401', '/registration/decline 200']);
+  await page.close();
+  server.stop();
+});
+
 /// Where the head of the fake person is now [px]; the person sways, so it is asked for again and again.
 const pointAtHead = async (page) => {
   for (let i = 0; i < 60; ++i) {

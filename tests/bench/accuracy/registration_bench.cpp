@@ -11,6 +11,7 @@
 #include "common/synthetic/draw.h"
 #include "common/synthetic/sensor_model.h"
 #include "tests/bench/accuracy/bump_cases.h"
+#include "tests/bench/accuracy/bump_curve.h"
 #include "tests/bench/accuracy/exchange.h"
 #include "tests/bench/accuracy/registration_cases.h"
 #include "tests/bench/accuracy/registration_scale.h"
@@ -326,7 +327,7 @@ void measure_ablations(Report& report, const std::string& profile) {
 Result<void> run_registration(Report& report) {
   constexpr std::string_view kBump = "bump";
   if (report.list()) {
-    std::cout << kBump << "\nwalks\nbystanders\n" << kScale << '\n';
+    std::cout << kBump << "\nbump-curve\nwalks\nbystanders\n" << kScale << '\n';
     for (const char* profile : {"A", "B", "C"}) {
       for (const RegistrationCase& each : registration_cases(profile))
         std::cout << full_name(each) << '\n';
@@ -349,6 +350,10 @@ Result<void> run_registration(Report& report) {
     return {};
   }
   report.profile(described({"gauss", "A", "B", "C", "D"}));
+  if (report.only() == "bump-curve") {
+    measure_bump_curve(report);
+    return {};
+  }
   if (report.only().empty() || report.only() == kBump) measure_bumps(report);
   if (report.only() == kBump) return {};
   if (!report.only().empty()) {

@@ -50,6 +50,38 @@ class Sessions(Rig):
         self.assertEqual(get_json(fusion.url + again.lstrip("/"))["state"], "cancelled")
         self.assertEqual(get_json(fusion.url + path.lstrip("/"))["state"], "done", "the last ones stay readable")
 
+    def test_a_result_waits_until_it_is_accepted(self):
+        fusion = self.start()
+        before = self.registered(fusion)
+        post = lambda what: send("POST", fusion.url + "registration" + what)[0]  # noqa: E731
+        self.assertEqual((post("/accept"), post("/decline")), (404, 404))
+
+        def proposed():
+            status, headers, _ = send("POST", fusion.url + "registration", b'{"seconds": 8, "adopt": "when-accepted"}')
+            self.assertEqual(status, 202)
+            path = fusion.url + headers["Location"].lstrip("/")
+            done = wait_for("it is over", lambda: (s := get_json(path))["state"] == "done" and s)
+            self.assertEqual((done["adopt"], done["adopted"]), ("when-accepted", False), done)
+            shown = self.registration(fusion)
+            self.assertEqual((shown["version"], shown["sensors"]), (before["version"], before["sensors"]), "nothing has changed")
+            proposal = shown["proposal"]
+            self.assertEqual(proposal["sessionId"], done["sessionId"])
+            self.assertEqual([c["sensorId"] for c in proposal["changes"]], ["s1", "s2", "s3"])
+            for change in proposal["changes"]:
+                self.assertLess(change["moves"], 0.3)
+                self.assertLess(change["expectedRadius"], 0.3)
+                self.assertIn("presentRadius", change)
+            return path
+
+        path = proposed()
+        self.assertEqual(post("/decline"), 200)
+        self.assertNotIn("proposal", self.registration(fusion))
+        wait_for("it says why", lambda: "declined" in " ".join(get_json(path)["reasons"]))
+        path = proposed()
+        self.assertEqual(post("/accept"), 200)
+        self.assertGreater(self.registration(fusion)["version"], before["version"], "from the answer on")
+        wait_for("in use", lambda: get_json(path)["adopted"] and self.registration(fusion)["earlier"]["version"] == before["version"])
+
     def test_the_command_line_registers_afresh_and_joins_what_runs_by_itself(self):
         if not CHORUS.exists():
             self.skipTest("runs in builds with the program chorus")

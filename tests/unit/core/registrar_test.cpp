@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
-#include "tests/unit/core/ring_of_three.h"
+#include "tests/unit/core/sessions.h"
 
 namespace chorus::core {
 namespace {
@@ -16,16 +16,6 @@ using ::testing::HasSubstr;
 using testing::kStart;
 using testing::sensor_id;
 
-RegistrarConfig registrar_config() { return of_three<RegistrarConfig>(); }
-
-Registration refused(const std::string& reason = "sensors s1 and s2 disagree") {
-  Registration r;
-  r.verdict = Verdict::Refused;
-  r.reasons = {reason};
-  for (int i = 0; i < kSensors; ++i) r.verdicts[sensor_id(name(i))] = {Verdict::Refused, {reason}};
-  return r;
-}
-
 /// A registration as with a sensor that sees only a coat stand: all sensors are placed well except
 /// the last, which cannot be placed.
 Registration all_but_the_last() {
@@ -35,34 +25,6 @@ Registration all_but_the_last() {
   r.reasons = {reason};
   return r;
 }
-
-class Sessions : public ::testing::Test {
- protected:
-  void begin_with(Registration registration, std::uint64_t first = 7) {
-    registrar_.emplace(registrar_config(), std::move(registration), first);
-  }
-  Registrar& registrar() { return *registrar_; }
-
-  /// All sensors see one person for `length`; returns the first job that becomes due.
-  std::optional<SolveJob> walk(Duration length, int sensors = kSensors) {
-    for (const Timestamp end = now_ + length; now_ < end; now_ += milliseconds(33)) {
-      for (int i = 0; i < sensors; ++i) {
-        SensorFrame frame = testing::sensor_frame(name(i), now_, {BodyFrame{}});
-        frame.received = now_;
-        registrar().take(frame);
-      }
-      if (auto job = registrar().due_job(now_)) return job;
-    }
-    return std::nullopt;
-  }
-  Outcome answer(const SolveJob& job, Registration registration) {
-    return registrar().solved({job.session, job.kind, std::move(registration)}, now_);
-  }
-  SessionStatus newest() { return registrar().sessions().front(); }
-
-  std::optional<Registrar> registrar_;
-  Timestamp now_ = kStart;
-};
 
 TEST_F(Sessions, HaveANumberFromTheStartAndStayReadable) {
   begin_with(ring());

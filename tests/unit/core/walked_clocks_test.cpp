@@ -86,6 +86,40 @@ TEST(WalkedClocks, WhatAWalkAddedToAnsweredTimesHoldsUntilTheAnswersKnowBetter) 
   EXPECT_EQ(clocks.take(frame, registration), -kOff);
 }
 
+TEST(WalkedClocks, AnEstimateThatHasImprovedHasMovedAwayFromTheWalk) {
+  Registration registration = walked();  // sigma 4 ms
+  registration.clocks.at(sensor_id("s2")).stated = milliseconds(20);
+  WalkedClocks clocks;
+  SensorFrame frame = frame_at(Duration{0}, Duration{0});
+  const auto take = [&](double sigma) {
+    frame.captured += kFrame;
+    frame.clock_sigma = sigma;
+    return clocks.take(frame, registration);
+  };
+  EXPECT_EQ(take(0.020), kOff);
+  EXPECT_EQ(take(0.016), Duration{0});
+  // It is still worse than the walk's 4 ms, but has moved by sqrt(20^2 - 8^2) ms since the walk.
+  EXPECT_EQ(take(0.008), -kOff);
+  for (const double worse : {0.009, 0.016, 0.020})
+    EXPECT_EQ(take(worse), Duration{0}) << "to and fro would move frames to and fro";
+  ++registration.version;
+  EXPECT_EQ(take(0.020), kOff) << "another walk";
+}
+
+TEST(WalkedClocks, AfterASilenceOneLateFrameSetsNoClock) {
+  WalkedClocks clocks;
+  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+  const Duration later = std::chrono::seconds(55);
+  EXPECT_EQ(clocks.take(frame_at(later, kOff, milliseconds(900)), walked()), Duration{0});
+  EXPECT_EQ(run(clocks, walked(), later + kFrame, std::chrono::seconds(10), kAsWalked),
+            Duration{0});
+  EXPECT_EQ(added(clocks), kOff);
+  // A clock that was set during a silence is followed after it.
+  (void)run(clocks, walked(), std::chrono::seconds(120), std::chrono::seconds(4),
+            [](Duration) { return milliseconds(500); });
+  EXPECT_EQ(added(clocks), milliseconds(500));
+}
+
 TEST(WalkedClocks, ADriftingClockIsFollowed) {
   WalkedClocks clocks;
   const auto drifting = [](Duration t) { return kOff + t / 10'000; };  // 100 ppm
@@ -104,6 +138,14 @@ TEST(WalkedClocks, ASetClockIsFollowedWithinSeconds) {
   (void)run(back, walked(), std::chrono::seconds(10), std::chrono::seconds(4),
             [](Duration) { return milliseconds(900); });
   EXPECT_EQ(added(back), milliseconds(900));
+}
+
+TEST(WalkedClocks, ALinkThatHasBecomeSlowerIsNoClock) {
+  WalkedClocks clocks;
+  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+  for (Duration t = std::chrono::seconds(10); t < std::chrono::seconds(40); t += kFrame)
+    (void)clocks.take(frame_at(t, kOff, milliseconds(260)), walked());
+  EXPECT_EQ(added(clocks), kOff);
 }
 
 TEST(WalkedClocks, OddFramesAndABusyLinkChangeNothing) {

@@ -35,12 +35,15 @@ class ScriptedServer {
                    [this](const http::Request& request, const http::PathParams&) {
                      return started(std::string(request.body));
                    });
-    router->action(http::Method::Post, "/registration/undo", [this](const auto&, const auto&) {
-      note("POST /registration/undo");
-      const auto now = document("/registration");
-      if (!now) return Result<http::ActionResult>(tl::unexpected(now.error()));
-      return Result<http::ActionResult>(http::ActionResult{200, *now, {}});
-    });
+    for (const std::string what : {"undo", "accept", "decline"}) {
+      const std::string path = "/registration/" + what;
+      router->action(http::Method::Post, path, [this, path](const auto&, const auto&) {
+        note("POST " + path);
+        const auto now = document("/registration");
+        if (!now) return Result<http::ActionResult>(tl::unexpected(now.error()));
+        return Result<http::ActionResult>(http::ActionResult{200, *now, {}});
+      });
+    }
     for (const char* path : {"/registration", "/sessions/7"})
       router->action(http::Method::Delete, path, [this, path](const auto&, const auto&) {
         note("DELETE " + std::string(path));

@@ -228,6 +228,42 @@ TEST(Register, UndoesAndSaysSoInWordsOrInJson) {
   EXPECT_THAT(server.written(), ElementsAre("POST /registration/undo", "POST /registration/undo"));
 }
 
+TEST(Register, ProposesWithTheNumbersOfOldAndNew) {
+  auto done = Json::parse(session("done", "Good", false));
+  done["sessionId"] = 7;
+  auto texts = walk(done.dump());
+  auto waiting = Json::parse(kIdle);
+  waiting["proposal"] = {{"sessionId", 7},
+                         {"verdict", "Good"},
+                         {"changes",
+                          {{{"sensorId", "s2"},
+                            {"presentRadius", 0.041},
+                            {"expectedRadius", 0.0232},
+                            {"moves", 0.1174},
+                            {"turnsDegrees", 1.26}}}}};
+  texts["/registration"] = {kRuns, waiting.dump()};
+  const ScriptedServer server(texts);
+  const Outcome told = register_at(server, {"--propose"});
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_EQ(Json::parse(server.written()[0].substr(5)).at("adopt"), "when-accepted");
+  EXPECT_THAT(told.out, HasSubstr("proposed, not in use: Good"));
+  for (const char* number : {"41", "23", "117", "1.3"}) EXPECT_THAT(told.out, HasSubstr(number));
+  EXPECT_THAT(told.error, Not(HasSubstr("not good enough")));
+  done["sessionId"] = 8;  // what waits is another session's
+  texts["/sessions/7"] = {done.dump()};
+  EXPECT_EQ(register_at(ScriptedServer(texts), {"--propose"}).code, kExitFailed);
+}
+
+TEST(Register, AcceptsOrKeepsTheOld) {
+  const ScriptedServer server(ScriptedServer::Texts{{"/registration", {kIdle}}});
+  EXPECT_THAT(register_at(server, {"--accept"}).out,
+              HasSubstr("the proposed registration is in use"));
+  EXPECT_THAT(register_at(server, {"--decline"}).out, HasSubstr("stays in use"));
+  EXPECT_EQ(register_at(server, {"--accept", "--decline"}).code, kExitUsage);
+  EXPECT_THAT(server.written(),
+              ElementsAre("POST /registration/accept", "POST /registration/decline"));
+}
+
 TEST(Register, ListsTheLastSessions) {
   const ScriptedServer server(ScriptedServer::Texts{
       {"/registration", {R"({"verdict": "Good", "sessions": ["/sessions/7", "/sessions/6"]})"}},

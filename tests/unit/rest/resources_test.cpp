@@ -149,9 +149,10 @@ TEST(SensorResources, TellsOfTheClockByWhomAndWhatBecameOfUntimelyFrames) {
   const auto text = body(ask(router, "/sensors/s1"), "application/json");
   for (const char* part :
        {"\"clockOffsetMilliseconds\": 200.15", "\"clockFromWalkMilliseconds\": 200",
-        "\"clockUncertaintyMilliseconds\": 8", "\"hostSynchronised\": false", "\"framesLate\": 1",
-        "\"framesDoubled\": 2", "\"framesEarly\": 3", "\"framesBackwards\": 4",
-        "\"framesStale\": 5", "\"clockRestarts\": 6"})
+        "\"clockUncertaintyWithoutWalkMilliseconds\": 0.09", "\"clockUncertaintyMilliseconds\": 8",
+        "\"hostSynchronised\": false", "\"framesLate\": 1", "\"framesDoubled\": 2",
+        "\"framesEarly\": 3", "\"framesBackwards\": 4", "\"framesStale\": 5",
+        "\"clockRestarts\": 6"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   sensors.publish({status("s1")});
   const auto calm = body(ask(router, "/sensors/s1"), "application/json");
@@ -180,14 +181,19 @@ TEST(SelfDescription, BrowsersGetThePageOthersTurtle) {
             std::string::npos);
 }
 
-TEST(SessionRequest, IsSecondsOrNothing) {
-  const Duration fallback = std::chrono::seconds(30);
-  EXPECT_EQ(*parse_session_request("", fallback), fallback);
-  EXPECT_EQ(*parse_session_request(" {} ", fallback), fallback);
-  EXPECT_EQ(*parse_session_request(R"({"seconds": 12.5})", fallback), from_seconds(12.5));
-  for (const char* wrong : {"nonsense", "[]", "7", R"({"seconds": "30"})", R"({"seconds": 1})",
-                            R"({"seconds": 1e9})", R"({"second": 30})", R"({"seconds": null})",
-                            R"({"seconds": 30, "seconds": 40})", R"({"seconds": [[[[[30]]]]]})"}) {
+TEST(SessionRequest, IsSecondsAndWhenToAdoptOrNothing) {
+  const SessionRequest fallback{std::chrono::seconds(30), Adoption::WhenAccepted};
+  for (const char* nothing : {"", " {} "}) {
+    EXPECT_EQ(parse_session_request(nothing, fallback)->target, fallback.target);
+    EXPECT_EQ(parse_session_request(nothing, fallback)->adoption, Adoption::WhenAccepted);
+  }
+  const auto both = parse_session_request(R"({"seconds": 12.5, "adopt": "at-once"})", fallback);
+  EXPECT_EQ(both->target, from_seconds(12.5));
+  EXPECT_EQ(both->adoption, Adoption::AtOnce);
+  for (const char* wrong :
+       {"nonsense", "[]", "7", R"({"seconds": "30"})", R"({"seconds": 1})", R"({"seconds": 1e9})",
+        R"({"second": 30})", R"({"seconds": null})", R"({"seconds": 30, "seconds": 40})",
+        R"({"adopt": 1})", R"({"seconds": [[[[[30]]]]]})"}) {
     const auto read = parse_session_request(wrong, fallback);
     ASSERT_FALSE(read) << wrong;
     EXPECT_EQ(read.error().code, ErrorCode::InvalidArgument);
@@ -203,9 +209,14 @@ class Registering : public ::testing::Test {
   }
   RegistrationControl control() {
     RegistrationControl c;
-    c.start = [this](Duration target, std::uint64_t session, std::uint64_t ticket) {
-      asked_ += "start " + std::to_string(session) + " for " + log::number_text(seconds(target)) +
-                " #" + std::to_string(ticket) + "; ";
+    c.start = [this](const SessionRequest& request, std::uint64_t session, std::uint64_t ticket) {
+      asked_ += "start " + std::to_string(session) + " for " +
+                log::number_text(seconds(request.target)) +
+                (request.adoption == Adoption::AtOnce ? "" : " to propose") + " #" +
+                std::to_string(ticket) + "; ";
+    };
+    c.decide = [this](bool accept, std::uint64_t ticket) {
+      asked_ += (accept ? "accept #" : "decline #") + std::to_string(ticket) + "; ";
     };
     c.cancel = [this](std::uint64_t session, std::uint64_t ticket) {
       asked_ += "cancel " + std::to_string(session) + " #" + std::to_string(ticket) + "; ";
@@ -283,6 +294,39 @@ TEST_F(Registering, ASessionThatRunsByItselfIsTakenOverAndASecondClientIsRefused
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, ErrorCode::Conflict);
   EXPECT_NE(second.error().message.find("/registration/sessions/40"), std::string::npos);
+}
+
+TEST_F(Registering, AProposalIsShownWithItsNumbersAndAcceptedOrDeclined) {
+  EXPECT_FALSE(parse_session_request(R"({"adopt": "later"})", {}));
+  registration_.sensors[sensor_id("s1")] = Extrinsics{};
+  registration_.master = sensor_id("s1");
+  registration_.version = 4;
+  publish();
+  EXPECT_EQ(act(http::Method::Post, "/registration/accept").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(act(http::Method::Post, "/registration/decline").error().code, ErrorCode::NotFound);
+  ASSERT_TRUE(act(http::Method::Post, "/registration", R"({"adopt": "when-accepted"})"));
+  EXPECT_NE(shown("/registration/sessions/41").find("\"adopt\": \"when-accepted\""),
+            std::string::npos);
+  EXPECT_EQ(act(http::Method::Post, "/registration/accept").error().code, ErrorCode::Conflict);
+  progress_.commands = 1;
+  add_session(41, SessionState::Done);
+  Registration next = registration_;
+  next.sensors[sensor_id("s2")] = Extrinsics{};
+  progress_.proposal = Proposal{41, next, {{sensor_id("s1"), 0.04, 0.02, 0.12, 0.05}}};
+  publish();
+  for (const char* text : {"\"presentRadius\": 0.04", "\"expectedRadius\": 0.02", "\"moves\": 0.12",
+                           "\"turnsDegrees\": 2.8648"})
+    EXPECT_NE(shown().find(text), std::string::npos) << text << shown();
+  EXPECT_EQ(shown().find("sensors/s2"), std::string::npos) << "not in use yet";
+  EXPECT_EQ(act(http::Method::Post, "/registration/decline")->status, 200);
+  EXPECT_EQ(shown().find("proposal"), std::string::npos);
+  progress_.commands = 2;
+  publish();
+  EXPECT_EQ(act(http::Method::Post, "/registration/accept")->status, 200);
+  EXPECT_NE(shown().find("sensors/s2"), std::string::npos) << shown();
+  EXPECT_EQ(shown().find("\"proposal\""), std::string::npos);
+  EXPECT_NE(shown().find("\"earlier\""), std::string::npos);
+  EXPECT_EQ(asked_, "start 41 for 30 to propose #1; decline #2; accept #3; ");
 }
 
 TEST_F(Registering, DeleteForgetsAndShowsItFromTheAnswerOn) {
