@@ -3,7 +3,7 @@
 // white noise (sensor_model.h).
 //
 // The parameters are the nominal ones, or drawn from their intervals; each source of error can also
-// be scaled or switched off.
+// be scaled or switched off (but see SensorChoice::gauss).
 #pragma once
 
 #include <cstdint>
