@@ -74,8 +74,8 @@ class Document {
                                                Coding coding = Coding::Identity) const;
 
   /// The default representation in JSON or Turtle as one server-sent event (id = version), with
-  /// Coding::Gzip as a gzip_piece; null when the document has no variant of that type.  Each event
-  /// is rendered at most once.
+  /// Coding::Gzip as a gzip_piece; null when the document has no variant of that type or cannot
+  /// render it.  Each event is made at most once.
   [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type,
                                                          Coding coding = Coding::Identity) const;
 

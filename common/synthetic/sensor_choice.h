@@ -37,7 +37,7 @@ struct SensorChoice {
   std::vector<Stress> stress = {};
   /// Seed of errors; the same for all sensors of a room, because they share some errors.
   std::uint64_t seed = 1;
-  /// Seed of the biases of the SDK and of people, which are the same in every run.
+  /// Seed of the biases of the SDK and of people; meant to be the same in every run.
   std::uint64_t bias_seed = 1;
   bool own_clock = true;  ///< True: stamps frames by the host's erring clock; false: by true time.
   /// The parameters of "gauss".  It has no intervals to draw from, no sources to scale, and an
