@@ -36,8 +36,8 @@ inline constexpr std::size_t kJointCount = 25;
   return static_cast<std::size_t>(id);
 }
 
-/// What the sensor reports about a joint.  Inferred: the sensor guesses the joint behind an
-/// occlusion.
+/// What the sensor reports about a joint.  Inferred: the sensor guesses where the joint is, for
+/// example behind an obstacle.
 enum class JointState : std::uint8_t { NotTracked, Inferred, Tracked };
 
 /// What a sensor measures of a joint.  A camera without depth knows only its direction.
