@@ -72,8 +72,8 @@ struct Skeleton {
   [[nodiscard]] Joint& operator[](JointId id) { return joints[index_of(id)]; }
 };
 
-/// The body moved into world space.  There is no other way from sensor space to world space.  Rays
-/// are turned, not moved: a ray still begins at its sensor, which the result does not name.
+/// The body moved into world space.  Rays are turned, not moved: a ray still begins at its sensor,
+/// which the result does not name.
 [[nodiscard]] Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
                                             const Skeleton<SensorSpace>& body);
 

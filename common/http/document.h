@@ -1,7 +1,7 @@
 // One version of one resource: its representations, their ETags, and the bytes that are sent.
 //
 // Immutable once built and shared between threads.  A representation is rendered at most once, when
-// the first client asks for it; after that every answer is one write of the same bytes.
+// the first client asks for it; after that, answers send the same bytes.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ namespace chorus::http {
 
 enum class Method { Get, Head, Options, Post, Put, Patch, Delete };
 
-/// A request that passed every check.  Views are valid during the call.
+/// A request that passed the checks.  Views are valid during the call.
 struct Request {
   Method method = Method::Get;
   std::string_view path;  ///< Percent-decoded, without query.

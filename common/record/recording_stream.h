@@ -1,5 +1,5 @@
-// Reads a recording message by message; needs memory for only one or two chunks, however long the
-// recording is.
+// Reads a recording message by message; usually needs memory for only one or two chunks, however
+// long the recording is.
 //
 // Messages come in log-time order: a chunk is unpacked when its first message is due, and freed
 // after its last one.  A file cut off by a crash is read up to its last complete chunk; a damaged

@@ -13,7 +13,7 @@
 namespace chorus::synthetic {
 namespace {
 
-// Plausible estimates without a measured source; nothing depends on their exact values.
+// Plausible estimates without a measured source.
 constexpr double kAcceleration = 1.2;   // Mean acceleration when starting and stopping [m/s^2].
 constexpr double kTurnRate = deg(110);  // Mean rate when turning on the spot [rad/s].
 constexpr double kTurnSettling = 0.3;   // Extra time of every turn [s].

@@ -15,7 +15,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr int kJpegQuality = 85;
-constexpr int kPngEffort = 1;  // The lowest of nine, because each picture is viewed only once.
+constexpr int kPngEffort = 1;  // The lowest of nine, because a picture is usually viewed only once.
 
 /// Lets give_up(), which libjpeg calls on an error, return to compress_jpeg().
 struct JpegErrors {

@@ -59,8 +59,8 @@ struct SensorChoice {
                                                       const SensorChoice& choice, Timestamp start,
                                                       Timestamp end);
 
-/// First 12 hex digits of the SHA-256 of what defines the profile; printed with every result.
-/// Empty for "gauss", which is not frozen, and for an unknown profile.
+/// First 12 hex digits of the SHA-256 of what defines the profile; printed with results. Empty for
+/// "gauss", which is not frozen, and for an unknown profile.
 [[nodiscard]] std::string frozen_hash(std::string_view profile);
 
 }  // namespace chorus::synthetic

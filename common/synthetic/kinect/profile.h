@@ -164,7 +164,7 @@ struct Parameter {
 [[nodiscard]] std::vector<Parameter> parameters_of(Profile profile);
 
 /// First 12 hex digits of the SHA-256 of profiles.json and the code of this folder, without
-/// comments and white space (../code_hash.cmake): printed with every result.
+/// comments and white space (../code_hash.cmake); printed with results.
 [[nodiscard]] std::string frozen_hash();
 
 }  // namespace chorus::synthetic::kinect
