@@ -42,7 +42,7 @@ struct Error {
 /// The HTTP status that answers a request with this error (400, 404, 413, ...).
 [[nodiscard]] int http_status(ErrorCode code) noexcept;
 
-/// "context: message", for a terminal or a log line.
+/// "context: message", or only the message if there is no context; for a terminal or a log line.
 [[nodiscard]] std::string to_string(const Error& error);
 
 }  // namespace chorus

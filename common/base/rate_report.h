@@ -1,4 +1,4 @@
-// Counts repeated events and lets one log line per second through for each event.
+// Counts repeated events and logs at most one line per second about them.
 //
 // Thread-safe.  `RateReport dropped("frame dropped"); dropped.hit("queue full");` logs the first
 // hit at once.  A later hit logs the count since the last line, but only if that line is at least a

@@ -10,9 +10,9 @@
 namespace chorus {
 
 /// Yaw of the body away from facing the sensor squarely, in (-pi, pi]; 0 means chest towards the
-/// sensor.  Computed from the line between the shoulders (or the hips, if a shoulder is not seen)
-/// and the horizontal line of sight to the neck (or to SpineBase); none if these joints are not
-/// seen or the line of sight is vertical.
+/// sensor.  Computed from the line between the shoulders (or the hips, if a shoulder is not seen or
+/// that line is vertical) and the horizontal line of sight to the neck (or to SpineBase); none if
+/// these joints are not seen or one of the lines is vertical.
 [[nodiscard]] std::optional<double> facing_angle(const Skeleton<SensorSpace>& body);
 
 /// Horizontal angle of the neck off the optical axis; none when the neck is not seen.

@@ -15,7 +15,7 @@ namespace chorus {
 /// the other a ray.
 [[nodiscard]] Joint interpolate(const Joint& a, const Joint& b, double s);
 
-/// Interpolates each joint.  `s` is clamped to [0, 1]; NaN counts as 0.
+/// Interpolates each joint.  `s` is clamped to [0, 1]; it counts as 0 if it is not finite.
 template <class Space>
 [[nodiscard]] Skeleton<Space> interpolate(const Skeleton<Space>& a, const Skeleton<Space>& b,
                                           double s) {

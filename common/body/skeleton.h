@@ -36,8 +36,8 @@ inline constexpr std::size_t kJointCount = 25;
   return static_cast<std::size_t>(id);
 }
 
-/// What the sensor reports about a joint.  Inferred: the sensor guesses the joint behind an
-/// occlusion.
+/// What the sensor reports about a joint.  Inferred: the sensor guesses where the joint is, for
+/// example behind an obstacle.
 enum class JointState : std::uint8_t { NotTracked, Inferred, Tracked };
 
 /// What a sensor measures of a joint.  A camera without depth knows only its direction.
@@ -72,8 +72,8 @@ struct Skeleton {
   [[nodiscard]] Joint& operator[](JointId id) { return joints[index_of(id)]; }
 };
 
-/// The body moved into world space.  There is no other way from sensor space to world space.  Rays
-/// are turned, not moved: a ray still begins at its sensor, which the result does not name.
+/// The body moved into world space.  Rays are turned, not moved: a ray still begins at its sensor,
+/// which the result does not name.
 [[nodiscard]] Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
                                             const Skeleton<SensorSpace>& body);
 

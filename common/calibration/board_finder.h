@@ -20,7 +20,7 @@ class BoardFinder {
   ~BoardFinder();
 
   /// The corners found; empty when there is no board, or too little of it: fewer than eight
-  /// corners, or all corners on a line.  The picture is grey or BGR.
+  /// corners, or all corners nearly on a line.  The picture is grey or BGR.
   [[nodiscard]] std::vector<Corner> find(const cv::Mat& picture) const;
 
  private:

@@ -3,8 +3,8 @@
 // A person is a node "person-<id>" above a tree of joint nodes (our names), a skin with the inverse
 // bind matrices of skeleton_fit.h's rest pose (on the floor, all rotations identity), and a mesh of
 // octahedra along the bones to make it visible.  One animation serves all: LINEAR samplers, with
-// the root's translation and a unit quaternion per joint without sign jumps.  Metres and +y up, as
-// glTF requires; a person in the rest pose faces +z.
+// the root's translation and, for each joint that has children, a unit quaternion without sign
+// jumps.  Metres and +y up, as glTF requires; a person in the rest pose faces +z.
 #pragma once
 
 #include <span>

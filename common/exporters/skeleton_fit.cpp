@@ -14,7 +14,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr double kMinBone = 1e-4;           // [m]; a shorter bone has no direction
-constexpr int kProcrustesRounds = 3;        // After this many rounds the shape no longer changes.
+constexpr int kProcrustesRounds = 3;        // After this many rounds the shape hardly changes.
 constexpr std::size_t kShapeFrames = 2000;  // enough for a mean shape
 constexpr double kFootOut = 0.3;
 
@@ -64,7 +64,8 @@ Children children_of(const std::vector<FittedJoint>& joints) {
   return children;
 }
 
-/// The tree of all joints that were ever seen, with T-pose offsets of the median lengths.
+/// The tree of all joints that were ever seen together with the joint that they hang on, with
+/// T-pose offsets of the median lengths.
 std::vector<FittedJoint> tree_of(const PersonTrack& track) {
   std::vector<FittedJoint> joints{{JointId::SpineBase, 0, Eigen::Vector3d::Zero()}};
   // Where the children of each joint are attached: to the joint itself, or to its parent if the

@@ -22,11 +22,11 @@ struct Plane {
   }
 };
 
-/// Normalises (a, b, c, d); refuses a zero or non-finite normal.
+/// Normalises (a, b, c, d); refuses a zero or non-finite normal and a non-finite offset.
 [[nodiscard]] Result<Plane> make_plane(double a, double b, double c, double d);
 
 /// Least-squares plane (Otto 5.2.1's regression plane); needs at least three points that are not on
-/// one line.  The sign of the normal is chosen so that its y is positive.
+/// one line.  The sign of the normal is chosen so that its y is not negative.
 [[nodiscard]] Result<Plane> fit_plane(std::span<const Eigen::Vector3d> points);
 
 /// levelled_from_sensor: the rotation and the height that move the plane to y = 0.  Turns the

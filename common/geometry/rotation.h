@@ -1,7 +1,7 @@
 // Rotations: logarithm, exponential, distance, mean, yaw.  Radians; Hamilton quaternions.
 //
-// Every function accepts every input: a zero or non-finite quaternion counts as identity; q and -q
-// are equivalent.
+// These functions accept any quaternion: a zero or non-finite one counts as identity or is ignored.
+// q and -q are equivalent.
 #pragma once
 
 #include <span>

@@ -122,7 +122,7 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
 std::vector<std::string> host_names() { return net::names_of(net::host_name()); }
 
 bool from_own_page(const RequestHead& head) {
-  // If a proxy in front of us terminates TLS, the page's origin is https.
+  // The page's origin is https if we, or a proxy in front of us, speak TLS.
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (is_present(head.origin) && head.origin.starts_with(scheme) &&
         equal_ignoring_case(head.origin.substr(scheme.size()), head.host))

@@ -24,8 +24,8 @@ struct Peer {
 
 /// What a token allows; each role includes the roles before it.
 enum class Role {
-  Read,     ///< Everything except pictures and recordings.
-  Images,   ///< In addition, pictures and recordings (Router::shows_people).
+  Read,     ///< Reading everything except pictures and recordings.
+  Images,   ///< In addition, reading pictures and recordings (Router::shows_people).
   Control,  ///< In addition, writing methods.
 };
 
@@ -75,7 +75,8 @@ struct Guard {
 [[nodiscard]] std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer,
                                                  Role needed, const Guard& guard);
 
-/// True when the request carries a token that is not one of ours.
+/// True when the request carries credentials that are none of our tokens.  False if there are no
+/// tokens.
 [[nodiscard]] bool has_wrong_token(const RequestHead& head, const Guard& guard);
 
 [[nodiscard]] std::string_view name_of(Role role) noexcept;

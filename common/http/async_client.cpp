@@ -150,7 +150,8 @@ void AsyncClient::Impl::read() {
 
 void AsyncClient::Impl::on_head(net::error_code failed) {
   if (failed) return on_failed_read(failed);
-  if (parser->get().result_int() < unsigned{status::kOk}) return read();  // 100 Continue
+  if (parser->get().result_int() < unsigned{status::kOk})
+    return read();  // An interim answer, such as 100 Continue.
   // Beast 1.74 does not compare a response's Content-Length with its body limit.
   const auto length = parser->content_length();
   if (!head_only && length && *length > limits.max_body_bytes) return too_large();

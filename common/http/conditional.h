@@ -11,7 +11,7 @@ namespace chorus::http {
 /// True when the list contains `etag` (weak comparison) or is "*".  An empty list matches nothing.
 [[nodiscard]] bool none_match_lists(std::string_view if_none_match, std::string_view etag);
 
-/// Seconds of "wait=N" in a Prefer field; none when it is absent or not a number.
+/// Seconds of "wait=N" in a Prefer field, at most a day; none when it is absent or not a number.
 [[nodiscard]] std::optional<std::chrono::seconds> wait_preference(std::string_view prefer);
 
 }  // namespace chorus::http

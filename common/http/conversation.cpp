@@ -12,7 +12,7 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::seconds kLingerTime{2};
-constexpr std::size_t kLingerBytes = 1u << 20;  // How much of a refused request is still read.
+constexpr std::size_t kLingerBytes = 1u << 20;  // How much is still read after the last answer.
 
 // The client sends the body only after it has read this.
 constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -66,8 +66,8 @@ Orders Conversation::input_ended(bool cleanly, SteadyTime now) {
   return resume(now, [this, cleanly] {
     reading_ = false;
     end_of_input_ = true;
-    // Requests that came before the end of input are still answered, but none of them waits any
-    // longer.
+    // After a clean end, the answer under way is finished, and requests that are in the buffer
+    // already are answered.  A request that is incomplete, waits or streams is dropped.
     if (!cleanly || state_ != State::Writing) hang_up();
   });
 }
@@ -309,8 +309,8 @@ void Conversation::next_request() {
   advance();
 }
 
-/// Shuts down sending and reads until the client has closed: closing with unread input would reset
-/// the connection, and the client might not get the answer.
+/// Shuts down sending and goes on reading for a while, or until the client has closed: closing with
+/// unread input would reset the connection, and the client might not get the answer.
 void Conversation::linger() {
   if (end_of_input_) return hang_up();
   state_ = State::Lingering;

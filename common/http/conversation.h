@@ -42,8 +42,8 @@ class Conversation {
   void expect_tls() { expects_tls_ = true; }
 
   [[nodiscard]] Orders begin(SteadyTime now);
-  /// Call this instead of begin() when there are too many connections: answers one request, if its
-  /// path is vital.
+  /// Call this instead of begin() when there are too many connections: answers one request, with
+  /// 503 unless its path is vital.
   [[nodiscard]] Orders begin_in_reserve(SteadyTime now);
   [[nodiscard]] Orders received(std::size_t size, SteadyTime now);
   /// `cleanly`: the client has closed its sending side; otherwise the connection is broken.
@@ -57,7 +57,8 @@ class Conversation {
   /// Call this when the wait has just been registered: checks for a version published before that.
   [[nodiscard]] Orders look(SteadyTime now);
   [[nodiscard]] Orders expired(SteadyTime now);
-  /// The server is stopping: finishes what is under way and begins nothing new.
+  /// The server is stopping: finishes the body or answer under way, refuses a waiting long poll,
+  /// and otherwise hangs up.
   [[nodiscard]] Orders stop(SteadyTime now);
   [[nodiscard]] Orders close(SteadyTime now);
 

@@ -22,7 +22,7 @@ struct Reply {
 /// A dialogue can send messages only in what hear() and look() return.
 class Dialogue {
  public:
-  virtual ~Dialogue() = default;  ///< Called when the client has left or has been disconnected.
+  virtual ~Dialogue() = default;  ///< Called when the client has left, or the dialogue has ended.
   /// Called with one complete message.
   [[nodiscard]] virtual Reply hear(std::string_view message) = 0;
   /// Called four times a second, so that the dialogue can send something without being asked.

@@ -1,7 +1,7 @@
 // One version of one resource: its representations, their ETags, and the bytes that are sent.
 //
 // Immutable once built and shared between threads.  A representation is rendered at most once, when
-// the first client asks for it; after that every answer is one write of the same bytes.
+// the first client asks for it; after that, answers send the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -74,8 +74,8 @@ class Document {
                                                Coding coding = Coding::Identity) const;
 
   /// The default representation in JSON or Turtle as one server-sent event (id = version), with
-  /// Coding::Gzip as a gzip_piece; null when the document has no variant of that type.  Each event
-  /// is rendered at most once.
+  /// Coding::Gzip as a gzip_piece; null when the document has no variant of that type or cannot
+  /// render it.  Each event is made at most once.
   [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type,
                                                          Coding coding = Coding::Identity) const;
 

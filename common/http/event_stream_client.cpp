@@ -134,7 +134,8 @@ void AsyncEventStream::Impl::on_head(net::error_code failed) {
   if (failed)
     return end({ErrorCode::Unavailable, authority,
                 "the answer is broken or cut off: " + failed.message()});
-  if (parser->get().result_int() < unsigned{status::kOk}) return read_head();  // 100 Continue
+  if (parser->get().result_int() < unsigned{status::kOk})
+    return read_head();  // An interim answer, such as 100 Continue.
   timer.cancel();
   ClientResponse head = response_of(parser->get().base());
   head.sent_ns = sent_ns;

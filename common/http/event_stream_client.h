@@ -40,8 +40,8 @@ class AsyncEventStream {
   void open(const ClientRequest& request, Handlers handlers);
   void close();
 
-  /// Stops reading for `time` once the read under way is done; meanwhile the server cannot send and
-  /// may skip events.
+  /// Stops reading for `time` once the read under way is done; when the buffers fill meanwhile, the
+  /// server skips events.
   void pause(std::chrono::milliseconds time);
 
  private:

@@ -1,5 +1,4 @@
-// A file as the body of an answer: it is read piece by piece while it is sent, and never entirely
-// in memory.
+// A file as the body of an answer: it is read piece by piece while it is sent.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@ namespace chorus::http {
 /// length that it had at first.
 class FileBody {
  public:
-  /// NotFound if it is not a regular file or cannot be opened.
+  /// NotFound if it cannot be opened, or is not a regular file (a symbolic link is not).
   [[nodiscard]] static Result<std::shared_ptr<const FileBody>> open(
       const std::filesystem::path& path);
   ~FileBody();
@@ -23,7 +22,8 @@ class FileBody {
   FileBody& operator=(const FileBody&) = delete;
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Replaces `piece` with up to 256 KiB from `offset`; false when the file has become shorter.
+  /// Replaces `piece` with up to 256 KiB from `offset`; false when the file has become shorter or
+  /// cannot be read.
   [[nodiscard]] bool read(std::uint64_t offset, std::string& piece) const;
 
  private:

@@ -6,7 +6,8 @@
 
 namespace chorus::http {
 
-/// Replaces & < > " by entities, so that `text` is safe between tags and in quoted attributes.
+/// Replaces & < > " by entities, so that `text` is safe between tags and in double-quoted
+/// attributes.
 [[nodiscard]] std::string escaped_html(std::string_view text);
 
 }  // namespace chorus::http

@@ -20,8 +20,8 @@ class HttpConnection final : public Connection {
   HttpConnection(ServerCore& core, net::Socket socket, const net::tcp::endpoint& remote);
 
   void start();
-  /// Call this instead of start() when there are too many connections: answers one request, if its
-  /// path is vital, and closes.
+  /// Call this instead of start() when there are too many connections: answers one request, with
+  /// 503 unless its path is vital, and closes.
   void start_in_reserve();
   void wake() override;
   void expire() override;

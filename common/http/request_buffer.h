@@ -25,7 +25,7 @@ class RequestBuffer {
   [[nodiscard]] bool full() const { return end_ == capacity_; }
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
 
-  /// Looks for the end of a head; examines each byte only once, however often it is called.
+  /// Looks for the end of a head; bytes in which an earlier call found none are not examined again.
   [[nodiscard]] HeadEnd find_head();
   /// Moves up to `most` bytes that follow the first `head_size` bytes to the end of `body`.
   void take_body(std::size_t head_size, std::size_t most, std::string& body);

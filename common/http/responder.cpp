@@ -69,7 +69,7 @@ std::string_view accept_of(const RequestHead& head, const Router& router) {
   return added ? "application/json, */*;q=0.5" : head.accept;
 }
 
-/// The route for a path, or for the path without its ".json".
+/// The route for a path or, if there is none, for the path without its ".json".
 Result<Router::Match> named(const Router& router, std::string_view path) {
   auto match = router.match(path);
   if (match || !path.ends_with(kJsonSuffix)) return match;

@@ -61,7 +61,7 @@ class Responder {
   /// The 304 that ends a long poll when nothing has changed.
   [[nodiscard]] Answer given_up(const Router::Entry& entry, const RequestHead& head) const;
 
-  /// The problem document for bytes that are not a valid request.
+  /// A problem document that refuses a request; the connection closes after it.
   [[nodiscard]] Answer refuse(const Refusal& refusal) const;
 
   /// True for a request whose path is vital: it is answered even beyond the limit of connections.
@@ -95,7 +95,7 @@ class Responder {
   Guard guard_;
   std::string allowed_origin_;
   std::string challenge_;           ///< Header line of a 401.
-  std::string reading_challenge_;   ///< The same for a GET, with Basic authentication added.
+  std::string reading_challenge_;   ///< The same for GET and HEAD, with Basic authentication added.
   std::vector<std::string> hosts_;  ///< The names of this service, for is_own_host().
   ServerLimits limits_;
   std::shared_ptr<const Router> router_;

@@ -68,8 +68,8 @@ std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& 
   return fault(*refused, head, route);
 }
 
-/// Refuses a client that may not read, whether or not the path exists, so that the client does not
-/// learn which paths do.
+/// Where reading needs a token, refuses a client without the right one, whether or not the path
+/// exists, so that the client does not learn which paths do.
 std::optional<Answer> Responder::turn_away(const RequestHead& head, const Peer& peer,
                                            const Router::Entry* entry) const {
   const bool for_everybody = entry != nullptr && entry->for_everybody;
@@ -106,7 +106,7 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
   return reaction;
 }
 
-/// Opens a WebSocket for a dialogue.
+/// Opens a WebSocket for a dialogue, or refuses it.
 Reaction Responder::converse(const RequestHead& head, const Router::Entry& entry,
                              const Peer& peer) const {
   const std::string_view route = route_lines(entry);

@@ -18,7 +18,7 @@ namespace chorus::http {
 
 enum class Method { Get, Head, Options, Post, Put, Patch, Delete };
 
-/// A request that passed every check.  Views are valid during the call.
+/// A request that passed the checks.  Views are valid during the call.
 struct Request {
   Method method = Method::Get;
   std::string_view path;  ///< Percent-decoded, without query.
@@ -70,7 +70,7 @@ class Router {
   /// outlive the router and its documents.
   void files(std::string prefix, std::string folder, std::string_view lines = {});
 
-  /// The pattern is answered without a token, even if everything else needs one.
+  /// Reading the pattern needs no token, even if reading everything else does.
   void for_everybody(const std::string& pattern);
   /// For monitors: the pattern is still answered when the limit of connections is reached.
   void vital(const std::string& pattern);

@@ -72,7 +72,7 @@ struct ServerConfig {
 /// Values for /metrics.  They only grow, except those named _open, _waiting or _limit.
 struct ServerCounters {
   std::uint64_t requests = 0;
-  std::uint64_t refused = 0;  ///< Malformed requests, or requests over a limit.
+  std::uint64_t refused = 0;  ///< Malformed requests, and requests and connections over a limit.
   std::uint64_t not_modified = 0;
   std::uint64_t connections_total = 0;
   std::uint64_t connections_open = 0;
@@ -111,8 +111,9 @@ class Server {
   /// nothing on a server without TLS.
   void set_identity(tls::Identity identity);
 
-  /// True if the server's thread has done the task that the last call posted; posts the next one.
-  /// If calls are seconds apart, false means that the thread hangs.  Call it from one thread only.
+  /// True if the server's thread has done the task that an earlier call posted; then posts the next
+  /// one.  If calls are seconds apart, false means that the thread hangs.  Call it from one thread
+  /// only.
   [[nodiscard]] bool alive();
 
   /// Stops accepting, answers waiting long polls with 503, lets writes finish for up to 2 s, and

@@ -10,7 +10,7 @@ namespace chorus::http {
 
 /// Ten wrong tokens from one address are checked without delay; after that, one a second.  In
 /// between no token is checked, not even the right one, because the answer would reveal that it is
-/// right.  After the first few thousand addresses, all further ones are counted as one.
+/// right.  While some thousand addresses are remembered, all further ones are counted as one.
 class TokenTries {
  public:
   using Time = std::chrono::steady_clock::time_point;

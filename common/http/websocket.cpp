@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxSaid = 4096;  ///< Limit of one message from a client.
 /// When a WebSocket has been closed or is broken, Beast waits for the client to hang up.  At this
-/// interval we check whether it is over, and then hang up ourselves.
+/// interval we check whether the WebSocket is still open, and hang up ourselves if it is not.
 constexpr std::chrono::milliseconds kOverCheck{250};
 constexpr std::string_view kMediaType = "application/json";
 
@@ -92,8 +92,7 @@ void WebSocketConnection::push() {
   DocumentPtr next = entry_->live->current();
   if (next == nullptr || next == shown_) return;
   const auto chosen = next->choose(kMediaType);
-  if (!chosen)
-    return;  // This document has no JSON and never will: the socket stays open and silent.
+  if (!chosen) return;  // This version cannot be had in JSON: nothing is sent.
   shown_ = std::move(next);
   writing_ = true;
   deadline_ = core_.now + core_.config.limits.write_timeout;

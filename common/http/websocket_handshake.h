@@ -11,9 +11,9 @@ namespace chorus::http {
 /// True for "Connection: Upgrade" and "Upgrade: websocket" on a GET.
 [[nodiscard]] bool asks_for_websocket(const RequestHead& head);
 
-/// False for a web page of a foreign origin, unless that is `allowed_origin`.  The server has to
-/// check the origin: browsers let a page open a WebSocket to any host without asking that host
-/// first.
+/// False for a web page of a foreign origin, unless `allowed_origin` is that origin or "*".  The
+/// server has to check the origin: browsers let a page open a WebSocket to any host without asking
+/// that host first.
 [[nodiscard]] bool may_open(const RequestHead& head, std::string_view allowed_origin);
 
 /// What a client offers in Sec-WebSocket-Protocol, the only field of the handshake that a web page

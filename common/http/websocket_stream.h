@@ -1,8 +1,8 @@
 // One WebSocket (RFC 6455) of the server: Boost.Beast's stream with workarounds, compiled in one
 // file only.
 //
-// Everything runs on the server's thread.  Each callback is called once; until then, what it
-// captures stays alive.
+// Everything runs on the server's thread.  Each Done is called once; until then, what it captures
+// stays alive.
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,8 @@
 
 namespace chorus::importers {
 
-/// 0: nose, 11/12: shoulders, ...; from 7 on, odd numbers are left.
+/// Number of landmarks.  0 is the nose, 11 and 12 are the shoulders; from 7 on, odd numbers are
+/// left.
 inline constexpr std::size_t kLandmarkCount = 33;
 
 /// A landmark with a lower MediaPipe visibility is a guess: Inferred.
@@ -44,7 +45,7 @@ struct LandmarkView {
 [[nodiscard]] Result<LandmarkView> read_landmark_view(const std::filesystem::path& file,
                                                       const ImportLimits& limits = {});
 
-/// Landmarks in any metric space, in the order of layout::kMediapipe.
+/// Landmarks in a metric space, or rays to them, in the order of layout::kMediapipe.
 using Landmarks = std::array<layout::Landmark, kLandmarkCount>;
 
 }  // namespace chorus::importers

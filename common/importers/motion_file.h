@@ -23,9 +23,9 @@ struct MotionRecording {
   std::vector<TruthFrame> truth;     ///< The same in world space.
 };
 
-/// The recording's notes: "labels": points of a C3D file that are not joints; "joints": the number
-/// of joints; "time": that the file states only a rate.  BVH lengths are centimetres unless
-/// `options.metres_per_unit` says otherwise.
+/// Among the recording's notes are "labels": points of a C3D file that are not joints; "joints":
+/// the number of joints; "time": that the file states only a rate.  BVH lengths are centimetres
+/// unless `options.metres_per_unit` says otherwise.
 [[nodiscard]] Result<MotionRecording> read_motion_file(const std::filesystem::path& file,
                                                        MotionFormat format,
                                                        const ImportOptions& options = {});

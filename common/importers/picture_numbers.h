@@ -9,9 +9,9 @@
 namespace chorus::importers {
 
 /// A number for each name (without file extension).  For names that differ only in digits it is the
-/// last run of digits that no two of them share ("cam_000012_pose2d" -> 12, not 2); for a name like
-/// no other it is the longest run.  A name without a run of 1 to 12 digits gets its index in the
-/// list.
+/// last run of digits that no two of them share ("cam_000012_pose2d" -> 12, not 2).  If there is no
+/// such run, or for a name like no other, it is the longest run.  A name without a run of 1 to 12
+/// digits gets its index in the list.
 [[nodiscard]] std::vector<std::uint64_t> picture_numbers(const std::vector<std::string>& names);
 
 }  // namespace chorus::importers

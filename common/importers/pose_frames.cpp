@@ -79,7 +79,8 @@ Result<PosePerson> checked(PosePerson person, const std::string& at) {
 
 double confidence_of(double value) { return std::clamp(value, 0.0, 1.0); }
 
-/// A tracker's id: a number, or an array with one; none if it is negative or absurdly large.
+/// A tracker's id plus 1.  The file has a number, or an array with one; none if it is negative or
+/// absurdly large.
 std::optional<std::uint64_t> id_in(const json& person) {
   for (const char* key : {"person_id", "track_id"}) {
     const auto found = person.find(key);

@@ -20,8 +20,8 @@ struct PosePerson {
 };
 
 /// Numbers people consistently where a file numbers them from scratch in every picture: each gets
-/// the number of the nearest person of the pictures before, if that person is within half the
-/// person's size (Known::size).
+/// the number of the nearest person of the recent pictures, if the two are no farther apart than
+/// half the size (Known::size) of the larger one.
 class PeopleNumbers {
  public:
   /// A different number for each; the file's ids, if all people have different ones.

@@ -1,5 +1,5 @@
-// What all line-by-line formats share: reads the file, names the sensor, and refuses a file without
-// frames.
+// What all line-by-line formats share: reads the file, names the sensor, leaves out a last line
+// that is cut off, and refuses a file without frames.
 #pragma once
 
 #include <filesystem>

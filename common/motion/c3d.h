@@ -52,9 +52,9 @@ struct C3dMotion {
 };
 
 /// Finds joints by label: first our own 25 names, then joint centres (LHJC, LKJC, ...), then
-/// Plug-in Gait's segment origins (LFEP, LFEO, ...), and last the means of skin markers, which
-/// count as inferred. c3d_labels.cpp has the table.  Refuses a file in which no subject has two
-/// joints; the error names the file's labels.
+/// Plug-in Gait's segment origins (LFEP, LFEO, ...), and last skin markers or their means, which
+/// count as inferred.  c3d_labels.cpp has the table.  Refuses a file in which no subject has two
+/// joints; the error names some of the file's labels.
 [[nodiscard]] Result<C3dMotion> motion_from_c3d(const C3d& c3d);
 
 }  // namespace chorus::motion

@@ -17,7 +17,7 @@ namespace {
 struct LabelRow {
   JointId left;  ///< For a joint without sides, the joint itself.
   JointId right;
-  JointState state;                          ///< Inferred for a mean of skin markers.
+  JointState state;                          ///< Inferred for skin markers.
   std::array<std::string_view, 4> labels{};  ///< The joint is their mean; '<' stands for L or R.
 };
 

@@ -42,7 +42,8 @@ inline constexpr double kCmuRateHz = 120.0;
 
 /// Gives each joint the orientation of its segment: +y along the bone that ends there (at
 /// SpineBase: along the bone to SpineMid), +z as near to the body's forward direction as possible.
-/// Head, hand tips, thumbs and feet stay all-zero, as with a Kinect v2.
+/// Joints stay as they are if an end of that bone is not seen.  The orientations of head, hand
+/// tips, thumbs and feet become all zero, as with a Kinect v2.
 void orient_segments(Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::motion

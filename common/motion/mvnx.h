@@ -38,7 +38,7 @@ struct Mvnx {
   double rate_hz = 0.0;
   std::vector<MvnxSegment> segments;
   std::vector<std::string> sensors;
-  std::vector<MvnxFrame> frames;  ///< Only frames of type="normal"; calibration poses are left out.
+  std::vector<MvnxFrame> frames;  ///< Calibration poses (types other than "normal") are left out.
 };
 
 /// A larger file is refused.

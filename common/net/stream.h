@@ -27,11 +27,12 @@ class Stream {
 
   /// The outcome of sealing, i.e. of setting up TLS.
   struct Sealing {
-    /// Why sealing failed, with advice; the context is the host.
+    /// Why sealing failed, with advice.
     std::optional<Error> failure = {};
     bool plain = false;  ///< The client does not speak TLS, so the stream stays unsealed.
   };
-  using Sealed = std::function<void(Sealing)>;  ///< Called once, never before the call returns.
+  using Sealed = std::function<void(Sealing)>;  ///< Called once; before the call returns only if
+                                                ///< sealing fails at once.
 
   explicit Stream(const Executor& executor) : socket_(executor) {}
   explicit Stream(Socket socket) : socket_(std::move(socket)) {}

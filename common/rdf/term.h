@@ -14,8 +14,9 @@ inline constexpr std::string_view kXsd = "http://www.w3.org/2001/XMLSchema#";
 
 enum class TermKind { Iri, Blank, Literal };
 
-/// An IRI, a blank node label or a literal.  An IRI is as written: relative unless the reader was
-/// given a base.  A literal without datatype is an xsd:string or a language-tagged string.
+/// An IRI, a blank node label or a literal.  An IRI is as written, so it may be relative, unless
+/// the reader was given a base.  A literal without datatype is an xsd:string or a language-tagged
+/// string.
 struct Term {
   TermKind kind = TermKind::Iri;
   std::string value;

@@ -32,8 +32,8 @@ Env make_env(const std::string& base) {
   return Env(serd_env_new(&node));
 }
 
-/// Turns Serd's events into triples.  The expanded names of subject, predicate and object have one
-/// buffer each.
+/// Turns Serd's events into triples.  The expanded names of subject, predicate, object and datatype
+/// have one buffer each.
 class Events {
  public:
   Events(const ReadOptions& options, const TripleSink& sink)

@@ -11,7 +11,7 @@
 
 namespace chorus::record {
 
-/// A complete recording on disk or in memory.
+/// A recording on disk or in memory.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;

@@ -41,12 +41,12 @@ struct SensorStay {
   /// The number of frames that the files state, including frames that reading would leave out; none
   /// if the files state no numbers.
   std::optional<std::uint64_t> frames;
-  /// True if recorded together with other sensors, even if these are missing here.
+  /// True if it is from the recording of a cell, even if the other sensors are missing here.
   bool cell = false;
 };
 
-/// One entry for each sensor with frames, ordered by id; unpacks only the first and last chunks.
-/// Conflict when two lines contain frames of the same sensor.
+/// One entry for each sensor with frames, ordered by id; unpacks only a few chunks, if the files
+/// have message indexes.  Conflict when two lines contain frames of the same sensor.
 [[nodiscard]] Result<std::vector<SensorStay>> sensor_stays(const std::vector<CellLine>& lines);
 
 }  // namespace chorus::record

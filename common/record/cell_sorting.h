@@ -33,8 +33,7 @@ struct Topic {
 /// states none.
 [[nodiscard]] double read_clock_sigma(std::string_view text);
 
-/// Adds `by` to `t`; false, with `t` unchanged, when the sum is beyond the times that we can
-/// represent.
+/// Adds `by` to `t`; false, with `t` unchanged, when the sum is before 1970 or too large.
 [[nodiscard]] bool moved(Timestamp& t, const std::optional<Duration>& by);
 
 class Sorting {

@@ -19,7 +19,8 @@ using SessionItem = std::variant<SensorFrame, resource::FrameResource, std::stri
 /// Needs memory for only a few chunks, however long the recording is.
 class CellStream {
  public:
-  /// `files`: as for read_cell(); each file is opened only when it is needed.
+  /// `files`: as for read_cell(); at first only their first times are read, and each file is opened
+  /// when it is needed.
   explicit CellStream(std::vector<std::filesystem::path> files, CellQuery query = {});
   CellStream(CellStream&&) noexcept;
   CellStream& operator=(CellStream&&) noexcept;

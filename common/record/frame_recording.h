@@ -32,7 +32,8 @@ struct FrameRecording {
                                                  const FrameRecording& recording);
 
 /// Reads one sensor of a recording (a file, or a folder of files): its only sensor or, of several,
-/// `which`. Refuses frames that go back in time or repeat a capture time; the error says where.
+/// `which`.  Refuses frames that go back in time or repeat a capture time, unless a recorded clock
+/// model corrects their times; the error says where.
 [[nodiscard]] Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
                                                           const ReadLimits& limits = {},
                                                           const SensorId& which = {});

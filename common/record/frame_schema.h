@@ -1,4 +1,4 @@
-// The JSON Schemas that are stored in every recording, so that its messages are self-describing.
+// The JSON Schemas of our messages.  Recordings contain them, so that they are self-describing.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 // Records events in the background: a bounded queue, a separate thread, files that rotate.
 //
-// offer() never waits for the disk, the encoder or the compressor: events that arrive while the
+// offer() never waits for the disk, the encoder or the compressor: frames that arrive while the
 // queue is full are counted but not recorded.  A disk failure ends the recording, but never the
 // service; what was written before stays readable.
 #pragma once
@@ -26,7 +26,7 @@ struct RecorderLimits {
   std::uintmax_t max_unpacked_bytes = 2ull << 30;
   /// A new file also begins after this time.
   Duration max_file_duration = std::chrono::minutes(10);
-  /// The recording ends when the free space would fall below this.
+  /// The recording ends when less than this is free.
   std::uintmax_t min_free_bytes = 200ull << 20;
   /// Largest number of queued events; ten sensors produce them in a few seconds.
   std::size_t max_queue = 2048;

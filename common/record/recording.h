@@ -37,7 +37,8 @@ struct Message {
 };
 
 struct WriterOptions {
-  std::size_t chunk_bytes = 1u << 20;  ///< A chunk is closed when it reaches this size.
+  std::size_t chunk_bytes =
+      1u << 20;  ///< A chunk is closed before a message that would exceed this.
   Duration chunk_duration = std::chrono::seconds(1);
   std::string library = "chorus";
 };

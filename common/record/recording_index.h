@@ -36,7 +36,7 @@ struct RecordingReport {
   Timestamp started;
   std::optional<Timestamp> stopped;
   std::uint64_t frames = 0;   ///< Raw and fused frames written.
-  std::uint64_t dropped = 0;  ///< Frames not recorded because the queue was full.
+  std::uint64_t dropped = 0;  ///< Frames not recorded: the queue was full, or the recording failed.
   std::vector<RecordedFile> files;
 
   [[nodiscard]] std::uint64_t bytes() const;

@@ -2,8 +2,8 @@
 // record to record without unpacking.
 //
 // The index at the end of a file is not used, because after a crash or a disk failure there is
-// none. The message indexes after each chunk are used only to find chunks that need not be
-// unpacked.
+// none. The message indexes after each chunk are used only to count messages and to find chunks
+// that need not be unpacked.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct Piece {
 };
 
 struct Outline {
-  Definitions definitions;  ///< The definitions outside chunks.
+  Definitions definitions;  ///< Those outside chunks; a stream adds those of the chunks it unpacks.
   std::map<std::string, std::map<std::string, std::string>> metadata;
   std::vector<Piece> pieces;  ///< In file order.
   bool truncated = false;     ///< True if there is no footer, or the tail was unreadable.

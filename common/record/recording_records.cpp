@@ -31,7 +31,7 @@ std::uintmax_t size_of(const Channel& channel) {
   return sum;
 }
 
-/// Stores a definition if it is new; writers repeat their definitions in each chunk.
+/// Stores a definition if it is new; some writers repeat their definitions in each chunk.
 template <class Definition>
 void define(std::map<std::uint16_t, Definition>& known, std::uint16_t id, Definition definition,
             Definitions& into) {

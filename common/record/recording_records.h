@@ -1,4 +1,4 @@
-// Internal to common/record: reads single records of a recording, and checks every field.
+// Internal to common/record: reads single records of a recording, and refuses broken ones.
 //
 // The functions read_...() return "" or what is wrong with the record.
 #pragma once

@@ -1,5 +1,5 @@
-// Reads a recording message by message; needs memory for only one or two chunks, however long the
-// recording is.
+// Reads a recording message by message; usually needs memory for only one or two chunks, however
+// long the recording is.
 //
 // Messages come in log-time order: a chunk is unpacked when its first message is due, and freed
 // after its last one.  A file cut off by a crash is read up to its last complete chunk; a damaged
@@ -52,10 +52,12 @@ class RecordingStream {
   /// `from`.
   void rewind(std::optional<Timestamp> from = {});
 
-  /// The first (last) message of a topic; chunks without the topic are not unpacked.
+  /// The first (last) message of a topic; chunks whose message indexes lack the topic are not
+  /// unpacked.
   [[nodiscard]] std::optional<Message> first_of(std::string_view topic);
   [[nodiscard]] std::optional<Message> last_of(std::string_view topic);
-  /// Number of messages of a topic; none unless every chunk states its numbers.
+  /// Number of messages of a topic; none unless every chunk states its numbers and all channels are
+  /// known.
   [[nodiscard]] std::optional<std::uint64_t> count(std::string_view topic) const;
 
   /// The channels known so far; definitions inside a chunk become known when it is unpacked.

@@ -35,7 +35,7 @@ struct NamedPlace {
 };
 
 /// One entity per body, with a life time, so that it disappears when the body is no longer seen.  A
-/// bone is left out if one of its joints is not tracked.
+/// bone is left out unless both of its joints have a usable position.
 [[nodiscard]] std::string scene_update(const resource::FrameResource& frame,
                                        std::string_view frame_id);
 

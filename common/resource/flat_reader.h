@@ -10,8 +10,9 @@
 
 namespace chorus::resource {
 
-/// The properties of the only subject of class `type` ("FloorPlane"), by name without prefix.
-/// Reads only literals and individuals of our namespace; refuses a repeated property.
+/// The properties of the only subject of class `type` ("FloorPlane"), by name without prefix. Reads
+/// only literals and individuals of our namespace; refuses RDF that gives a property two different
+/// values.
 using Properties = std::map<std::string, std::string, std::less<>>;
 [[nodiscard]] Result<Properties> read_properties(std::string_view bytes, Format format,
                                                  std::string_view type);

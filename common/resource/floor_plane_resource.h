@@ -10,7 +10,7 @@ namespace chorus::resource {
 
 [[nodiscard]] Node floor_plane_node(const FloorPlane& floor, SpaceKind space);
 
-/// Reads and normalises a floor plane; refuses a zero normal, missing numbers, and offsets beyond
+/// Reads and normalises a floor plane; refuses a zero normal, missing numbers, and numbers beyond
 /// kMaxCoordinate.
 [[nodiscard]] Result<FloorPlane> read_floor_plane(std::string_view bytes, Format format);
 

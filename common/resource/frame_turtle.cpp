@@ -68,8 +68,8 @@ class TurtleFrame {
     begun_ = true;
   }
 
-  /// Begins a document about the body or joint itself.  It states no position, because two such
-  /// documents from different instants would contradict each other.
+  /// Begins a document with the body itself, as opposed to its state at one instant.  States no
+  /// position of it, because statements from different instants would contradict each other.
   void begin_living(const BodyResource& body) {
     pen_.need(kJointBytes + names_.size());
     pen_.put(kPrefixes);

@@ -30,8 +30,8 @@ enum class Kind {
 /// The header field that states a service's clock (proto/README.md).
 inline constexpr std::string_view kClockField = "Chorus-Clock";
 
-/// What every answer of a Chorus service has in addition: the field Chorus-Clock, and Link lines to
-/// its type and to the service's description.
+/// What answers of a Chorus service have in addition: the field Chorus-Clock, a Link line to the
+/// service's description and, for known paths, one to their type.
 [[nodiscard]] http::AnswerPolicy answer_policy();
 
 }  // namespace chorus::resource

@@ -1,4 +1,4 @@
-// The formats in which every resource is written.
+// The formats in which resources that are RDF are written.
 #pragma once
 
 #include <array>

@@ -33,7 +33,7 @@ struct Ref {
   std::string iri;
 };
 
-/// A decimal with this many fractional digits; omitted when it is not finite.
+/// A decimal with this many fractional digits; omitted when it is not finite or beyond 1e15.
 struct Decimal {
   double value = 0.0;
   int digits = 4;
@@ -64,7 +64,7 @@ struct Node {
 /// The triples of the tree; relative IRIs stay relative.
 [[nodiscard]] rdf::Graph graph_of(const Node& node);
 
-/// All keys, at any depth, that proto/context.jsonld does not declare.
+/// All keys, at any depth, that proto/context.jsonld does not declare and that have no prefix.
 [[nodiscard]] std::vector<std::string> undeclared_terms(const Node& node);
 
 }  // namespace chorus::resource

@@ -23,7 +23,8 @@ struct TermUse {
   Container container = Container::None;
   /// For Container::Index: IRI of the property whose value becomes the key.
   std::string index = {};
-  /// False if the context lacks the key, which then is a name in our namespace.
+  /// False if the context lacks the key and the key has no prefix; it is then a name in our
+  /// namespace.
   bool declared = true;
 };
 

@@ -31,11 +31,11 @@ struct PlacingErrors {
 /// any origin [m], in axes like sensor space's (x to the left, y up), where z is the line of sight
 /// to the person.
 ///
-/// Returns `rays`, where joints that are in `shape` have become points.  The variance along a ray
-/// is the sum of those from the shape, from R and t, and from size and focal length.  The rays do
-/// not show the errors of the last two, which move all joints of a person away or nearer by the
-/// same fraction.  None when fewer than eight joints are given, or when they fit no body in front
-/// of the camera.
+/// Returns `rays`, where joints that are in `shape` have become points, unless their variance would
+/// be too large to be written.  The variance along a ray is the sum of those from the shape, from R
+/// and t, and from size and focal length.  The rays do not show the errors of the last two, which
+/// move all joints of a person away or nearer by the same fraction.  None when fewer than eight
+/// joints have a ray and a place in the shape, or when they fit no body in front of the camera.
 [[nodiscard]] std::optional<Skeleton<SensorSpace>> place_body(const Skeleton<SensorSpace>& rays,
                                                               const Skeleton<SensorSpace>& shape,
                                                               const PlacingErrors& errors);

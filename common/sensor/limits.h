@@ -1,11 +1,11 @@
-// Limits that every reader and writer applies.
+// Limits of frames and coordinates, which readers and writers apply.
 #pragma once
 
 #include <cstddef>
 
 namespace chorus {
 
-/// Largest number of bodies in one frame; a frame with more is malformed (a Kinect v2 tracks six).
+/// Largest number of bodies in one frame; a frame with more is refused (a Kinect v2 tracks six).
 inline constexpr std::size_t kMaxBodies = 64;
 
 /// Largest number of sensors of a tracker: each is one bit of FusedBody::contributors.

@@ -11,8 +11,8 @@
 namespace chorus {
 
 /// The unit vector through a pixel (u to the right, v down) in the camera's axes: x right, y down,
-/// z ahead.  Corrects for distortion; none for pixels far outside the image, where that has no
-/// solution.
+/// z ahead.  Corrects for distortion; none where that has no solution, for example far outside the
+/// image.
 [[nodiscard]] std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel,
                                                     const Intrinsics& camera);
 

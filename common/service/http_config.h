@@ -18,7 +18,8 @@ void read_http(ConfigReader config, http::ServerConfig& out);
 /// The address of a service: "https://0.0.0.0:8081/".
 [[nodiscard]] std::string root_of(const http::ServerConfig& http, bool secure, std::uint16_t port);
 
-/// Reads the certificate and key that the child "tls" names; none when it names none.
+/// Reads the certificate and key that the child "tls" names; leaves `out` as it is when it names
+/// none.
 void read_identity(ConfigReader config, std::optional<tls::Identity>& out);
 
 }  // namespace chorus::service

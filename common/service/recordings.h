@@ -1,7 +1,7 @@
 // /recordings/: what this service is recording and has recorded.  All services have it.
 //
-// There is one recording at a time.  POST /recordings/ starts it, DELETE /recordings/{name} ends
-// it; no request ever deletes a file (docs/decisions/0011-recordings.md).
+// There is at most one recording at a time.  POST /recordings/ starts it, DELETE /recordings/{name}
+// ends it; no request ever deletes a file (docs/decisions/0011-recordings.md).
 #pragma once
 
 #include <functional>

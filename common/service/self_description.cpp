@@ -14,7 +14,7 @@ using resource::Format;
 using resource::Node;
 using resource::Ref;
 
-/// The resources of every service (common_resources.h, recordings.h).
+/// Resources that every service has (common_resources.h, recordings.h).
 std::vector<Listed> everywhere() {
   return {{"recordings/", "recordingList", "what has been recorded here"},
           {"clock", "clock", "how well this host keeps time"},

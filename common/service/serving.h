@@ -9,7 +9,7 @@
 namespace chorus::service {
 
 struct Serving {
-  /// Part of every ETag, so that an ETag from an earlier run never matches a document of this run.
+  /// Part of the ETags, so that an ETag from an earlier run does not match a document of this run.
   std::string run;
   std::string root = "http://localhost/";  ///< Absolute IRI of `/`, for N-Triples.
 

@@ -42,8 +42,8 @@ void add_changes(const json& a, const json& b, Path& at, std::vector<Path>& out)
   }
 }
 
-/// Returns `base` with the value that `wanted` has at `path`, or without any there if `wanted` has
-/// none.
+/// Returns `base`, but with the value that `wanted` has at `path`; if `wanted` has none there, the
+/// value is removed.
 json with_one_change(json base, const Path& path, const json& wanted) {
   json* to = &base;
   const json* from = &wanted;

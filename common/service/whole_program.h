@@ -7,7 +7,7 @@
 namespace chorus::service {
 
 /// Replaces this process by the program at `path`, relative to this program's folder
-/// ("../libexec/chorus/chorus"); returns when it does not exist.
+/// ("../libexec/chorus/chorus"); returns when that cannot be run.
 void become_whole_program(const std::string& path, char** arguments);
 
 }  // namespace chorus::service

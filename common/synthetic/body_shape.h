@@ -14,11 +14,11 @@ struct Capsule {
   double radius = 0.0;                             ///< [m]
 };
 
-/// One capsule for each bone whose two joints are seen, and a ball for the head.
+/// One capsule for each bone whose two joints are seen, and a ball for the head if that is seen.
 [[nodiscard]] std::vector<Capsule> capsules_of(const Skeleton<SensorSpace>& body);
 
 /// Distance from the origin along the unit ray to the capsule's surface; none when the ray misses
-/// the capsule or the surface is behind the origin.
+/// the capsule or the surface is behind the origin.  The origin must be outside.
 [[nodiscard]] std::optional<double> hit(const Capsule& capsule, const Eigen::Vector3d& ray);
 
 }  // namespace chorus::synthetic

@@ -1,5 +1,5 @@
-// Random numbers as a pure function of a key: the same key gives the same numbers on every machine,
-// whatever is drawn in between for other keys.  (The std:: distributions differ between libraries.)
+// Random numbers as a pure function of a key: the same key gives the same numbers, whatever is
+// drawn in between for other keys.  (The std:: distributions differ between libraries.)
 #pragma once
 
 #include <cmath>

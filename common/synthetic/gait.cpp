@@ -33,7 +33,7 @@ struct Cut {
   std::size_t length = 0;
 };
 
-/// The cycle of which the end, with the frames before it, is most similar to the beginning.
+/// The cycle for which the frames up to its end are most similar to the frames up to its start.
 Cut best_cut(const std::vector<AmcFrame>& take) {
   Cut best;
   double least = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Things in the room that hide people: a car body, a pillar, a table.  Some of them move.
+// Things in the room that hide people: a car body, a pillar, a table.  They can move.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace chorus::synthetic {
 
-/// A box that glides back and forth along `travel` once per `period`; with zero travel it stands
-/// still. World space.
+/// A box in world space that glides back and forth along `travel` once per `period`; it stands
+/// still if either is zero.
 struct Occluder {
   Eigen::Isometry3d world_from_box = Eigen::Isometry3d::Identity();
   Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5);  ///< Half edge lengths [m]

@@ -13,7 +13,7 @@
 namespace chorus::synthetic {
 namespace {
 
-// Plausible estimates without a measured source; nothing depends on their exact values.
+// Plausible estimates without a measured source.
 constexpr double kAcceleration = 1.2;   // Mean acceleration when starting and stopping [m/s^2].
 constexpr double kTurnRate = deg(110);  // Mean rate when turning on the spot [rad/s].
 constexpr double kTurnSettling = 0.3;   // Extra time of every turn [s].
@@ -25,7 +25,7 @@ constexpr double kMaxPause = 3.0;      // [s]
 constexpr double kRandomLoop = 240.0;  // Shortest loop of a random walk [s].
 constexpr double kStandLoop = 60.0;    // Loop of somebody who stands still [s].
 constexpr double kLinePause = 0.4;     // Pause at each end of a line, before turning [s].
-// Shortest leg, as a share of the reach; shorter ones are drawn again.
+// Shortest leg, as a share of the reach; shorter ones are drawn again, at most kRedraws times.
 constexpr double kMinLegShare = 0.5;
 constexpr double kMinAmplitude = 0.3;
 constexpr double kMaxAmplitude = 1.4;

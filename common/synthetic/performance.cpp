@@ -220,7 +220,7 @@ void drop_pose(std::vector<motion::Motion>& roles) {
 }  // namespace
 
 Result<Performance> staged(std::vector<motion::Motion> captured) {
-  // Objects and half-tracked bystanders get no role if somebody has all joints.
+  // Objects and half-tracked bystanders get no role if somebody has all joints of kRequired.
   if (captured.size() > 1) {
     const auto lacks = [](const motion::Motion& role) {
       return missing_joint(role.frames).has_value();

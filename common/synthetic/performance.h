@@ -29,8 +29,10 @@ struct MotionFile {
 /// or X.asf in the same folder.
 [[nodiscard]] Result<Performance> read_performance(const MotionFile& file);
 
-/// Prepares captured motion.  Refuses people without hips, knees, ankles, shoulders, elbows or
-/// wrists, thighs of inhuman length, and more frames than kMaxMotionFrames.
+/// Prepares captured motion.  People without hips, knees, ankles, shoulders, elbows or wrists are
+/// left out if somebody else has them all, and otherwise refused.  Also refuses motion without
+/// people or frames, with more than kMaxMotionFrames, with an unusable rate, or with thighs of
+/// inhuman length.
 [[nodiscard]] Result<Performance> staged(std::vector<motion::Motion> captured);
 
 /// 16 minutes at 120 Hz, which need 200 MB per person.

@@ -42,10 +42,11 @@ class Performer {
   Duration loop_{1};
 };
 
-/// `count` people who play the motion at the script's centre.  People from one file stay together
-/// as captured.  If there are more people than the file has, further groups play it too: evenly
-/// spaced on a circle with the script's reach, each group turned, of another build, and at another
-/// position in the loop.  Uses only the script's seed, centre, reach and body_scale.
+/// `count` people who play the motion.  People from one file stay together as captured, at the
+/// script's centre.  If there are more people than the file has, several groups play it: evenly
+/// spaced on a circle about that centre with the script's reach, each turned accordingly; all but
+/// the first have another build and another position in the loop.  Uses only the script's seed,
+/// centre, reach and body_scale.
 [[nodiscard]] std::vector<Person> make_performers(std::shared_ptr<const Performance> performance,
                                                   const WalkerScript& script, std::size_t count);
 

@@ -15,9 +15,9 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr int kJpegQuality = 85;
-constexpr int kPngEffort = 1;  // The lowest of nine, because each picture is viewed only once.
+constexpr int kPngEffort = 1;  // The lowest of nine, because a picture is usually viewed only once.
 
-/// libjpeg calls this instead of returning an error.
+/// Lets give_up(), which libjpeg calls on an error, return to compress_jpeg().
 struct JpegErrors {
   jpeg_error_mgr base;
   std::jmp_buf back;
@@ -84,7 +84,7 @@ void append_chunk(std::string& out, const char* type, const std::string& content
                                static_cast<unsigned>(checked.size()))));
 }
 
-/// Each row as its differences from the row above (filter type 2), high byte first.
+/// Each row as its differences, byte by byte, from the row above (filter type 2), high byte first.
 std::string filtered(std::span<const std::uint16_t> pixels, PictureSize size) {
   const auto width = static_cast<std::size_t>(size.width);
   std::string out;
@@ -124,7 +124,7 @@ Result<std::string> png_of(std::span<const std::uint16_t> pixels, PictureSize si
   std::string header;
   append_number(header, static_cast<std::uint32_t>(size.width));
   append_number(header, static_cast<std::uint32_t>(size.height));
-  // 16 bits, grey, and the only methods that PNG defines.
+  // 16 bits, grey, the only methods of compression and filtering that PNG defines, not interlaced.
   header += std::string("\x10\x00\x00\x00\x00", 5);
   std::string out = "\x89PNG\r\n\x1a\n";
   append_chunk(out, "IHDR", header);

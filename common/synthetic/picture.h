@@ -14,12 +14,12 @@ struct PictureSize {
   int height = 0;
 };
 
-/// A JPEG from red, green and blue, row by row from the top.  Internal when out of memory,
-/// InvalidArgument unless `pixels` has three bytes per pixel.
+/// A JPEG from red, green and blue, row by row from the top.  Errors: InvalidArgument unless
+/// `pixels` has three bytes per pixel, Internal if libjpeg fails.
 [[nodiscard]] Result<std::string> jpeg_of(std::span<const std::uint8_t> pixels, PictureSize size);
 
-/// A lossless PNG with one channel of 16 bits; the same errors, but `pixels` needs one value per
-/// pixel.
+/// A lossless PNG with one channel of 16 bits.  Errors: InvalidArgument unless `pixels` has one
+/// value per pixel, Internal if zlib fails.
 [[nodiscard]] Result<std::string> png_of(std::span<const std::uint16_t> pixels, PictureSize size);
 
 }  // namespace chorus::synthetic

@@ -57,7 +57,7 @@ void apply(const Reach& reach, Skeleton<WorldSpace>& body) {
   Eigen::Vector3d way = wrist + std::min(reach.amount, 1.0) * (reach.target - wrist) - shoulder;
   const double far = way.norm();
   way *= std::clamp(far, kClosest * length, kStraightest * length) / std::max(far, 1e-6);
-  // While the wrist moves little, the elbow stays where it was; otherwise it hangs under the arm.
+  // The more the arm reaches, the more the elbow hangs below it instead of staying where it was.
   const Eigen::Vector3d below = shoulder + 0.5 * way - length * Eigen::Vector3d::UnitY();
   const Eigen::Vector3d hint = elbow + std::min(reach.amount, 1.0) * (below - elbow);
   const Eigen::Vector3d new_elbow = elbow_at(shoulder, shoulder + way, bones, hint);

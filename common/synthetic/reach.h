@@ -14,7 +14,8 @@ struct Reach {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of the wrist [m]
 };
 
-/// Moves elbow, wrist and hand; if the target is too far away, the arm is stretched towards it.
+/// Moves elbow, wrist and hand.  If the target is too far from the shoulder or too near to it, the
+/// wrist stops at the arm's limit, in the direction of the target.
 void apply(const Reach& reach, Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::synthetic

@@ -19,8 +19,8 @@ constexpr std::uint16_t kNobody = 0;
 constexpr std::uint16_t kThing = 65535;
 constexpr int kMaxPixels = 4'000'000;
 
-/// What each pixel sees: the distance along its ray, and whose body that is (kNobody: the floor or
-/// nothing; kThing: an occluder).
+/// What each pixel sees: the distance along its ray, and whose body that is (the person's index +
+/// 1; kNobody: the floor or nothing; kThing: an occluder).
 struct RangeImage {
   int width = 0;
   int height = 0;
@@ -132,7 +132,8 @@ Result<RangeImage> look(const Scene& scene, std::size_t sensor, Timestamp instan
   return image;
 }
 
-/// The colour (red, green, blue) of a person, a thing, the chequered floor or the wall.
+/// The colour (red, green, blue) of what pixel `i` sees: a person, a thing or the chequered floor;
+/// a grey wall where it sees nothing.
 std::array<std::uint8_t, 3> shade(const RangeImage& image, std::size_t i,
                                   const Eigen::Isometry3d& world_from_sensor) {
   const double range = static_cast<double>(image.range[i]);

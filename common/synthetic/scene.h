@@ -46,10 +46,10 @@ struct Ring {
 
 [[nodiscard]] std::vector<Eigen::Isometry3d> ring_places(const Ring& ring);
 
-/// Makes `count` people from one script, with different seeds, paths and builds.
+/// Makes `count` people: the first as the script says, the others with other seeds and builds.
 [[nodiscard]] std::vector<Person> make_people(const WalkerScript& script, std::size_t count);
 
-/// The true pose of a person.
+/// The true pose of a person; not tracked if the scene has no such person.
 [[nodiscard]] Skeleton<WorldSpace> truth(const Scene& scene, std::size_t person, Timestamp instant);
 
 /// The floor as an exact sensor at this place would report it.

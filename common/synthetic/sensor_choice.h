@@ -3,7 +3,7 @@
 // white noise (sensor_model.h).
 //
 // The parameters are the nominal ones, or drawn from their intervals; each source of error can also
-// be scaled or switched off.
+// be scaled or switched off (but see SensorChoice::gauss).
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct SensorChoice {
   std::vector<Stress> stress = {};
   /// Seed of errors; the same for all sensors of a room, because they share some errors.
   std::uint64_t seed = 1;
-  /// Seed of the biases of the SDK and of people, which are the same in every run.
+  /// Seed of the biases of the SDK and of people; meant to be the same in every run.
   std::uint64_t bias_seed = 1;
   bool own_clock = true;  ///< True: stamps frames by the host's erring clock; false: by true time.
   /// The parameters of "gauss".  It has no intervals to draw from, no sources to scale, and an
@@ -59,8 +59,8 @@ struct SensorChoice {
                                                       const SensorChoice& choice, Timestamp start,
                                                       Timestamp end);
 
-/// First 12 hex digits of the SHA-256 of what defines the profile; printed with every result.
-/// Empty for "gauss", which is not frozen, and for an unknown profile.
+/// First 12 hex digits of the SHA-256 of what defines the profile; printed with results. Empty for
+/// "gauss", which is not frozen, and for an unknown profile.
 [[nodiscard]] std::string frozen_hash(std::string_view profile);
 
 }  // namespace chorus::synthetic

@@ -75,8 +75,8 @@ struct SimulatedSensor {
 /// The first frame captured at or after `instant`.
 [[nodiscard]] std::uint64_t first_frame_from(const SimulatedSensor& sensor, Timestamp instant);
 
-/// Frame `number`; none when it is dropped.  `sequence` is the number; `received` equals
-/// `captured`.
+/// Frame `number`; none when it is dropped or the scene lacks the sensor.  `sequence` is the
+/// number; `received` equals `captured`.
 [[nodiscard]] std::optional<SensorFrame> observe(const Scene& scene, const SimulatedSensor& sensor,
                                                  std::uint64_t number);
 

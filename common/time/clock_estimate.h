@@ -29,8 +29,8 @@ struct ClockExchange {
 
 struct ClockEstimate {
   Duration ours_minus_theirs{0};  ///< Add this to their stamps to get ours.
-  Duration uncertainty{0};        ///< Bound of the error: at least half of the shortest round trip.
-  double rate = 0.0;              ///< How much faster their clock runs than ours [s/s].
+  Duration uncertainty{0};  ///< Bound of the error, mainly half the sum of the smallest delays.
+  double rate = 0.0;        ///< How much faster their clock runs than ours [s/s].
 };
 
 /// Standard deviation of a clock about which nothing is known [s].
@@ -42,8 +42,8 @@ inline constexpr double kUnknownClock = 0.5;
 
 struct ClockFilterLimits {
   Duration window = std::chrono::seconds(40);
-  /// Larger than any difference between the rates of two clocks, such as 500 ppm while one is being
-  /// adjusted plus 390 ppm of a device's own.
+  /// Larger than any difference between the rates of two clocks, such as 500 ppm while one of them
+  /// is being adjusted plus 390 ppm by which a device's clock may itself be wrong.
   double max_rate = 1000e-6;
   double usual_rate = 100e-6;  ///< Larger rates need evidence.
   double wander = 10e-6;       ///< Growth of the uncertainty without exchanges [s/s].
@@ -53,7 +53,8 @@ struct ClockFilterLimits {
   int steps_to_restart = 3;
 };
 
-/// Reads "<t1_ns> <t2_ns>", the value of the Chorus-Clock header; none for anything else.
+/// The value of the Chorus-Clock header, "<t1_ns> <t2_ns>"; parse_server_stamps() returns none for
+/// anything else.
 struct ServerStamps {
   Timestamp receipt;
   Timestamp sending;
@@ -64,7 +65,7 @@ class ClockFilter {
  public:
   explicit ClockFilter(ClockFilterLimits limits = {}) : limits_(limits) {}
 
-  /// Impossible exchanges (negative durations, absurd stamps) are ignored.
+  /// Ignores exchanges that are impossible (negative durations, absurd stamps) or too uncertain.
   void add(const ClockExchange& exchange);
 
   [[nodiscard]] std::optional<ClockEstimate> at(Timestamp now) const;

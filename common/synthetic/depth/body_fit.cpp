@@ -188,7 +188,7 @@ void keep_limbs(NormalEquations& equations, const FittedBody& body, const Nodes&
   }
 }
 
-/// Legs stay on their own side of the hips.
+/// Keeps the left knee and ankle to the left of the right ones.
 void keep_apart(NormalEquations& equations, const Nodes& nodes, double height) {
   const Eigen::Vector3d left = (nodes.col(kHipL) - nodes.col(kHipR)).stableNormalized();
   for (const auto& [a, b] : {std::pair{kKneeL, kKneeR}, std::pair{kAnkleL, kAnkleR}}) {

@@ -1,8 +1,8 @@
 // Fits a generic body to the depth points of one person, by articulated iterated closest point.
 //
 // In each round every point is assigned to the nearest capsule, and one Gauss-Newton step moves all
-// nodes together.  Bones keep their length, the trunk keeps its shape, and limbs without points
-// move with the trunk.
+// nodes together.  Bones nearly keep their lengths and the trunk its shape; limbs without points
+// move with the trunk and hang down.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct FittedBody {
   double height = kGenericHeight;
   /// For each node: the number of points near it, relative to the number if nothing hid it.
   std::array<double, kNodeCount> support{};
-  double misfit = 0.0;  ///< Mean distance of points to the surface [m]
+  double misfit = 0.0;  ///< Mean distance of points to the surface; large ones are capped [m]
 };
 
 /// Distance of a point to the body's surface [m].

@@ -24,12 +24,12 @@ constexpr std::array kFirstYaws{0.0, deg(40), -deg(40), deg(80), -deg(80)};
 constexpr double kReach = 0.35;
 // The same for a piece of which less than kOwnShare is near a body [m].
 constexpr double kMixedReach = 0.12;
-// If at least this share of a piece is within kMixedReach of a body, kReach applies to all of it.
+// If at least this share of a piece is within kMixedReach of bodies, kReach applies to all of it.
 constexpr double kOwnShare = 0.5;
-// If a smaller share is, the piece is a new person or an object.
+// If less than this share of a piece is, the piece is a new person or an object.
 constexpr double kForeignShare = 0.1;
 constexpr int kConfirmed = 3;  // Frames before a body is reported.
-constexpr int kPatience = 10;  // Poor frames in a row before a body is given up.
+constexpr int kPatience = 10;  // More poor frames in a row end the track.
 // Largest mean distance of points to the surface of a good fit [m].
 constexpr double kBadFit = 0.035;
 constexpr double kTrunkSeen = 0.15;     // Least support of head and chest of a real body.
@@ -47,9 +47,10 @@ constexpr double kGrowth = 0.2;
 constexpr int kGrowing = 60;  // Frames in which the height is learned.
 // Points this near to the head node count for the height [m].
 constexpr double kHeadReach = 0.2;
-constexpr double kWidest = 1.2;     // Largest width of a new person [m].
-constexpr double kLowestTop = 1.1;  // Least height above the floor of its topmost point [m].
-constexpr double kTallest = 0.7;    // Its least vertical extent [m].
+constexpr double kWidest = 1.2;  // Largest width of a new person [m].
+constexpr double kLowestTop =
+    1.1;  // Least height of a new person's topmost point above the floor [m].
+constexpr double kTallest = 0.7;  // Least vertical extent of a new person [m].
 // Points less than kHeadBand below the topmost one must not spread wider than kHeadWidth [m].
 constexpr double kHeadBand = 0.15;
 constexpr double kHeadWidth = 0.45;

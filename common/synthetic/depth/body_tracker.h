@@ -29,9 +29,9 @@ class BodyTracker {
     BodyId id;
     FittedBody body;
     std::vector<SurfacePoint> points;
-    int age = 0;                           ///< Number of frames since the body was found.
-    int poor = 0;                          ///< Frames in a row with too few points or a bad fit.
-    std::array<int, kNodeCount> unseen{};  ///< Frames in a row without support.
+    int age = 0;   ///< Number of frames since the body was found.
+    int poor = 0;  ///< Frames in a row with too few points, a bad fit or a hidden trunk.
+    std::array<int, kNodeCount> unseen{};  ///< Frames in a row with too little support.
   };
 
   void share_out(const Foreground& foreground, std::vector<bool>& unexplained);

@@ -19,8 +19,8 @@ struct Foreground {
   std::size_t pieces = 0;
 };
 
-/// Removes the floor, everything close to it, and pixels that float between two surfaces.
-/// Neighbouring pixels of similar depth form a piece.
+/// Leaves out the floor, what is close to it, what is higher than a person reaches, and pixels that
+/// float between two surfaces.  Neighbouring pixels of similar depth form a piece.
 [[nodiscard]] Foreground foreground_of(const DepthImage& image, const DepthCamera& camera,
                                        const Plane& floor);
 

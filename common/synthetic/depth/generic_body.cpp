@@ -5,7 +5,7 @@ namespace {
 
 using enum JointId;
 
-/// joint = (1 - share) * first + share * second
+/// The place of a joint on the body (joints_of() then moves the thumbs).
 struct Source {
   JointId joint;
   Between place;

@@ -3,7 +3,7 @@
 //
 // It has neither the build nor the bone lengths of the person it is fitted to.  Bone lengths are
 // shares of the body height (Drillis and Contini, as given by Winter), girths are means (ANSUR II).
-// Front and rear look alike.
+// Only the feet tell front from rear.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline constexpr int kNodeCount = 19;
 /// One column per node [m].
 using Nodes = Eigen::Matrix<double, 3, kNodeCount>;
 
-/// A point between two nodes.
+/// A point on the line through two nodes.
 struct Between {
   Node first;
   Node second;

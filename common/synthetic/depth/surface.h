@@ -41,8 +41,8 @@ struct Build {
 /// Draws a person's build.  It depends only on these arguments, so it is the same for every sensor.
 [[nodiscard]] Build draw_build(const BuildSpread& spread, std::uint64_t seed, std::size_t person);
 
-/// Leaves out segments whose joints are not finite.  Radii are in proportion to the length of the
-/// trunk.
+/// The tapers of a person's body, without those whose ends are not finite.  Radii are in proportion
+/// to the length of the trunk, within limits.
 [[nodiscard]] std::vector<Taper> surface_of(const Skeleton<SensorSpace>& body, const Build& build);
 
 }  // namespace chorus::synthetic::depth

@@ -24,7 +24,7 @@ struct Sight {
   const Stand& stand;
 };
 
-/// The moment of every joint that is seen; zero for the others.
+/// The moments of the joints that are seen; those of the others mean nothing.
 [[nodiscard]] Moments moments_of(const Sight& sight, double time, const Profile& profile,
                                  const ErrorKeys& keys);
 

@@ -10,7 +10,8 @@
 
 namespace chorus::synthetic::kinect {
 
-/// Where one leg hides the other, the SDK pulls the far leg towards the near one.
+/// Where knees, ankles or feet appear closer together than merge_angle, pulls the farther one
+/// towards the nearer one and makes it inferred.
 void merge_legs(Skeleton<SensorSpace>& body, const GrossError& gross);
 
 /// A skeleton that the SDK sees in a piece of furniture: it stands still somewhere in view. Usually
@@ -18,8 +19,8 @@ void merge_legs(Skeleton<SensorSpace>& body, const GrossError& gross);
 [[nodiscard]] std::optional<BodyFrame> ghost(const GrossError& gross, double time,
                                              const ErrorKeys& keys);
 
-/// The id that one sensor uses for each person.  When two people touch, their ids are swapped with
-/// some probability.
+/// The id that one sensor uses for each person.  When two people come to touch each other, their
+/// ids are swapped with some probability.
 class IdBook {
  public:
   IdBook(const ErrorKeys& keys, std::size_t people);

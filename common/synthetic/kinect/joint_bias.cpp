@@ -26,7 +26,7 @@ double side_on(double facing) {
   return std::min(size, deg(180) - size);
 }
 
-/// The directions radial, lateral and up at a joint.
+/// The horizontal directions at a joint: radial and lateral.
 struct Frame {
   Eigen::Vector3d radial;
   Eigen::Vector3d lateral;
@@ -39,7 +39,7 @@ std::optional<Frame> frame_at(const Eigen::Vector3d& joint) {
   return Frame{radial, Eigen::Vector3d::UnitY().cross(radial)};
 }
 
-/// The part of the bias that is equal for all people, for this facing angle.
+/// The part of the bias that is not drawn, for this facing angle.
 Eigen::Vector3d common_bias(JointId id, const Frame& frame, double facing, const JointBias& bias) {
   const double turned = side_on(facing);
   if (id == JointId::Head) {
@@ -66,8 +66,8 @@ BiasSize size_of(JointId id, const JointBias& bias) {
   return {part * bias.core * limb, part * bias.vertical};
 }
 
-/// The part of the bias that does not come from a leader.  The joint must not be at the sensor's
-/// own position.
+/// The bias that the joint would have without a leader.  The joint must not be at the sensor's own
+/// position.
 Eigen::Vector3d own_bias(JointId id, const Frame& frame, double facing, const JointBias& bias,
                          const Harmonics& h) {
   const BiasSize size = size_of(id, bias);

@@ -63,8 +63,8 @@ double growth(JointId id, const Stand& stand, const ColouredError& coloured) {
   return (1.0 + coloured.turn_growth * turned) * (1.0 + coloured.distance_growth * off * off);
 }
 
-/// Where inferred joints are pulled to: the bone hangs straight down from its parent.  Shoulders
-/// and hips stay where they are.
+/// Where inferred joints are pulled to: the bone hangs straight down from its parent.  Shoulders,
+/// hips and joints without a seen parent stay where they are.
 Eigen::Vector3d resting_place(const Skeleton<SensorSpace>& body, JointId id) {
   if (is_girdle(id)) return body[id].position;
   for (const Bone& bone : kBones) {

@@ -51,7 +51,7 @@ struct Stand {
   double misjudged = 0.0;                   ///< Error of the yaw that the SDK shows [rad].
   double distance = 2.5;                    ///< From the sensor to the neck [m].
   std::array<double, kJointCount> speed{};  ///< Speed of each joint [m/s].
-  /// How far each joint is hidden, as noticed by the SDK and by its labels: 0 (seen) to 1.
+  /// How far each joint is hidden, as noticed by the SDK and indexed by its labels: 0 (seen) to 1.
   std::array<double, kJointCount> hidden{};
 };
 
@@ -78,7 +78,8 @@ struct Moment {
 void advance(ColouredState& state, const Stand& stand, const Moment& moment, const Profile& profile,
              const ErrorKeys& keys);
 
-/// Adds coloured and white noise, the error of hidden joints, and teleports to every seen joint.
+/// Adds to every seen joint coloured and white noise, teleports, and the errors of hidden and of
+/// inferred joints.
 void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,
                 double time, const Profile& profile, const ErrorKeys& keys);
 

@@ -1,10 +1,11 @@
 // One simulated body-tracking depth sensor.  It applies the layers of error in this order, frame by
 // frame:
 //
-//   truth -> visibility -> yaw behaviour and flip -> view limits -> states -> bias
-//         -> coloured and white error -> fitted body -> gross errors -> drops, gaps, latency, clock
+//   truth -> visibility -> states -> bias -> yaw behaviour and flip -> view limits -> gaps
+//         -> merged legs -> coloured and white error, teleports -> fitted body -> ghosts and ids
+//         -> drops, latency, clock
 //
-// Deterministic: the same room, place, profile, seed and start give the same frames.
+// Deterministic: the same scene, setting and start give the same frames.
 #pragma once
 
 #include <optional>
@@ -26,9 +27,10 @@ struct KinectSetting {
   SensorId id;
   std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
   Profile profile;
-  /// Seed of the other errors; the same for all sensors of a room, because they share some errors.
+  /// Seed of all errors but the biases; the same for all sensors of a room, because they share some
+  /// errors.
   std::uint64_t seed = 1;
-  /// Seed of the bias of the SDK and of people; it is the same in every run.
+  /// Seed of the biases of the SDK and of people; meant to be the same in every run.
   std::uint64_t bias_seed = 1;
   /// True: frames are stamped by the host's clock with its errors.  False: by true time.
   bool own_clock = true;

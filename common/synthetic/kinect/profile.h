@@ -55,7 +55,8 @@ struct YawBehaviour {
   /// Facing angle above which left and right are swapped, and below which they are swapped back;
   /// half a turn or more: never [rad].
   double flip_to_rear = 0, flip_to_front = 0;
-  /// Largest deviation of one sensor from both angles, and from the second one alone [rad].
+  /// Largest deviation of one sensor from the two angles together, and a further one from
+  /// flip_to_front alone [rad].
   double flip_own = 0, flip_back_own = 0;
   double flip_time = 0;  ///< Duration of the transition [s].
 };
@@ -163,7 +164,7 @@ struct Parameter {
 [[nodiscard]] std::vector<Parameter> parameters_of(Profile profile);
 
 /// First 12 hex digits of the SHA-256 of profiles.json and the code of this folder, without
-/// comments and white space (../code_hash.cmake): printed with every result.
+/// comments and white space (../code_hash.cmake); printed with results.
 [[nodiscard]] std::string frozen_hash();
 
 }  // namespace chorus::synthetic::kinect

@@ -32,8 +32,8 @@ struct SharedKeys {
 
 class SharedError {
  public:
-  /// Prepares of() for this view.  Afterwards the results of of() depend only on these arguments
-  /// and its own; what is kept between calls is a cache.
+  /// Sets the view for the calls of of() that follow.  Give the same `keys` at every call: the
+  /// draws of a cell are kept until the person enters another one.
   void look(const View& view, const ColouredError& coloured, const SharedKeys& keys);
   /// The error of one joint in sensor space, of unit variance per axis.  Core joints have a part of
   /// it in common.

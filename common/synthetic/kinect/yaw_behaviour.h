@@ -39,8 +39,9 @@ void advance(FlipState& state, double facing, double dt, const YawBehaviour& beh
 [[nodiscard]] double misjudged_yaw(double facing, const FlipState& state,
                                    const YawBehaviour& behaviour);
 
-/// The skeleton as the SDK would show it: trunk and limbs turned about the spine, labels swapped in
-/// the rear state.
+/// The skeleton as the SDK would show it: all joints but those of the spine are turned about it,
+/// and labels are swapped in the rear state.  During the transition joints are in between, and no
+/// joint off the spine is tracked.
 [[nodiscard]] Skeleton<SensorSpace> as_shown(const Skeleton<SensorSpace>& body, double facing,
                                              const FlipState& state, const YawBehaviour& behaviour);
 
