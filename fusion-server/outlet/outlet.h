@@ -33,7 +33,7 @@ struct OutletContext {
 
 enum class Latency {
   Exact,      ///< Sends the fused poses as they are, later than real time by the alignment delay.
-  Predicted,  ///< Sends poses predicted to the time of sending, at constant velocity.
+  Predicted,  ///< Sends poses predicted to the time of sending; see predicted().
 };
 
 struct OutletTiming {

@@ -56,8 +56,9 @@ class TrackerState {
  public:
   explicit TrackerState(std::size_t slots) : slots_(slots) {}
 
-  /// The next frame.  People without a slot, or in a slot too high, are left out.  If the instant
-  /// is that of the last snapshot or earlier, all velocities are zero.
+  /// The next frame. People without a slot, or in a slot too high, are left out. Velocities are
+  /// zero for a new person, after a gap of more than 250 ms, and if the instant is not later than
+  /// that of the last snapshot.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:

@@ -14,7 +14,7 @@ namespace chorus::watch {
 inline constexpr std::array<std::size_t, 4> kWindows{4, 5, 6, 9};  ///< [blocks]
 inline constexpr std::size_t kLongestWindow = kWindows.back();
 
-/// The window that differs most.
+/// The window that differs most; windows with a lasting shift come first.
 struct Shift {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Mean residual beyond the usual [m]; axes of
                                                    ///< Residual.
