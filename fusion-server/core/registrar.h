@@ -1,8 +1,9 @@
 // The registration in use, the session that improves it, and a record of the last sessions.
 //
 // It uses no thread, socket or clock: frames, requests and solutions go in, solve jobs come out.
-// Provisional registrations belong to the session, and are withdrawn when its final solve is
-// refused.  A sensor that could not be placed does not start sessions again and again.
+// Provisional registrations belong to the session, and are withdrawn when it is cancelled or its
+// final solve is refused. A sensor that could not be placed has to wait, longer each time, before
+// it can start another session.
 #pragma once
 
 #include <deque>
@@ -74,9 +75,9 @@ class Registrar {
   [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }
   void set_earlier(Registration registration) { earlier_ = std::move(registration); }
 
-  /// Removes the place of a sensor that was moved.  The others keep theirs, and a session for this
-  /// sensor may start at once.  False while a session is running, or if fewer than two others have
-  /// a place.
+  /// Removes the place of a sensor that was moved. The others keep theirs, and a session for this
+  /// sensor may start at once. False while a session is running, if the sensor has no place, or if
+  /// fewer than two others have one.
   [[nodiscard]] bool displace(const SensorId& sensor, const std::string& reason);
   /// Conflict while a session is running; NotFound and InvalidArgument as with_origin().
   [[nodiscard]] Result<void> move_origin(const Origin& origin);

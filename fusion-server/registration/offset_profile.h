@@ -53,7 +53,7 @@ class OffsetProfile {
   Trail target_;
   Trail source_;
   Trail inner_;  ///< The frames of the source that stay within the target's time span at every
-                 ///< offset.
+                 ///< offset; all of them if fewer than half do. offset.
   bool levelled_ = false;
   Eigen::Isometry3d level_from_target_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d level_from_source_ = Eigen::Isometry3d::Identity();
