@@ -15,8 +15,8 @@ using Cloud = std::span<const Eigen::Vector3d>;
 
 struct IcpFit {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  double rms =
-      0.0;  ///< rms distance to the nearest target point, over the points that are kept [m].
+  /// rms distance to the nearest target point, over the points that are kept [m].
+  double rms = 0.0;
   std::size_t accepted = 0;
 };
 

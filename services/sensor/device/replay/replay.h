@@ -30,8 +30,8 @@ struct ReplayOptions {
   std::optional<Timestamp> epoch_at = {};
   /// First capture time of the set; none: as the recording notes it, or that of its first frame.
   std::optional<Timestamp> origin = {};
-  std::optional<Duration> period =
-      {};  ///< Length of the set; none: as the recording notes it, or as long as it lasts.
+  /// Length of the set; none: as the recording notes it, or as long as it lasts.
+  std::optional<Duration> period = {};
 };
 
 /// Reads device.replay; the reader's finish() reports mistakes.
