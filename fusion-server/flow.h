@@ -26,8 +26,8 @@ enum class Basis {
   Exact,         ///< The sensor captured at exactly that instant.
   Interpolated,  ///< The instant is between two captures.
   Pending,       ///< A later capture may still arrive; ask again.
-  /// There will be no bodies: the sensor is past the instant, or the gap between captures is too
-  /// wide.
+  /// There will be no bodies: no frames around the instant came in time, or the gap between them is
+  /// too wide.
   Lost,
 };
 

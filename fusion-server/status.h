@@ -1,6 +1,6 @@
 // The state of the fusion server apart from the fused bodies: its sensors and its registration.
 //
-// A plain value, replaced as a whole a few times a second; readers hold a shared_ptr to const.
+// A plain value, replaced as a whole a few times a second.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct FrameFates {
   std::uint64_t backwards = 0;  ///< Frames numbered after the newest one but captured before it;
                                 ///< left out.
   std::uint64_t stale = 0;      ///< Frames that came too late to be of use; left out.
-  std::uint64_t restarts = 0;   ///< How often the sensor's clock was set back, as three frames in a
-                                ///< row showed.
+  std::uint64_t restarts = 0;   ///< How often several frames in a row showed that the sensor's
+                                ///< clock was set back or its device restarted.
 
   bool operator==(const FrameFates&) const = default;
 };
@@ -66,10 +66,10 @@ struct SensorStatus {
   FrameFates fates;
   std::uint64_t failures = 0;  ///< Requests without a usable answer.
 
-  /// Distance between where this sensor and the others see the same people, minus the distance that
-  /// is usual for this sensor [m]; none until somebody has walked in view of it and of another one.
+  /// How far this sensor now sees people from where it would usually see them, as compared with the
+  /// others [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
-  /// Says in a sentence for people that the sensor was moved; empty if it stands as registered.
+  /// Says in a sentence for people that the sensor was moved; empty if that is not known.
   std::string alarm;
 
   bool operator==(const SensorStatus&) const = default;

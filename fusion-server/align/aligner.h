@@ -1,10 +1,10 @@
 // Moves one sensor's bodies to a common instant by linear interpolation (Otto 5.2.4).
 //
 // Positions are interpolated linearly, orientations by sign-aligned normalised LERP. A joint is
-// interpolated only when both frames saw it; its state is the worse of the two.  Bodies are matched
-// by id.  A body that only one of the two frames has is left out.  So is one that would have moved
+// interpolated only when both frames saw it; its state is the worse of the two. Bodies are matched
+// by id. A body that only one of the two frames has is left out. So is one that would have moved
 // faster than anybody can, because its id was passed to somebody else between the two frames.
-// Nothing is ever extrapolated.
+// Nothing is extrapolated.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,9 @@ struct AlignConfig {
   /// Widest gap between two frames that is interpolated; it is wider for a sensor with a long
   /// period (widest_gap).
   Duration max_gap = std::chrono::milliseconds(120);
-  /// An instant older than this is Lost instead of Pending; earlier if the sensor's recent frames
-  /// arrived sooner (longest_wait).
+  /// While the sensor has no later frame, an instant is Pending for at most this long and then
+  /// Lost. It is Lost earlier if the sensor's recent frames arrived sooner (longest_wait), or if
+  /// the gap is already too wide (widest_gap).
   Duration patience = std::chrono::milliseconds(200);
   /// A sensor is unsteady if its delay varies from frame to frame by more than this, by more than
   /// twice the median over the sensors, and by more than half its period.  Such a sensor is waited

@@ -18,9 +18,9 @@ Duration slowness(const History& history) {
   return history.period().value_or(Duration{0}) + history.habit()->least_delay;
 }
 
-/// Index, in order of slowness, of the slowest sensor that is always waited for: the median, or for
-/// an even count the faster of the two in the middle.  If no sensor has depth it is at least the
-/// second, because one camera alone does not yield a body.
+/// Index, in order of slowness, of the slowest sensor for which the patience must suffice: the
+/// median, or for an even count the faster of the two in the middle. If no sensor has depth it is
+/// at least the second, because one camera alone does not yield a body.
 std::size_t middle(std::size_t count, bool rays) {
   const std::size_t least = rays ? std::min(count, kCameras) - 1 : 0;
   return std::max((count - 1) / 2, least);

@@ -1,5 +1,5 @@
-// How long an instant waits for each sensor: long if most sensors are slow, but never so long that
-// one bad link delays everybody.
+// How long an instant waits for each sensor: long if most sensors are slow, but not because a
+// single link is bad.
 #pragma once
 
 #include <map>
@@ -15,8 +15,9 @@ class Patience {
   Patience(const std::map<SensorId, const History*>& histories, const AlignConfig& config);
 
   /// `config` with the patience for this sensor: the full patience or, if this sensor is unsteady
-  /// compared with the others, what the others usually need.  (On a busy machine the delays of all
-  /// sensors vary, and none is unsteady.)
+  /// compared with the others, what the others usually need, except where each of at most two
+  /// cameras is needed for a body. (On a busy machine the delays of all sensors vary, and none is
+  /// unsteady.)
   [[nodiscard]] AlignConfig of(const History& history) const;
 
   /// How much longer than `config.patience` an instant may wait because most of the sensors are
@@ -29,7 +30,7 @@ class Patience {
   Duration common_;          ///< Median over the sensors of how long an instant usually waits for
                              ///< each.
   Duration steady_;          ///< A sensor with a wider spread is unsteady.
-  bool all_needed_ = false;  ///< True if a body needs the rays of every sensor.
+  bool all_needed_ = false;  ///< True if there are at most two sensors, and both show rays only.
 };
 
 }  // namespace chorus::align

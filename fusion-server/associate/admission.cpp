@@ -49,7 +49,7 @@ void Admission::judge(Track& track) const {
   track.admitted = track.alone >= config_.alone;
 }
 
-/// True if the observer would certainly see a person standing at `place`.
+/// True if the observer would certainly see a person at `place` unless somebody hides them.
 bool Admission::looks_at(const Observer& observer, const Eigen::Vector3d& place) const {
   const Eigen::Vector3d seen = observer.world_from_sensor.inverse() * place;
   const double distance = seen.norm();
@@ -88,8 +88,8 @@ bool Admission::seen_through(const Track& track, const Eigen::Vector3d& place) c
   return false;
 }
 
-/// True if the observer looks at `place`, where the track is expected, but sees no body that could
-/// belong to it.
+/// True if the observer looks at `place`, where the track is expected, nobody whom it sees blocks
+/// its sight of `place`, and it sees no body there that could belong to the track.
 bool Admission::misses(const Observer& observer, const Track& track,
                        const Eigen::Vector3d& place) const {
   if (!looks_at(observer, place)) return false;
@@ -102,8 +102,8 @@ bool Admission::misses(const Observer& observer, const Track& track,
   return !sees_somebody && !hidden_from(observer, place);
 }
 
-/// True if several other sensors see a person where this sensor looks, and this sensor does not see
-/// that person.
+/// True if several other sensors see a published person where this sensor looks, and this sensor
+/// does not see that person.
 bool Admission::misplaces(const SensorId& sensor) const {
   const auto own = std::ranges::find(observers_, sensor, &Observer::sensor);
   if (own == observers_.end()) return false;
@@ -120,7 +120,7 @@ const std::vector<Assigned>& Admission::bodies_of(const SensorId& sensor) const 
   return bodies == bodies_.end() ? kNone : bodies->second;
 }
 
-/// Number of new bodies that only this sensor sees.
+/// Number of this sensor's bodies whose track is not published and is seen by no other sensor.
 std::int64_t Admission::alone_in(const SensorId& sensor) const {
   return std::ranges::count_if(bodies_of(sensor), [&](const Assigned& body) {
     return !body.settled && tracks_.at(body.track).size() == 1;

@@ -1,5 +1,6 @@
-// Decides whether a new track may be published.  A body has to wait if only one sensor sees it, at
-// a place where other sensors look and see nobody.
+// Decides whether a new track may be published. A track that only one sensor sees has to wait once
+// another sensor has looked at its place and seen nobody; a track that several sensors see has to
+// wait while at least twice as many miss it.
 //
 // Such bodies come from furniture, mirrors, and sensors that are not where they were registered.  A
 // sensor looks into a cone about its optical axis; a person in front of a place hides the place.
@@ -28,11 +29,11 @@ class Admission {
             Duration elapsed, const AssociationConfig& config);
 
   /// Sets `admitted` in three cases: several sensors see the track, and fewer than twice as many
-  /// miss it; or the track is confirmed, and no sensor that looks there has missed it; or one
-  /// sensor alone has seen it for config.alone.  That time runs n times slower while this sensor
-  /// has n new bodies that only it sees.  The time stops while the sensor misses a person whom
-  /// several others see where it looks (the body is then taken for that person, misplaced), and
-  /// while others see through the body.
+  /// miss it; or the track is confirmed, and no sensor that looks there has missed it; or it has
+  /// been seen for config.alone otherwise, mostly by one sensor alone. That time runs n times
+  /// slower while this sensor has n new bodies that only it sees. The time stops while the sensor
+  /// misses a published person whom several others see where it looks (the body is then taken for
+  /// that person, misplaced), and while seen_through() is true.
   void judge(Track& track) const;
 
   /// True if sensors on different sides look at `place` and see nobody there who could be the

@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::size_t kFree = 0;  // Rows and columns are counted from one; 0: unassigned.
 
-/// Shortest augmenting paths with potentials.  The shorter side becomes the rows, so that every row
-/// gets a column.  A forbidden pair costs as much as leaving both unpaired or, if that is infinite,
-/// more than all allowed pairs together.
+/// Shortest augmenting paths with potentials. The shorter side becomes the rows, so that every row
+/// gets a column. A forbidden pair costs CostTable::unpaired or, if that is infinite, more than all
+/// allowed pairs together.
 class Hungarian {
  public:
   explicit Hungarian(const CostTable& table)

@@ -8,26 +8,29 @@
 namespace chorus::associate {
 
 struct AssociationConfig {
-  /// A body whose core joints are farther from a person's than this is not that person [m].
+  /// A body is not taken for a person who is expected farther away from it than this [m], measured
+  /// horizontally; where sensors state large errors, the limit is greater.
   double gate = 0.6;
   double gate_growth = 0.3;  ///< The gate grows by this for every second without a view [m/s].
   double cluster = 0.4;  ///< New bodies of different sensors closer than this are one person [m].
   /// Rays of different cameras can start a new person if they pass each other closer than this [m].
   double ray_cluster = 0.15;
   int confirm_frames = 3;  ///< Number of instants with a view before a new person is published.
-  Duration coast = std::chrono::seconds(3);  ///< How long an unseen person is looked for.
+  Duration coast = std::chrono::seconds(3);  ///< How long an unseen published person is looked for.
   /// How long an unseen person is still published, at the place where they are expected.
   Duration carry = std::chrono::seconds(1);
   /// Time constant with which the predicted speed of an unseen person decays.
   Duration slow_down = std::chrono::seconds(2);
   /// How long a person who left can be recognised by their build; 0: not at all.
   Duration remember = std::chrono::seconds(60);
-  /// How long a newcomer is observed before it is decided which missing person, if any, they are.
+  /// How long a newcomer is usually observed before it is decided which missing person, if any,
+  /// they are.
   Duration recognise = std::chrono::seconds(1);
   /// The build of a person who was unseen for longer than this is compared with the build from
   /// before.
   Duration question = std::chrono::milliseconds(200);
-  /// Two confirmed tracks merge after this many instants at the same spot without a common sensor.
+  /// Two published tracks merge after this many consecutive instants at the same spot without a
+  /// common sensor.
   int merge_frames = 15;
   /// How long a body that only one sensor sees must persist if others look there and see nobody; 0:
   /// it need not wait.  While others see through it from two sides, it goes on waiting.

@@ -29,7 +29,7 @@ struct Loose {
 
 using BySensor = std::map<SensorId, std::vector<Loose>>;
 
-/// Log ratio of the body's size to the known size of the track's person.
+/// Log ratio of the body's size to the known size of the track's person; 0 if unknown.
 double size_difference(const Spans& spans, const Build& build) {
   double sum = 0.0;
   double count = 0.0;
@@ -63,8 +63,10 @@ class Places {
   std::vector<Sum> sums_;
 };
 
-/// Cost of assigning a body to a track: their distance in units of the track's gate, more for a
-/// track that is not admitted; NaN when it cannot be computed.
+/// Cost of assigning a body to a track; a distance as long as the track's gate costs 1. For a ray
+/// body it is the misfit of the rays, NaN if there is none. For other bodies it combines the
+/// distance from `place` with the difference in size, and is higher for a track that is not
+/// admitted.
 double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
   const PlacedView& body = loose.view;
   if (!body.rays) {

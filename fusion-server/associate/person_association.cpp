@@ -16,11 +16,12 @@ namespace {
 constexpr std::size_t kMaxTracks = 256;  // Four times what a frame may contain.
 // How long an unpublished track is looked for.
 constexpr Duration kCoastUnknown = std::chrono::seconds(1);
-// A person has left if sensors have seen through their place for this long.
+// An unseen person has left if sensors on different sides have seen through the person's place for
+// this long.
 constexpr Duration kGone = std::chrono::milliseconds(200);
 
 /// The views with their cores, ordered by sensor and body, so that the result does not depend on
-/// the order of arrival.
+/// the order of arrival. Views that show no place and no rays are left out.
 std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
   std::vector<PlacedView> sights;
   for (SensorView& view : views) {
@@ -40,7 +41,8 @@ bool is_settled(const Track& track, const AssociationConfig& config) {
   return track.admitted && track.hits >= config.confirm_frames;
 }
 
-/// The tracks that are still looked for; the others become missing.
+/// The tracks that are still looked for; the others are passed to miss(). Also forgets people who
+/// have been missing for too long.
 std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
                                 const AssociationConfig& config) {
   std::vector<Candidate> candidates;
@@ -59,8 +61,8 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
   return candidates;
 }
 
-/// Removes a new body near a person of whom its sensor already has a body: it is a second detection
-/// of that person, unless another sensor has two bodies there as well.
+/// Removes a new body that only one sensor sees, if this sensor and another one already see a
+/// person there: the new body is a second detection of that person.
 void drop_rivals(std::vector<std::vector<PlacedView>>& newcomers,
                  const std::vector<Candidate>& candidates, double limit) {
   std::erase_if(newcomers, [&](const std::vector<PlacedView>& members) {
@@ -111,7 +113,8 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
   }
 }
 
-/// Removes people who have left: several sensors have seen through their places for kGone.
+/// Removes people whom no sensor sees and through whose place sensors on different sides have seen
+/// for kGone.
 void leave(std::vector<Candidate>& candidates, const Admission& admission, Duration elapsed,
            Tracks& tracks) {
   std::erase_if(candidates, [&](Candidate& candidate) {

@@ -1,13 +1,14 @@
 // Decides which bodies of which sensors are the same person, now and over time.
 //
 // At each instant, the bodies of all sensors are matched jointly with where tracks are expected
-// (matching.h); the remaining bodies are clustered across sensors into new people.  Two tracks on
-// one spot that never share a sensor are one person; the older track stays.  A person whom only one
-// sensor sees where others look is not published at once (admission.h).  People who are not seen
-// are looked for where they are expected.  Those who left are remembered, and recognised by their
-// build (recognition.h).  Ray bodies of cameras without depth are matched by how far their rays
-// pass from the joints of a track (ray_matching.h); a single ray body starts no track and keeps
-// none alive.  Ids are never reused.
+// (matching.h); the remaining bodies are clustered across sensors into new people. Two tracks that
+// different sensors see on one spot are one person; two published tracks only once this has lasted
+// for merge_frames. A published track stays rather than an unpublished one, otherwise the older. A
+// person whom only one sensor sees where others look is not published at once (admission.h). People
+// who are not seen are looked for where they are expected. Those who left are remembered, and
+// recognised by their build (recognition.h). Ray bodies of cameras without depth are matched by how
+// far their rays pass from the joints of a track (ray_matching.h); a single ray body starts no
+// track and keeps none alive. A new person never gets an id that was used before.
 #pragma once
 
 #include <vector>

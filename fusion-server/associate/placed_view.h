@@ -6,11 +6,11 @@
 
 namespace chorus::associate {
 
-/// One body.  A body of which no joint has a position or a direction has no core and is left out.
+/// One body of one sensor.
 struct PlacedView {
   SensorView view;
-  /// Mean of the core joints, world [m]; for a ray body, the core of the track to which it was
-  /// assigned.
+  /// Mean of the core joints, world [m]; for a ray body, zero until update() sets it to the place
+  /// of its track.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();
   PlanError error = PlanError::Zero();  ///< Covariance of the core as the sensor states it.
   bool rays = false;                    ///< True for a ray body: it has no place by itself.

@@ -14,8 +14,8 @@ struct BodyLimits {
   double max_reach = 2.0;   ///< From the middle of the body to any of its joints [m].
   /// If ten or more joints are seen, the farthest is at least this far from the middle [m].
   double min_reach = 0.15;
-  /// How long a body may keep exactly the same coordinates; a real sensor never measures the same
-  /// coordinates twice.
+  /// How long a body may keep exactly the same coordinates; a real sensor hardly ever measures
+  /// exactly the same coordinates twice.
   Duration max_frozen = std::chrono::seconds(2);
 
   bool operator==(const BodyLimits&) const = default;

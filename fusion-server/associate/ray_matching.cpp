@@ -53,7 +53,7 @@ bool is_plausible(const Located& body, std::span<const PlacedView> views,
 /// Two views that may show the same person, and all other views that agree with them.
 struct Hypothesis {
   std::vector<std::size_t> views;  ///< Indices of the views, at most one per sensor.
-  double misfit = 0.0;             ///< Mean over the views [m].
+  double misfit = 0.0;             ///< How far its rays miss each other [m]; less is better.
 };
 
 /// Adds, for every other sensor, the view that fits best, if it fits well enough.

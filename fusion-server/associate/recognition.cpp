@@ -15,7 +15,8 @@ constexpr double kManyViews = 4.0;
 constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
 // Prior log odds that a person found at the expected place is the lost one.
 constexpr double kContinuity = 1.5;
-// Log odds below which a person who was lost and found loses the id.
+// Log odds below which a person who was lost and found is not published while the builds are
+// compared.
 constexpr double kUnlikely = -0.5;
 // A newcomer not recognised within this time plus config.recognise is taken for a new person.
 constexpr Duration kNoBones = std::chrono::seconds(2);

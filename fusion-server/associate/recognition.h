@@ -1,9 +1,10 @@
 // Decides who a person is, by their build, when they appear or come back.
 //
-// While people are missing, a newcomer gets no id until it is decided whether the newcomer is one
-// of them: after AssociationConfig::recognise in view at the latest, sooner if the builds differ
-// too much.  A person who was lost and found keeps the id while the builds are compared.  If the
-// builds show that they are different people, the id goes back to the lost one.
+// While people are missing, a newcomer is not published until it is decided whether the newcomer is
+// one of them: usually after AssociationConfig::recognise in view, sooner if many sensors see the
+// newcomer or the builds differ too much. A person who was lost and found keeps the id while the
+// builds are compared. If the builds show that they are different people, the id goes back to the
+// lost one.
 #pragma once
 
 #include "fusion-server/associate/association_config.h"
@@ -11,7 +12,8 @@
 
 namespace chorus::associate {
 
-/// Adds the track to `tracks.missing`, unless its id was never published.
+/// Adds the track to `tracks.missing`, unless its id was never published. If too many people are
+/// missing, the first of them is dropped.
 void miss(const Track& track, Tracks& tracks);
 
 /// Forgets people who have been missing for too long.

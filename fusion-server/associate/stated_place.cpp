@@ -10,7 +10,7 @@ namespace chorus::associate {
 namespace {
 
 constexpr double kDeviations = 3.0;  // Standard deviations that extend a limit.
-// [m]; error of a place of which nothing is stated: how different the cores of views are.
+// [m]; added to the stated errors: the cores of two views of one person differ by about this much.
 constexpr double kUnstated = 0.1;
 
 Eigen::Vector2d on_plan(const Eigen::Vector3d& place) { return {place.x(), place.z()}; }

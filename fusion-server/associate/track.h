@@ -20,21 +20,22 @@ struct Footprint {
 /// What is remembered of one person.
 struct Track {
   PersonId id;
-  Timestamp found;                                     ///< First instant with a view.
-  Timestamp seen;                                      ///< Last instant with a view.
-  int hits = 0;                                        ///< Number of instants with a view.
+  Timestamp found;  ///< First instant at which views located the person.
+  Timestamp seen;   ///< Last instant at which views located the person.
+  int hits = 0;     ///< Number of instants at which views located the person.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   PlanError error = PlanError::Zero();                 ///< Of `core`, as far as sensors state it.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
   /// The bodies that sensors showed when the person was last seen.
   std::vector<Footprint> footprints = {};
-  /// Number of consecutive instants at an older track's spot without a common sensor.
+  /// Number of consecutive instants at the spot of another track, one that would be kept in a
+  /// merger, without a common sensor.
   int shadowed = 0;
   Located joints;  ///< Positions of the joints when last seen; known while cameras show rays.
   bool admitted = false;  ///< True if the track may be published; it stays true.
-  /// True if another sensor has looked at the person's place and seen nobody.
+  /// True once a sensor has looked at the person's place without seeing the person.
   bool doubted = false;
-  Duration alone{0};  ///< How long only one sensor has seen the person since `doubted` became true.
+  Duration alone{0};  ///< How long the doubted person has been seen; see Admission::judge().
   /// How long sensors have seen through the place where the person is expected.
   Duration through{0};
   Build build = {};  ///< Learned since the person was found, or found again.

@@ -13,8 +13,8 @@ namespace chorus::associate {
 [[nodiscard]] Candidate predict(const Track& track, Timestamp instant,
                                 const AssociationConfig& config);
 
-/// Updates the candidate by its views, if it has any.  A track that only one camera without depth
-/// sees stays where it is expected, as long as an unseen track would survive.
+/// Updates the candidate by its views. If they do not locate the person (there are none, or only
+/// one camera without depth sees the person), the track stays as it was.
 void update(Candidate& candidate, Timestamp instant, const AssociationConfig& config);
 
 }  // namespace chorus::associate

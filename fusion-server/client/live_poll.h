@@ -1,4 +1,4 @@
-// Polls one resource of a running service by long polling: gets each version once, until stopped.
+// Polls one resource of a running service, by long polling or at an interval, until stopped.
 #pragma once
 
 #include <chrono>

@@ -28,7 +28,7 @@ class LiveRecording {
   /// a Chorus service, or the file cannot be created.
   [[nodiscard]] static Result<std::unique_ptr<LiveRecording>> start(asio::io_context& io,
                                                                     LiveRecordingOptions options);
-  /// Ends polling and waits until everything is written.
+  /// Ends polling and waits, for 30 s at most, until everything is written.
   [[nodiscard]] record::RecordingReport stop();
 
   /// The counts of each topic, such as "/frame" or "/sensors/s1/frame"; from the start there is an

@@ -14,7 +14,8 @@
 namespace chorus::core {
 namespace {
 
-// Held sensors whose places differ by more than this were moved [m].
+// If the places of the held sensors in both registrations fit with a greater rms than this, one of
+// these sensors was moved [m].
 constexpr double kMisfit = 0.3;
 
 int rank(Verdict verdict) {
@@ -43,7 +44,7 @@ bool stands_well(const Registration& registration, const SensorId& sensor) {
   return verdict_of(registration, sensor) == Verdict::Good;
 }
 
-/// Sensors that the candidate adds, or that it places well while the registration in use does not.
+/// The sensors whose places extended() takes from the candidate.
 std::set<SensorId> newcomers(const Registration& current, const Registration& candidate,
                              SolveKind kind) {
   std::set<SensorId> found;
@@ -56,7 +57,8 @@ std::set<SensorId> newcomers(const Registration& current, const Registration& ca
   return found;
 }
 
-/// Adds the sensor's position, and points in front of, next to and above the walk as it sees it.
+/// Adds the sensor's position, the point kReach in front of it, and the points one metre beside and
+/// one metre above that point.
 void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& marks) {
   const Eigen::Vector3d walk = kReach * Eigen::Vector3d::UnitZ();
   for (const Eigen::Vector3d& mark : {Eigen::Vector3d(Eigen::Vector3d::Zero()), walk,

@@ -15,21 +15,23 @@ namespace chorus::core {
 /// The sensor's own verdict, or that of the whole registration.  None: the sensor has no place.
 [[nodiscard]] Verdict verdict_of(const Registration& registration, const SensorId& sensor);
 
-/// Whether the candidate should replace the whole registration: never if it is refused, has a worse
-/// verdict or lacks one of the sensors.  An equally good candidate replaces it if it is `Final`, so
-/// that a new walk has an effect, or if both are provisional.
+/// Whether the candidate should replace the whole registration: not if it is refused or places no
+/// sensor; always if the current one is refused or places none. Otherwise it must place all sensors
+/// of the current one. Then a better verdict replaces it; so does an equal one if `kind` is Final,
+/// so that a new walk has an effect, or if both are provisional.
 [[nodiscard]] bool should_replace(const Registration& current, const Registration& candidate,
                                   SolveKind kind);
 
-/// The current places, plus those of sensors that only the candidate places well (at the end of a
-/// walk: places at all), moved into the world of the held ones.  NotFound: the candidate adds no
-/// sensor. Conflict: the walk contradicts the places of the held sensors relative to one another.
+/// The current places, plus those of sensors that only the candidate places well or, at the end of
+/// a walk, that only it places at all; they are moved into the world of the held ones. NotFound:
+/// there is no such sensor, or one of the two registrations is refused or empty. Conflict: the walk
+/// contradicts the places of the held sensors relative to one another.
 [[nodiscard]] Result<Registration> extended(const Registration& current,
                                             const Registration& candidate, SolveKind kind);
 
 /// The registration to use after this solve, in the world of the current one (world.h); on an error
-/// the current one stays.  `hold`: sensors that are placed well keep their places even if the
-/// candidate as a whole is equally good.
+/// the current one stays. `hold`: if any sensor is placed well, the current registration is only
+/// extended, however good the candidate is.
 [[nodiscard]] Result<Registration> adopted(const Registration& current,
                                            const Registration& candidate, SolveKind kind,
                                            bool hold);

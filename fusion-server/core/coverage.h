@@ -18,14 +18,14 @@ namespace chorus::core {
 class Coverage {
  public:
   void clear();
-  /// Takes a frame.  A frame with several bodies is treated as an empty one, because the bodies
-  /// cannot be matched.
+  /// Takes a frame. A frame with several bodies is treated as an empty one, because the bodies
+  /// cannot be matched; so is a frame that does not show the neck.
   void add(const SensorFrame& frame);
 
   /// All pairs that saw somebody together, ordered by the sensors' names.
   [[nodiscard]] std::vector<PairCoverage> pairs() const;
-  /// The squares of the floor in which somebody walked, each with the number of sensors that saw
-  /// somebody there.
+  /// The squares of the floor in which sensors that have a place saw somebody, each with the number
+  /// of these sensors.
   [[nodiscard]] std::vector<CoveredCell> cells(const Registration& registration) const;
 
  private:

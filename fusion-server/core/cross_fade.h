@@ -14,9 +14,9 @@ namespace chorus::core {
 
 class CrossFade {
  public:
-  /// Takes the same people at one instant, according to the old places and to the new ones.  A
-  /// person who is displaced by more than half a metre is not faded: the world was moved, or it is
-  /// somebody else.
+  /// Takes the same people at one instant, according to the old places and to the new ones. A
+  /// person with a joint that is displaced by more than half a metre is not faded: the world was
+  /// moved, or it is somebody else.
   void begin(const std::vector<FusedBody>& before, const std::vector<FusedBody>& now, Timestamp at);
 
   /// Adds what is left of the differences.

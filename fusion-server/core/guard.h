@@ -44,8 +44,8 @@ class Guard {
 
   /// Call this when the sensor has lost its place; its alarm lasts until it has a new one.
   void displaced(const SensorId& sensor);
-  /// Drops the current finding, and the alarms of sensors that have a place again.  If any place
-  /// has changed, what was learned about shifts is forgotten, too.
+  /// Drops the current finding, and the alarms of sensors that have a place again; all alarms if no
+  /// sensor has a place. If any place has changed, what was learned about shifts is forgotten, too.
   void replaced(const Registration& before, const Registration& now);
   /// Forgets sensors that are no longer configured.
   void keep(const std::set<SensorId>& sensors);

@@ -11,8 +11,8 @@
 
 namespace chorus::core {
 
-/// For each sensor of a snapshot, the fraction of all joints that it contributed to, in [0, 1];
-/// empty if there are no bodies.
+/// For each sensor of a snapshot, the fraction of the seen joints that it contributed to, in [0,
+/// 1]; empty if no sensor contributed to any joint.
 using Parts = std::map<SensorId, double>;
 [[nodiscard]] Parts parts_of(const Snapshot& snapshot);
 

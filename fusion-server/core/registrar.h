@@ -84,9 +84,9 @@ class Registrar {
   [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }
   void set_earlier(Registration registration) { earlier_ = std::move(registration); }
 
-  /// Removes the place of a sensor that was moved.  The others keep theirs, and a session for this
-  /// sensor may start at once.  False while a session is running, or if fewer than two others have
-  /// a place.
+  /// Removes the place of a sensor that was moved. The others keep theirs, and a session for this
+  /// sensor may start at once. False while a session is running, if the sensor has no place, or if
+  /// fewer than two others have one.
   [[nodiscard]] bool displace(const SensorId& sensor, const std::string& reason);
   /// Conflict while a session is running; NotFound and InvalidArgument as with_origin().
   [[nodiscard]] Result<void> move_origin(const Origin& origin);

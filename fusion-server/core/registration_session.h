@@ -1,7 +1,7 @@
 // Collects a person's walk until the sensors' places can be solved (Otto 5.2.1).
 //
-// It uses no I/O and no clock: frames go in, and at times a solve is due.  The walk is kept in
-// chunks that are shared with the solver, so that nothing is copied here.
+// It uses no I/O and no clock: frames go in, and at times a solve is due. The walk is kept in
+// chunks that are shared with the solver, so that a solve need not copy it here.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// When the fused output ticks: instants on the grid k / rate of UTC, each fused once, in order.
+// When the fused output ticks: instants on the grid k / rate of UTC, each answered at most once, in
+// order.
 //
 // It reads no clock: the caller passes the time, and whether the pipeline has all frames for the
 // instant.
@@ -17,8 +18,8 @@ struct TickConfig {
   /// Shortest time between two snapshots, limited to half an interval: after a stall the late
   /// snapshots come one by one, so that a client polling the latest frame sees each of them.
   Duration min_spacing = std::chrono::milliseconds(13);
-  /// If fusion is further behind than this (suspended host), instants are skipped, and the skipping
-  /// is reported.
+  /// If fusion is further behind the alignment delay than this (suspended host), instants are
+  /// skipped and counted.
   Duration max_lag = std::chrono::seconds(1);
   /// An instant is fused again this long after it, if frames came too late for it.
   Duration late_frames = std::chrono::milliseconds(800);
@@ -36,8 +37,8 @@ class TickSchedule {
   explicit TickSchedule(TickConfig config, std::uint64_t first_sequence = 1)
       : config_(config), sequence_(first_sequence) {}
 
-  /// The instant to fuse next.  Starts at the first one after `now`, skips instants when we are
-  /// further behind than max_lag, and restarts when the clock was set back.
+  /// The instant to fuse next. Starts at the first one after `now`, skips instants when we are
+  /// further behind than max_lag, and restarts when the clock was set back by more than max_lag.
   [[nodiscard]] Tick next(Timestamp now);
 
   /// Zero: fuse it now.  Otherwise: wait at most this long, and call this again when a frame

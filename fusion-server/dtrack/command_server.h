@@ -3,7 +3,7 @@
 //
 // It refuses, logs and counts connections beyond a limit, commands over 200 bytes, and clients that
 // do not read their answers (at most 4 kB are kept), send no known command in time (`first_word`),
-// are silent for longer than `idle`, or send more than 64 commands that are unknown or not
+// send none for longer than `idle`, or send more than 64 commands that are unknown or not
 // permitted.
 #pragma once
 

@@ -47,7 +47,7 @@ struct Passage {
   double elapsed = 0.0;  ///< [s]
   double out = 0.0;      ///< Expected number of changes from correct to swapped.
   double back = 0.0;
-  double exchanged = 0.0;  ///< Mean probability in that time that the labels were swapped.
+  double exchanged = 0.0;  ///< Probability that the labels were swapped in that time.
 };
 
 /// What was learned about one sensor.

@@ -7,7 +7,8 @@
 namespace chorus::facing {
 namespace {
 
-// [m]; error of all pairs of a view together, including slow errors.
+// Standard deviation of the error of each span of a view, per axis [m]; includes errors that
+// persist over many frames.
 constexpr double kSpanSigma = 0.2;
 constexpr double kMaxAgree = 4.0;  // Limit on the log odds of one instant, because errors persist.
 

@@ -33,11 +33,10 @@ struct LabelStep {
   Passage passage;  ///< What happened if the held sides are right; all zero for a new view.
 };
 
-/// Log odds that the spans of a view agree with the held ones rather than oppose them, as if all
-/// errors were of this instant.
+/// Log odds that the spans of a view agree with the held ones rather than oppose them; not limited.
 [[nodiscard]] double shown_log_odds(const Spans& view, const Spans& held);
 
-/// The same as evidence: limited, because errors persist.
+/// The same, but limited, because errors persist over many frames.
 [[nodiscard]] double agreement_log_odds(const Spans& view, const Spans& held);
 
 /// One step of the forward filter; if there is no `before`, the view is new.

@@ -13,7 +13,7 @@ constexpr double kGuessedPair = 0.3;  // Weight of a pair with an inferred joint
 // [m]; longer spans count as this long: a kick must not outweigh shoulders and hips.
 constexpr double kMaxSpan = 0.4;
 constexpr std::size_t kTrunkPairs = 2;
-constexpr int kRounds = 3;  // One or two rounds are enough for agreement.
+constexpr int kRounds = 3;  // Rounds of join(); one or two usually suffice.
 
 struct Joined {
   Spans spans;          ///< Mean of the views, each with the sign that makes it agree.

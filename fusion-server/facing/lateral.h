@@ -13,8 +13,8 @@ inline constexpr std::array<JointId, 6> kSidePairs{JointId::ShoulderLeft, JointI
                                                    JointId::ElbowLeft,    JointId::KneeLeft,
                                                    JointId::WristLeft,    JointId::AnkleLeft};
 
-/// The vector left - right of each pair, world [m]; shortened if a joint of the pair is inferred,
-/// zero if one is not seen.
+/// The vector left - right of each pair, world [m]; shortened if it is longer than 0.4 m or a joint
+/// of the pair is inferred, zero if one is not seen.
 using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 
 inline constexpr double kMinSpan = 0.05;  ///< [m]; shorter spans have no direction.

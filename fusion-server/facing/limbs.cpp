@@ -11,7 +11,7 @@ namespace {
 
 using enum JointId;
 
-// Number of other views that are needed to decide which of two is wrong.
+// Number of other views that are needed to decide that a view has a pair swapped.
 constexpr std::size_t kEnough = 2;
 
 /// For each pair of kSidePairs, the left joints that are swapped together with it.

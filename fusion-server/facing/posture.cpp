@@ -98,8 +98,8 @@ double tracked_share_of_arms(const Skeleton<WorldSpace>& body) {
   return static_cast<double>(tracked) / static_cast<double>(kArmJoints.size());
 }
 
-/// Share of the arm joints that the sensors on the side of `forward` track, minus the share that
-/// the other sensors track.
+/// Positive if the sensors on the side of `forward` track a larger share of the arm joints than the
+/// other sensors do.
 double seen_from(const std::vector<SensorView>& views, const Eigen::Vector3d& forward) {
   double mean = 0.0;
   for (const SensorView& view : views) mean += tracked_share_of_arms(view.skeleton);

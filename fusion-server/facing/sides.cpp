@@ -50,9 +50,9 @@ void keep_lost(Spans& spans, const Spans& before) {
   }
 }
 
-/// True if the view opposes the held sides.  A view that clearly shows left and right is trusted;
-/// for an unclear one the last decision is kept.  A sensor that tells front from rear seldom
-/// exchanges them, so that its view must show it the more clearly.
+/// True if the view opposes the held sides. A view that clearly shows left and right is trusted;
+/// for an unclear one the last decision is kept. A sensor that tells front from rear seldom swaps
+/// left and right, so its view must show more clearly that it did.
 bool opposes(const SensorView& view, const Spans& spans, const Sides& sides,
              const SidesMemory& memory, const SidesConfig& config) {
   const auto telling = memory.telling.find(view.sensor);

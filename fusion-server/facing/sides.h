@@ -60,9 +60,10 @@ struct SidesMemory {
   std::map<SensorId, Telling> telling;
 };
 
-/// Swaps left and right in the views that have them wrong, sets every view's `facing` to that of
-/// the agreed body, sets the person's sides_confidence, and updates `memory`.  A swapped view loses
-/// its orientations, because they describe a body that faces the sensor.
+/// Swaps left and right in the views that have them wrong, calls mend_limbs(), sets each view's
+/// `facing` to that of the agreed body if that is known, sets the person's sides_confidence, and
+/// updates `memory`. Does nothing without config.resolve or without views. A swapped view loses its
+/// orientations, because they describe a body that faces the sensor.
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config);
 

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kNearest = 0.3;  // [m], horizontal; a person is not nearer to a camera.
 // A figure is narrow if the size_of() its spans is less than this [m]; a person seen from the front
-// has 0.8.
+// has about 0.8.
 constexpr double kWide = 0.35;
 // Cosine of the angle between ray and normal; a flatter ray meets the plane too far away.
 constexpr double kSteepest = 0.1;
 
-/// Moves the joint to where its ray meets the plane; if the ray is too flat, the joint is left out.
+/// Moves the joint to where its ray meets the plane; if the ray is too flat, the joint stays a ray.
 void put_on_plane(Joint& joint, const Eigen::Vector3d& eye, const Eigen::Vector3d& normal,
                   double range) {
   if (!joint.bears()) return;

@@ -29,7 +29,7 @@ struct TellingPrior {
 /// Log odds that one sensor tells front from rear; 0 while nothing is known.
 class Telling {
  public:
-  /// Only while the held sides are certain.
+  /// Call this only while the held sides are certain.
   void learn(const Passage& passage, const TellingPrior& prior);
   [[nodiscard]] double log_odds() const { return log_odds_; }
 

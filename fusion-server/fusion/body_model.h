@@ -12,8 +12,8 @@ struct BodyModel {
   /// whole body of a view is too large or too small.
   double scale = 0.06;
   /// The same for the angle [rad] by which the whole body of a view is turned about the vertical
-  /// axis when it is seen from the side.  It is zero up to `turn_from`, and reaches this value at
-  /// `turn_full`; both are angles between frontal and side-on.
+  /// axis when it is seen from the side. It is nearly zero up to `turn_from`, and reaches this
+  /// value at `turn_full`; both are angles between frontal and side-on.
   double turn = deg(20);
   double turn_from = deg(40);
   double turn_full = deg(90);

@@ -136,7 +136,8 @@ double loss_at(const Terms& terms, const Eigen::Vector3d& point) {
   return loss;
 }
 
-/// The joint's position according to all views together; the ranges of the rays are refined twice.
+/// The joint's position according to the views with trust, without a robust loss; the ranges of the
+/// rays are refined twice. None if these views leave the position open.
 std::optional<Eigen::Vector3d> plain_start(const Terms& terms, std::span<const double> trust) {
   std::optional<Eigen::Vector3d> point;
   for (int round = 0; round < 3; ++round) {
@@ -173,8 +174,9 @@ bool contradictory(const Terms& terms, const Eigen::Vector3d& point) {
   return false;
 }
 
-/// Factor by which the typical squared residual exceeds the stated variance, at least 1.  With many
-/// views it is computed from the median of the residuals, so that outliers do not matter.
+/// Factor by which the typical squared residual exceeds the stated variance, at least 1. It is
+/// computed from the median of the residuals, so that outliers do not matter; with fewer than
+/// kManyViews it is 1.
 double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
   std::vector<double> ratios;  // residual over its usual value, squared
   double constraints = 0.0;

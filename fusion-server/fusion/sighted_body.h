@@ -45,9 +45,10 @@ class SightedBody {
   /// How the views take part in the means of placed().
   [[nodiscard]] std::vector<ViewPulls> pulls() const;
   /// Mean squared residual between the points and `body`, per axis, in units of the points'
-  /// variances; none if no joint is seen in two views.
+  /// variances; only over joints that several views show, all as points without a covariance of
+  /// their own; none if there is no such joint.
   [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;
-  /// Mean square of the views' scale errors; none with fewer than two views.
+  /// Mean square of the views' scale errors; none if fewer than two views have points.
   [[nodiscard]] std::optional<double> scale_square() const;
   /// State, orientation, contributors and their shares of a joint; its position is not set.
   [[nodiscard]] FusedJoint shown(JointId joint) const;

@@ -26,7 +26,7 @@ class BoneLengths {
   /// The description is updated when a bone's length differs from it by more than this [m].
   static constexpr double kTolerance = 0.005;
 
-  /// False if this person has already been measured.
+  /// False if this is the person who was measured last.
   [[nodiscard]] bool wants(PersonId person) const { return !done_ || person != person_; }
   /// Adds a frame; `local` uses Coordinates::Local.  Returns a new description when it is complete
   /// and differs from the last one.

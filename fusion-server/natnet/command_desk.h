@@ -1,14 +1,14 @@
 // NatNet's command channel without a socket: decides who is a client and what to answer.
 //
-// A client is an address that connected or sent a keep-alive, and then sent something else.  (In
-// multicast, connecting only asks for the server's settings, so only keeping alive counts.)
-// Clients are identified by address and port; their number is limited in total and per host; they
-// are forgotten after `client_timeout` without a message.  Sender addresses can be forged, and the
-// protocol cannot detect that.  Answers are larger than requests, so `answers` limits their total.
-// A single datagram enables nothing and takes no client's place.  But two datagrams with the same
-// forged address make us send frames to that host, for `client_timeout` and to at most
-// `max_clients_per_address` ports (docs/decisions/0025).  Messages that only servers send are never
-// answered, so two servers cannot be made to answer each other.
+// A client is an address that connected or sent a keep-alive, and then sent another message in
+// time. (In multicast, connecting only asks for the server's settings, so only keeping alive
+// counts.) Clients are identified by address and port; their number is limited in total and per
+// host; they are forgotten after `client_timeout` without a message. Sender addresses can be
+// forged, and the protocol cannot detect that. Answers are larger than requests, so `answers`
+// limits their total. A single datagram enables nothing and takes no client's place. But two
+// datagrams with the same forged address make us send frames to that host, for `client_timeout` and
+// to at most `max_clients_per_address` ports (docs/decisions/0025). Messages that only servers send
+// are never answered, so two servers cannot be made to answer each other.
 #pragma once
 
 #include <chrono>

@@ -23,7 +23,8 @@ struct Content {
   bool trackers = false;  ///< Adds /VMC/Ext/Tra/Pos.
 };
 
-/// The datagrams of one frame.  Without a body (nullptr) they only state that nobody is tracked.
+/// The datagrams of one frame. Without a body (nullptr), or if its pelvis or facing is unknown,
+/// they state that nobody is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody* body,
                                                     const Content& content);
 

@@ -6,7 +6,7 @@
 
 namespace chorus::outlet {
 
-/// Complains about entries that are not addresses.
+/// Complains if an entry cannot be read.
 void read_allow(ConfigReader& reader, net::AllowList& out);
 
 }  // namespace chorus::outlet

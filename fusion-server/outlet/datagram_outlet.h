@@ -23,7 +23,7 @@ struct DatagramStream {
   Datagrams last_words = {};  ///< Sent when the outlet ends.
 };
 
-/// `name` must outlive the outlet; errors about a target are those of DatagramSender.
+/// `name` must outlive the outlet; errors are those of DatagramSender::open().
 [[nodiscard]] Result<std::unique_ptr<Outlet>> open_datagram_outlet(
     std::string_view name, std::vector<DatagramStream> streams);
 

@@ -56,10 +56,12 @@ struct Arrival {
   std::string text;
 };
 
-/// Never blocks: a datagram that the operating system does not accept at once is lost and counted.
+/// Sending never blocks: a datagram that the operating system does not accept at once is lost and
+/// counted.
 class DatagramSender {
  public:
-  /// Opens the sockets and resolves the targets.  Io and InvalidArgument name the target.
+  /// Opens the sockets and resolves the targets. An InvalidArgument names a bad target or
+  /// `listen_address`; an Io names the port or the multicast address that cannot be used.
   [[nodiscard]] static Result<std::unique_ptr<DatagramSender>> open(const DatagramOptions& options);
   ~DatagramSender();
 

@@ -49,8 +49,9 @@ inline constexpr std::array<std::string_view, kHumanBoneCount> kHumanBoneNames{
 struct BonePose {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< The joint about which the bone turns.
   Eigen::Quaterniond world_from_bone = Eigen::Quaterniond::Identity();
-  /// False: the bone's joints are not tracked.  Then it has its parent's position and rotation, so
-  /// that the poses of its children are right even for receivers that ignore this flag.
+  /// False: not all joints that the bone needs are tracked. Then it has its parent's position and
+  /// rotation, so that the poses of its children are right even for receivers that ignore this
+  /// flag.
   bool known = false;
 };
 

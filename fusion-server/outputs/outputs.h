@@ -1,8 +1,8 @@
 // All outputs except REST, as the configuration section "outputs" enables them.
 //
-// There is one folder per protocol: NAME_encoder.h converts a TrackerFrame to bytes (pure);
-// NAME_outlet.h has a thin sender, its settings and its factory. outputs.cpp is the only list of
-// the protocols.
+// Each protocol has a folder; VMC and VRChat share one. NAME_outlet.h has the sender of the
+// protocol NAME, its settings and its factory; in most folders, NAME_encoder.h converts a
+// TrackerFrame to bytes (pure). outputs.cpp lists the protocols.
 #pragma once
 
 #include <memory>
@@ -59,7 +59,8 @@ void read_outputs(ConfigReader reader, OutputsConfig& out);
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
     const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
 
-/// The smallest max_persons of the enabled outputs: all of them show the slots below it.
+/// The smallest max_persons of the enabled outputs, all of which show the slots below it; the
+/// default max_persons if no output is enabled.
 [[nodiscard]] std::size_t slots_of_all(const OutputsConfig& config);
 
 }  // namespace chorus::outputs

@@ -126,7 +126,7 @@ class Replay {
   }
 
  private:
-  /// The snapshot; none if no sensor covers the instant.
+  /// The snapshot; none if no registered sensor covers the instant.
   std::optional<Snapshot> answer(Timestamp instant) {
     frames_.advance(instant, histories_);
     const Timestamp late = instant + config_.pipeline.align.patience + Duration(1);

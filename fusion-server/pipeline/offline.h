@@ -32,14 +32,14 @@ struct OfflineInput {
 /// Takes each snapshot; an error stops the fusion.
 using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 
-/// Registers the sensors from the first minutes in which one person is seen alone.  If some sensors
-/// have no place after that, it uses further such minutes, until all have a place or the recordings
-/// end. Conflict, with reasons, when no registration is found.
+/// Registers the sensors from the first minutes in which one person is seen alone. If some sensors
+/// have no place after that, it uses further such minutes, until all have a place, the recordings
+/// end, or the frames need too much memory. Conflict, with reasons, when no registration is found.
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
-/// Fuses every instant that any sensor covers; keeps only a few seconds of frames in memory.
-/// Corrects the capture times by the clock offsets in the registration.
+/// Fuses every instant that any registered sensor covers; keeps only a few seconds of frames in
+/// memory. Corrects the capture times by the clock offsets in the registration.
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 

@@ -133,7 +133,7 @@ void forget_the_gone(Memory& memory) {
   memory.fusion.keep_only(tracked);
 }
 
-/// One report for each sensor that is polled or registered.
+/// One report for each sensor that has delivered a frame or is registered.
 std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
                                  const std::vector<Person>& people,
                                  const Registration& registration) {

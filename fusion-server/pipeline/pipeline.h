@@ -66,7 +66,8 @@ struct Waiting {
   Duration extension{0};  ///< Additional wait, because most of the sensors are slow.
 };
 
-/// The sensors to wait for before any has answered for an instant: every sensor with a place.
+/// The sensors to wait for before any has answered for an instant: every sensor that has a place
+/// and has delivered a frame.
 [[nodiscard]] Waiting all_awaited(const Histories& histories, const Registration& registration,
                                   const PipelineConfig& config);
 

@@ -18,9 +18,9 @@ struct FrameAnswer {
   std::shared_ptr<const resource::FrameResource> frame;  ///< Null unless the body is a frame.
 };
 
-/// Reads the answer to a request for a frame.  Its event is Unreadable for a content type that is
-/// not a frame's, an unreadable frame, or a frame of another sensor.  A frame in world space may
-/// have any source, because fusion servers can be chained.
+/// Reads the answer to a request for a frame. For status 200 its event is Unreadable if the content
+/// type is not a frame's, or the body is not a readable frame of the expected sensor. A frame in
+/// world space may have any source, because fusion servers can be chained.
 [[nodiscard]] FrameAnswer read_frame_answer(const http::ClientResponse& response,
                                             const SensorId& expected);
 

@@ -77,7 +77,7 @@ class Follower : public std::enable_shared_from_this<Follower> {
   std::optional<FloorPlane> floor_;
   std::optional<NtpStatus> host_;
   std::optional<Arrival> answered_;  ///< The frame in the answer or event that is being handled.
-  std::deque<Arrival> held_;         ///< Frames held back until their sensor's clock is known.
+  std::deque<Arrival> held_;  ///< Frames held back while the clock is in doubt; a few at most.
   mutable std::mutex mutex_;
   PollReport report_;  ///< Guarded by mutex_, like tally_.
   FrameTally tally_;

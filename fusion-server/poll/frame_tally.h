@@ -36,7 +36,7 @@ class FrameTally {
 class AgeWatch {
  public:
   /// True if the frame's age (capture to receipt, as far as the clocks are known) does not fit, or
-  /// if it was captured before the frame before it.
+  /// if it was captured before the frame before it. False until the ages of some frames are known.
   [[nodiscard]] bool odd(const SensorFrame& frame);
 
  private:

@@ -18,11 +18,12 @@ struct PollTimings {
   /// Sent as Prefer: wait.  Also how long a stream may be without frames before it counts as
   /// silent.
   Duration wait = std::chrono::seconds(2);
-  /// An answer that comes later than `wait` + this counts as a failure.
+  /// An answer that takes longer than this, plus the time that the sensor was asked to wait, counts
+  /// as a failure.
   Duration answer_slack = std::chrono::seconds(1);
-  /// Shortest time between two requests, whatever the answers.
+  /// Usual shortest time between two requests.
   Duration min_interval = std::chrono::milliseconds(4);
-  /// Pause after an answer that came at once with nothing new.
+  /// Time from one request to the next after an answer that came at once with nothing new.
   Duration idle_interval = std::chrono::milliseconds(10);
   Duration first_backoff = std::chrono::milliseconds(100);
   Duration max_backoff = std::chrono::seconds(1);
@@ -35,7 +36,7 @@ struct PollTimings {
 enum class SensorState {
   Connecting,  ///< The sensor has not delivered a frame yet.
   Live,
-  Lost,     ///< The sensor has delivered before, but does not answer now.
+  Lost,     ///< The sensor has delivered before, but delivers nothing new now.
   Refused,  ///< The sensor answers, but not like a sensor; the last error says what is wrong.
 };
 [[nodiscard]] std::string_view name_of(SensorState state) noexcept;
@@ -55,7 +56,7 @@ struct FrameAnswered {
   Duration rest{0};
 };
 struct FloorAnswered {
-  bool known = true;  ///< False when the sensor has no floor plane yet; it need not have one.
+  bool known = true;  ///< False after a server error, as while the sensor has no plane yet.
 };
 struct KeptAnswered {
   bool there = false;  ///< True if the earlier frame was returned; it is then delivered.
@@ -66,18 +67,18 @@ struct ClockAnswered {
   std::optional<Duration> uncertainty = {};
   bool doubtful = false;  ///< True if the answer contradicts the estimate: ask again at once.
 };
-/// Status 200, but the body, or an event, is not a frame of this sensor.
+/// Status 200, but the body is not a frame of this sensor, or the time of the frame is implausible.
 struct Unreadable {
   Error error;
   Duration rest{0};
 };
 struct Failed {
   Error error;
-};  ///< A request without an answer: refused, reset, timed out.
+};  ///< A request without an answer (refused, reset, timed out), or an error in handling one.
 struct StreamFrame {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  /// True if the frame's time does not fit the clock estimate: request the clock at once.
+  /// True if the frame's time does not fit those of earlier frames: request the clock at once.
   bool odd = false;
 };
 struct StreamEnded {
@@ -104,7 +105,7 @@ enum class StreamOrder { None, Open, Close };
 /// A line for the log.  There is at most one a second per sensor, the latest.
 struct Notice {
   bool warning = false;
-  std::string event;  ///< "sensor live", "sensor lost", "sensor refused"
+  std::string event;  ///< "sensor live", "sensor lost", "sensor refused", "sensor not reached"
   std::string reason;
 };
 

@@ -238,7 +238,8 @@ SensorState PollFsm::gone() const {
   return last_captured_ ? SensorState::Lost : SensorState::Connecting;
 }
 
-/// Requests the floor plane again if it is of an earlier run, or if its request failed.
+/// Notes that a frame came. If the sensor was not live and its floor plane is not known, or may be
+/// of an earlier run, the plane is requested soon.
 void PollFsm::became_live(Duration now) {
   failures_in_row_ = 0;
   if (state_ != SensorState::Live && floor_due_ && !floor_known_) {

@@ -14,8 +14,8 @@ class StreamRhythm {
   /// Call this when a frame has come by stream.
   void saw(Duration now);
 
-  /// The time from which the next frame is overdue, and worth a separate request.  None if the
-  /// stream was not late in the last minute: most streams never are, and need not be watched.
+  /// The time from which the next frame is overdue, and worth a separate request. None if the
+  /// stream was not late in the last minute: most streams seldom are, and need not be watched.
   [[nodiscard]] std::optional<Duration> overdue_from(Duration now) const;
 
   /// Call this for a new stream, which may be of a faster sensor.

@@ -265,7 +265,7 @@ Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
       Eigen::MatrixXd::Identity(adjustment.size(), adjustment.size()));
 }
 
-/// Does one iteration; false when nothing moves any more.
+/// Does one iteration; false when nothing moves any more, or if no motion can be computed.
 bool iterate(Adjustment& adjustment, double settled) {
   const PlaceEquations equations = equations_of(adjustment);
   const Eigen::VectorXd motion = equations.information.ldlt().solve(equations.right);

@@ -34,8 +34,9 @@ class BlockScores {
     double factor = 1.0;   ///< The factor expected before looking at the blocks.
     double freedom = 0.0;  ///< How many degrees of freedom of the blocks it counts for.
   };
-  /// The factor v over some of the parameters, with the others held.  Blocks shorter than 2 s do
-  /// not show errors that last 2 s, so the sum over them is multiplied by 2 s / the length of one.
+  /// The factor v over some of the parameters, with the others held, averaged with the prior; the
+  /// prior alone if there are fewer than two blocks. Blocks shorter than 2 s do not show errors
+  /// that last 2 s, so the sum over them is multiplied by 2 s / the length of one.
   [[nodiscard]] double factor(std::span<const Eigen::Index> parameters, const Prior& prior) const;
 
  private:

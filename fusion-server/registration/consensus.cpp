@@ -19,7 +19,7 @@ namespace {
 constexpr double kLeastLoop = 0.15;  // [m] a triangle counts as closed up to this error
 constexpr double kLoopOfRms = 2.0;   // ... or up to this multiple of its edges' residuals
 constexpr double kLoopTurn = deg(15);
-constexpr double kSameRms = 1e-4;    // [m] two different sensors never agree this closely
+constexpr double kSameRms = 1e-4;    // [m] two different sensors do not agree this closely
 constexpr double kSamePlace = 1e-3;  // [m], [rad]
 
 bool of(const SensorId& sensor, const SensorId& target, const SensorId& source) {
@@ -127,8 +127,8 @@ Standings standings_of(const Evidence& evidence) {
   return standings;
 }
 
-/// The sensor with the worst evidence; of equal ones, the one whose pairs fit worst.  None if
-/// nothing speaks against any sensor.
+/// The sensor with the worst evidence; of equal ones, the one whose pairs fit worst. None if every
+/// sensor has more evidence for it than against it, and all triangles are closed.
 std::optional<SensorId> worst_of(const Standings& standings) {
   const auto key = [](const Standing& standing) {
     const bool convicted = standing.blame > 0 && (standing.excess() >= 0 || standing.widest > 0.0);
@@ -161,7 +161,7 @@ std::string reason_for(const SensorId& sensor, const Standing& standing) {
       sensor.str(), fmt::join(accusers, ", "), by);
 }
 
-/// A sensor that reports the same numbers as another, that is, a copy.
+/// A sensor that reports the same numbers as another, that is, a copy; none if there is none.
 std::optional<Outcast> copy_among(const Evidence& evidence) {
   for (const PairwiseRegistration& edge : evidence.edges) {
     const double off = edge.target_from_source.translation().norm() +

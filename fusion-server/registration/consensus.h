@@ -1,11 +1,11 @@
 // Finds the sensors that contradict the others, before any chain is built on them.
 //
 // A sensor that followed somebody else, that is mirrored, or whose clock is wrong can still fit one
-// other sensor by chance.  It cannot fit all of them.  A pair that saw a person at the same
-// instants but does not agree is evidence against both of its sensors, and so are three edges whose
-// product around a triangle is not the identity, against all three.  Sensors with more evidence
-// against than for them are cast out, one at a time, until nothing contradicts the rest.  Derived
-// in docs/papers/registration.md, Section 11.
+// other sensor by chance. It cannot fit all of them. A pair that saw a person at the same instants
+// but does not agree is evidence against both of its sensors, and so are three edges whose product
+// around a triangle is not the identity, against all three. The sensor with the worst evidence is
+// cast out, one at a time, until the rest agree well enough. A sensor that only repeats another one
+// is cast out, too. Derived in docs/papers/registration.md, Section 11.
 #pragma once
 
 #include <map>
@@ -40,8 +40,9 @@ struct Evidence {
                                 const PairwiseRegistration& ca, const Evidence& evidence);
 
 /// Returns the sensors to leave out, in the order in which they were found, and removes their edges
-/// and contradictions from the evidence.  Never leaves fewer than two sensors that agree: if only
-/// two sensors contradict one another, it is unknown which is wrong.
+/// and contradictions from the evidence. Sensors that repeat others are removed in any case; apart
+/// from that, at least one edge stays, and of only two sensors none is removed, because it would be
+/// unknown which is wrong.
 [[nodiscard]] std::vector<Outcast> cast_out(Evidence& evidence);
 
 }  // namespace chorus::registration

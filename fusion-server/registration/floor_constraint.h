@@ -15,8 +15,8 @@ struct WalkFloor {
   std::string objection;  ///< "its floor plane is above the feet"; empty if there is none.
 };
 
-/// Median of the reported planes.  The floor is plausible if its normal points up in sensor space,
-/// it lies below the sensor, and the person's feet are on it.
+/// Median of the reported planes. The floor is plausible if its normal points up in sensor space,
+/// it lies below the sensor, and the person's feet are near it.
 [[nodiscard]] WalkFloor floor_of(const WalkTrack& walk);
 
 /// For sensors without a floor plane: people walk upright, so the mean direction from hips to neck
@@ -35,7 +35,7 @@ struct PlacedFloor {
 [[nodiscard]] FloorPlane common_floor(const std::vector<PlacedFloor>& floors);
 
 /// level() of the plane, then a rotation about +y so that +z is the viewing direction projected
-/// onto the floor.
+/// onto the floor; that rotation is omitted if the sensor looks almost straight up or down.
 [[nodiscard]] Eigen::Isometry3d world_from_master(const FloorPlane& floor_in_master);
 
 }  // namespace chorus::registration

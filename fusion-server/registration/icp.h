@@ -15,12 +15,13 @@ using Cloud = std::span<const Eigen::Vector3d>;
 
 struct IcpFit {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  double rms = 0.0;  ///< rms distance to the nearest target point, over kept correspondences [m].
+  /// rms distance to the nearest target point, over the points that are kept [m].
+  double rms = 0.0;
   std::size_t accepted = 0;
 };
 
 /// Point-to-point refinement from a good start; points farther than `reach` from all target points
-/// are ignored.  None when it does not converge.
+/// are ignored. None when there are too few points or it does not converge.
 [[nodiscard]] std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target,
                                                   const Eigen::Isometry3d& start, double reach);
 

@@ -52,8 +52,9 @@ class OffsetProfile {
   Duration max_gap_;
   Trail target_;
   Trail source_;
-  Trail inner_;  ///< The frames of the source that stay within the target's time span at every
-                 ///< offset.
+  /// The frames of the source that stay within the target's time span at every offset; all of them
+  /// if fewer than half do.
+  Trail inner_;
   bool levelled_ = false;
   Eigen::Isometry3d level_from_target_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d level_from_source_ = Eigen::Isometry3d::Identity();

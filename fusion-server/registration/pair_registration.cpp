@@ -123,8 +123,9 @@ void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& tar
   }
 }
 
-/// Otto 5.2: ICP on the clouds of clouds_of().  Returns its residual.  Its pose is used only if it
-/// does not contradict the timed pairs, which contain more information.
+/// Otto 5.2: ICP on the clouds of clouds_of(). Its pose replaces that of `refined` only if it costs
+/// the timed pairs no more, because they contain more information. Returns the rms of the timed
+/// pairs at ICP's pose, or at the given one if ICP fails [m].
 double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double along_ratio) {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;
@@ -137,7 +138,8 @@ double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double 
   return rms_of(pairs, moved.weights, moved.target_from_source);
 }
 
-/// The bias that no length of walk removes: it grows with the angle between the lines of sight.
+/// Covariance of the bias that no length of walk removes; it grows with the angle between the
+/// directions in which the sensors look.
 Matrix6 bias_floor(const Eigen::Isometry3d& target_from_source) {
   const double angle = angular_distance(Eigen::Quaterniond(target_from_source.linear()),
                                         Eigen::Quaterniond::Identity());
@@ -174,8 +176,8 @@ std::vector<Pair> half_of(const std::vector<Pair>& pairs, bool second) {
   return half;
 }
 
-/// The result for each half of the walk must fit the other half.  A sensor that follows somebody
-/// else may fit one part of a walk by chance, but hardly two.
+/// The results for the two halves of the walk must be close to each other. A sensor that follows
+/// somebody else may fit one part of a walk by chance, but hardly two.
 Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom freedom,
                           const std::string& both, double min_spread) {
   const std::vector<Pair> early = half_of(pairs, false);

@@ -17,8 +17,8 @@ struct Walker {
 
 [[nodiscard]] Walker walker_of(const WalkTrack& walk, const RegistrationConfig& config);
 
-/// Errors: NotFound, the two sensors never saw the person together; Unavailable, they saw too
-/// little; Conflict, their views are inconsistent.
+/// Errors: NotFound, the two sensors never saw the person together; Unavailable, what they saw does
+/// not determine the edge; Conflict, their views are inconsistent.
 [[nodiscard]] Result<PairwiseRegistration> register_walkers(const Walker& target,
                                                             const Walker& source,
                                                             const RegistrationConfig& config);
@@ -29,8 +29,7 @@ using PairEstimator = std::function<Result<PairwiseRegistration>(const Walker&, 
 /// Asked now and then during long work; once it returns true, the result is of no use to anybody.
 using Stopped = std::function<bool()>;
 
-/// solve() with another estimator of edges and everything else the same, to compare
-/// estimators.
+/// What solve() does once the clocks are in step, but with `estimate` for the edges.
 [[nodiscard]] Registration solve_with(const PairEstimator& estimate,
                                       const std::vector<WalkTrack>& walk, Timestamp now,
                                       const RegistrationConfig& config,

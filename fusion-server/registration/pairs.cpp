@@ -25,7 +25,7 @@ TrailMoment interpolate(const TrailFrame& before, const TrailFrame& after, Times
   return between;
 }
 
-/// Mean distance of the body's points from the sensor [m].
+/// Distance of the mean of the body's points from the sensor [m].
 double distance_of(const TrailFrame& frame) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < kJointCount; ++i) {

@@ -14,7 +14,7 @@ namespace chorus::registration {
 /// A trail at one instant.
 struct TrailMoment {
   TrailFrame frame;
-  double speed = 0.0;  ///< Mean over the slots [m/s].
+  double speed = 0.0;  ///< Speed of the mean of the slots [m/s].
 };
 
 /// Reads a trail at increasing instants.
@@ -22,8 +22,8 @@ class TrailReader {
  public:
   TrailReader(const Trail& trail, Duration max_gap) : frames_(trail.frames), max_gap_(max_gap) {}
 
-  /// Instants must not decrease.  None unless two frames of one body, at most max_gap apart,
-  /// enclose the instant.
+  /// Instants must not decrease. None unless there is a frame at the instant, or two frames of one
+  /// body, at most max_gap apart, enclose it.
   std::optional<TrailMoment> at(Timestamp instant);
 
  private:

@@ -28,7 +28,7 @@ struct Refined {
 [[nodiscard]] Refined refine(const std::vector<Pair>& pairs, const RobustFit& fit,
                              const FloorPrior& prior, double along_ratio);
 
-/// sum w r^T S^-1 r at another pose: shows whether that pose fits the timed pairs better.
+/// sum w r^T S^-1 r with the pose and the weights of `at`: shows how well the pose fits the pairs.
 [[nodiscard]] double cost_of(const std::vector<Pair>& pairs, const Refined& at, double along_ratio);
 
 /// rms residual over the pairs with positive weight [m]; for messages and thresholds.

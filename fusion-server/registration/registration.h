@@ -62,9 +62,9 @@ struct RegistrationConfig {
                                                          const WalkTrack& source,
                                                          const RegistrationConfig& config);
 
-/// Computes a registration from all tracks.  Verdict and reasons are always set; sensors that could
-/// not be linked are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw
-/// the person together").
+/// Computes a registration from all tracks. The reasons say why the verdict is not Good. A sensor
+/// that could not be linked is missing from `sensors`, and a reason names it ("sensors s3 and s4
+/// never saw the person together").
 [[nodiscard]] Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
                                  const RegistrationConfig& config);
 

@@ -96,7 +96,7 @@ RobustFit summarise(const Columns& columns, const RigidFit& fit, std::vector<dou
   return result;
 }
 
-/// Tukey's biweight, scaled by the median residual of the inliers.
+/// Tukey's biweight, scaled by the median residual, or by `cutoff` if that is smaller.
 Result<RobustFit> polish(const Columns& columns, Freedom freedom, RigidFit fit, double cutoff) {
   std::vector<double> weights(columns.size());
   double scale = 0.0;

@@ -24,8 +24,9 @@ struct RobustFit {
   std::size_t inliers = 0;
 };
 
-/// `sigma_factor` scales the pairs' sigmas to the expected ones; it is doubled until half of the
-/// pairs are inliers, so that with noisy sensors the fit does not follow a lucky few.
+/// `sigma_factor` scales the pairs' sigmas to the expected ones; it is doubled, at most five times,
+/// until half of the pairs are inliers, so that with noisy sensors the fit does not follow a lucky
+/// few.
 [[nodiscard]] Result<RobustFit> fit_robustly(const std::vector<Pair>& pairs, Freedom freedom,
                                              double sigma_factor = 1.0);
 

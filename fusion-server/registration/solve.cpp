@@ -171,7 +171,7 @@ struct Placed {
   Matrix6 covariance = Matrix6::Zero();
 };
 
-/// The places along the chains, in a world on the common floor, then adjusted all together.
+/// The places along the chains, on the common floor; then adjusted all together if configured.
 std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& chains) {
   std::optional<FloorPlane> guessed;
   std::optional<FloorPlane> floor = floor_in_master(work, chains);

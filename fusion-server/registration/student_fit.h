@@ -31,7 +31,8 @@ struct StudentFit {
   double inflation = 1.0;
 };
 
-/// Yaw and translation, or six degrees of freedom if not levelled.
+/// Fits yaw and translation, or six degrees of freedom if not levelled; none if the points do not
+/// determine them.
 [[nodiscard]] std::optional<StudentFit> fit_place(const Points& points, bool levelled);
 
 /// Number of values per independent value: the sum of the autocorrelation over all lags, up to the

@@ -19,8 +19,8 @@ namespace chorus::registration {
 
 /// What the walk shows about the clocks.
 struct WalkClocks {
-  /// One for every sensor that sent frames, relative to the clock that is known best.  Empty if all
-  /// clocks are known.
+  /// One for every sensor that sent frames, relative to the clock that is known best. Empty if all
+  /// clocks are known, and for PairMethod::IcpOnly, which does not use time.
   std::map<SensorId, ClockOffset> offsets;
   /// Target and source of the pairs whose place depends on an offset that the walk does not
   /// determine, with the reason.

@@ -1,4 +1,5 @@
-// The polled sensors over HTTP: /sensors/, /sensors/{id}, and each sensor's last raw frame.
+// The polled sensors over HTTP: /sensors/, /sensors/{id}, and each sensor's last raw frame and
+// floor plane.
 #pragma once
 
 #include <map>
@@ -28,8 +29,7 @@ class SensorResources {
   void publish(const std::vector<SensorStatus>& sensors);
   /// Publishes a frame as the sensor sent it: in its own space, by its own clock.
   void relay(const SensorId& sensor, resource::FramePtr frame);
-  /// Publishes a sensor's floor plane, in the sensor's own space; none if the sensor has not
-  /// reported any.
+  /// Publishes a sensor's floor plane, in the sensor's own space; none changes nothing.
   void floor(const SensorId& sensor, const std::optional<FloorPlane>& floor);
 
   void add_routes(http::Router& router);

@@ -99,7 +99,7 @@ service::Health health_of(const Status& status) {
 }
 
 /// Logs for each unusable folder what is wrong with it; the server runs without that folder.
-/// Returns what is wrong with the state folder.
+/// Returns what is wrong with the state folder; empty if nothing is.
 std::string probe_folders(const StartSettings& config, const std::string& state_folder) {
   const auto told = [](const char* what, const Result<void>& probe) {
     if (!probe) log::error(what, {{"reason", to_string(probe.error())}});

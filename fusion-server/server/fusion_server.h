@@ -19,8 +19,8 @@ class FusionServer {
   FusionServer(FusionSettings settings, std::shared_ptr<const Clock> clock);
   ~FusionServer();  ///< Calls stop().
 
-  /// Binds the ports and starts everything.  Fails when an address is taken or the given extrinsics
-  /// cannot be read.
+  /// Binds the ports and starts everything. Fails when an address is taken, an output cannot be
+  /// opened, or the given extrinsics cannot be read.
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
 

@@ -58,8 +58,7 @@ struct LoopOptions {
   std::string store_trouble;  ///< Why the store's folder cannot be used; empty if it can.
   std::shared_ptr<const Clock> clock;
   std::vector<Sink*> sinks;  ///< Must outlive the loop.
-  /// Called on the pipeline's thread, a few times a second and whenever the registration has
-  /// changed.
+  /// Called on the pipeline's thread, a few times a second and after each command and each solve.
   std::function<void(const Status&)> on_status;
   std::function<std::vector<poll::PollReport>()> poll_reports;
   /// Called on the pipeline's thread with an earlier snapshot that was fused again with late
@@ -76,7 +75,7 @@ class PipelineLoop {
 
   /// Never blocks; if the pipeline falls behind, the oldest frames are dropped.
   void give(SensorFrame frame) { frames_.give(std::move(frame)); }
-  /// The command takes effect within one output interval.
+  /// The command usually takes effect within 20 ms.
   void ask(Command command) { commands_.give(std::move(command)); }
 
  private:

@@ -23,8 +23,8 @@ class RecordingTap final : public Sink {
 
   /// May be called from any thread.
   void raw(record::RawFrame frame);
-  /// Records the registration in use if it, or the recording, is new; may be called repeatedly.
-  /// Call it from one thread only.
+  /// Records the registration in use if it, or the recording, is new; a recording does not begin
+  /// with a registration without sensors. May be called repeatedly. Call it from one thread only.
   void places(const Registration& registration);
 
  private:

@@ -1,5 +1,5 @@
-// Keeps two things across restarts: the registration, and up to which number person ids may have
-// been used.  Each has a file, which is replaced atomically.
+// Keeps three things across restarts: the registration, the one before it, and up to which number
+// person ids may have been used. Each has a file, which is replaced atomically.
 #pragma once
 
 #include <cstdint>

@@ -6,8 +6,8 @@
 
 namespace chorus::server {
 
-/// Gives the same registration as registration::solve().  Exceptions that degenerate point clouds
-/// cause become a refusal with the reason.
+/// Gives the same registration as registration::solve(), unless the job is stopped. An exception
+/// becomes a refusal with the reason.
 [[nodiscard]] core::Solution solve(const core::SolveJob& job, Timestamp now);
 
 }  // namespace chorus::server

@@ -11,10 +11,10 @@
 
 namespace chorus::server {
 
-/// Returns `configured` unless it is "auto".  For "auto", returns the first of $STATE_DIRECTORY
-/// (set by systemd), $XDG_STATE_HOME/chorus/fusion-PORT and $HOME/.local/state/chorus/fusion-PORT;
-/// empty when none is set, or when the port is 0 (any), which does not distinguish this server from
-/// others.
+/// Returns `configured` unless it is "auto". For "auto", returns $STATE_DIRECTORY (set by systemd)
+/// or, if that is not set, $XDG_STATE_HOME/chorus/fusion-PORT or
+/// $HOME/.local/state/chorus/fusion-PORT, in this order. Empty if none of them is set. The last two
+/// are not used for port 0 (any), which does not distinguish this server from others.
 [[nodiscard]] std::string state_folder(std::string_view configured, std::uint16_t port,
                                        const Environment& environment);
 

@@ -36,7 +36,8 @@ class Conversation {
   /// connection.
   [[nodiscard]] Result<std::string> receive(std::string_view bytes, Timestamp now);
 
-  /// True once both cookies have arrived and our trackers are described: then reports may be sent.
+  /// True once the client's cookie has arrived; the answer to it describes our trackers, and
+  /// reports may follow.
   [[nodiscard]] bool established() const { return established_; }
   /// The port at the peer's address for datagrams; none: everything goes over TCP.
   [[nodiscard]] std::optional<std::uint16_t> datagram_port() const { return datagram_port_; }

@@ -1,4 +1,5 @@
-// VRPN 07.xx server: Body0, Body1, ... and a tracker per joint, over UDP and TCP.
+// VRPN 07.xx server over UDP and TCP: trackers Body0, Body1, ..., and one per joint unless that is
+// switched off.
 #pragma once
 
 #include <memory>

@@ -13,7 +13,7 @@ namespace chorus::watch {
 /// How one sensor's view of one person at one instant differs from the views of the others.
 struct Residual {
   SensorId sensor;
-  std::set<SensorId> others;  ///< The other sensors that saw the person.
+  std::set<SensorId> others;  ///< The other sensors that saw the person's trunk.
   /// This sensor's view minus that of the others, mean over the body [m], along three axes:
   /// horizontally away from this sensor; horizontally across that (up x away); up.
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();
@@ -31,7 +31,8 @@ struct Residual {
 [[nodiscard]] Person seen_clearly(const Person& person, const std::vector<Eigen::Vector3d>& others);
 
 /// One residual for each sensor that sees the trunk of this person together with another sensor.
-/// Uses points that swapping left and right does not affect; rays are left out.
+/// Empty if the person's front is unknown. Uses points that swapping left and right does not
+/// affect; rays are left out.
 [[nodiscard]] std::vector<Residual> residuals_of(const Person& person);
 
 }  // namespace chorus::watch

@@ -38,15 +38,15 @@ class StandingError {
   /// Learns from one block; an outlying one counts less.
   void learn(const Block& block);
 
-  /// The block's mean residual beyond what is usual.
+  /// The block's mean residual minus the constant error [m].
   [[nodiscard]] Eigen::Vector3d news(const Block& block) const {
     return block.apart - block.rows * state_;
   }
-  /// Covariance of the usual error at these rows.
+  /// Covariance of the estimate of the constant error that `rows` (see rows_of()) predict [m^2].
   [[nodiscard]] Eigen::Matrix3d uncertainty(const Rows& rows) const {
     return rows * covariance_ * rows.transpose();
   }
-  /// The error of the place alone at these rows: mean and covariance.
+  /// The part of that error which comes from the sensor's place: estimate [m] and covariance [m^2].
   [[nodiscard]] Eigen::Vector3d of_place(const Rows& rows) const;
   [[nodiscard]] Eigen::Matrix3d uncertainty_of_place(const Rows& rows) const;
 

@@ -33,8 +33,8 @@ class Watch {
 
   /// The sensor that stands out most at present; none if no sensor does.
   [[nodiscard]] std::optional<Finding> finding() const;
-  /// Distance between where this sensor and the others see the same people now, minus the distance
-  /// that is usual for this sensor [m]; none until somebody has walked for a while.
+  /// How far this sensor now sees people from where it would usually see them, as compared with the
+  /// others [m]; none until somebody has walked for a while.
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const;
 
   /// Forgets what is usual for each sensor.  Call this when a sensor has a new place, because what

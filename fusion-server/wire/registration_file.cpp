@@ -61,8 +61,8 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
           {"covariance", std::move(covariance)}};
 }
 
-/// A finite number of magnitude below `most`.  An absent key gives `fallback`; without a fallback
-/// it is an error.
+/// A finite number of magnitude up to `most`. An absent key gives `fallback`; without a fallback it
+/// is an error.
 Result<double> number(const json& object, const std::string& where, const char* key, double most,
                       std::optional<double> fallback = {}) {
   const auto it = object.find(key);

@@ -24,7 +24,7 @@ struct BoardSearch {
 struct BoardViews {
   std::vector<calibration::View> views;
   calibration::PictureSize size;
-  std::size_t pictures = 0;        ///< Number of pictures examined.
+  std::size_t pictures = 0;        ///< Number of pictures examined, all of the same size.
   std::vector<std::string> notes;  ///< What was left out and why.
 };
 

@@ -31,15 +31,15 @@ struct FoundSensor {
 /// The file for kAvahiFolder that announces a sensor.  It contains no secret.
 [[nodiscard]] std::string announcement(const std::string& id, std::uint16_t port, bool tls);
 
-/// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id, host, port and
-/// TLS; of its addresses IPv4 before IPv6, loopback and link-local ones last.  An id that two
-/// sensors announce is listed twice; so is a sensor without TLS at two addresses, because one of
-/// the addresses may be a stranger's.  Anybody in the network may announce anything, so lines
-/// without a valid id, name, address and port are left out.
+/// Reads what `avahi-browse --resolve --parsable` prints; the result is in order of id. Lines with
+/// the same id, host, port and TLS are one sensor, of which the best address is kept: IPv4, IPv6,
+/// link-local, loopback. But without TLS, different addresses are different sensors, because one
+/// may be a stranger's, unless one of them is loopback or begins with fe80. Anybody in the network
+/// may announce anything, so lines without a valid id, name, address and port are left out.
 [[nodiscard]] std::vector<FoundSensor> read_browsed(std::string_view text);
 
-/// Asks Avahi; takes a second or two.  Unsupported: avahi-browse is not installed; Unavailable: no
-/// daemon runs.
+/// Asks Avahi; takes a second or two. Unsupported: avahi-browse is not installed; Unavailable: no
+/// daemon runs, or Avahi failed.
 [[nodiscard]] Result<std::vector<FoundSensor>> discovered_sensors();
 
 }  // namespace chorus::ctl

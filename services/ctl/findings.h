@@ -48,7 +48,7 @@ struct ExaminedService {
 /// Whether the service's certificate, if it has one, can be read and is valid for at least another
 /// month.
 [[nodiscard]] Findings certificate_findings(const ExaminedService& service);
-/// Whether the service's folders exist and have room.
+/// Whether there is room on the disks of the service's folders.
 [[nodiscard]] Findings disk_findings(const ExaminedService& service);
 /// One per sensor of a fusion server: reachable, token accepted, same version, clock within 20 ms.
 [[nodiscard]] Findings sensor_findings(const ExaminedService& service);

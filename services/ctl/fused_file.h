@@ -9,9 +9,9 @@
 
 namespace chorus::ctl {
 
-/// Only finish() puts the file in its place; without it, nothing is left behind.  An existing
-/// recording is not replaced (Conflict), other files are.  "-" is standard output.  The contents do
-/// not depend on when or where they are written.
+/// Only finish() puts the file in its place; without it, nothing is left behind. (Lines for a pipe
+/// or a device are written at once.) An existing recording is not replaced (Conflict), other files
+/// are. "-" is standard output. The contents do not depend on when or where they are written.
 class FusedFile {
  public:
   virtual ~FusedFile() = default;

@@ -45,7 +45,8 @@ struct InitArguments {
   CertificateWishes certificate;
 };
 
-/// The name of this host as an id; characters that an id does not allow become "-".
+/// The name of this host as an id, in which characters that an id does not allow become "-"; "s1"
+/// if that is no valid id.
 std::string host_id() {
   std::string id = net::host_name();
   id = id.substr(0, id.find('.'));

@@ -56,8 +56,8 @@ std::string worst_loop_shown(const nlohmann::json& registration) {
   return text;
 }
 
-/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock whose offset was found from the
-/// walk.
+/// A line such as "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock whose offset from
+/// the common clock, as found from the walk, is larger than its uncertainty.
 std::string clocks_shown(const nlohmann::json& registration) {
   std::vector<std::pair<std::string, double>> clocks;
   std::map<std::string, double> sigmas;

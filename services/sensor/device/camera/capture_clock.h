@@ -22,8 +22,8 @@ class StreamClock {
  public:
   explicit StreamClock(Duration latency) : latency_(latency) {}
 
-  /// `position`: the picture's time in the stream; without it, or if it does not advance, the time
-  /// of arrival is used.
+  /// `position`: the picture's time in the stream; without it, or if it is that of the picture
+  /// before, the time of arrival minus the latency is used.
   [[nodiscard]] Timestamp captured(Timestamp arrived, std::optional<Duration> position);
 
  private:

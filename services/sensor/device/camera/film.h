@@ -1,4 +1,4 @@
-// Sends all pictures of a video file through a runner, one after the other, however long that
+// Sends the pictures of a video file through a runner, one after the other, however long that
 // takes.
 #pragma once
 
@@ -13,7 +13,7 @@ struct Film {
   std::vector<std::string> command;  ///< The command that starts the runner.
   SensorId sensor;
   Timestamp start;  ///< Capture time of the first picture.
-  /// Called after every picture with the share of the file that is done, in [0, 1].
+  /// Called after every picture used with the share of the file that is done, in [0, 1].
   std::function<void(double share)> progress = {};
 };
 

@@ -29,7 +29,8 @@ class Grabber {
   void run(const std::stop_token& stop);
 
  private:
-  /// Takes pictures from an open source.  True at the end of a file.
+  /// Takes pictures from an open source. True at the end of a file, and when a looping file has
+  /// fallen so far behind that it must be opened again.
   [[nodiscard]] Result<bool> play(Video& video, const std::stop_token& stop);
   void begin_file(Video& video);
   [[nodiscard]] bool is_over(const VideoMoment& taken) const;

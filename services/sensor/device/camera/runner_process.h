@@ -2,7 +2,7 @@
 // output.  Its standard error goes to the log; the last line is kept, because it usually says why
 // the process ended.
 //
-// Not thread-safe.  Every wait ends with Timeout when `stop` is requested.
+// Not thread-safe. Every wait that has a `stop` ends with Timeout when a stop is requested.
 #pragma once
 
 #include <sys/types.h>
@@ -48,7 +48,8 @@ class RunnerProcess {
   enum class Want { Read, Write };
 
   RunnerProcess() = default;
-  /// Waits once, for at most a tenth of a second, and takes everything that can be read.
+  /// Waits once, for at most a tenth of a second, and reads the process's standard error. Timeout
+  /// when `until` is over or a stop is requested.
   [[nodiscard]] Result<void> wait_a_moment(Want want, SteadyTime until,
                                            const std::stop_token& stop);
   void take_words();

@@ -28,8 +28,8 @@ struct Question {
 /// The line that precedes an image's bytes, including its line feed.
 [[nodiscard]] std::string image_header(const Question& question);
 
-/// The people in the image of `question`, as rays, and the shapes that the runner states.
-/// `hello.camera` is the camera of the image in the size sent.
+/// The people in the image of `question`, and the shapes that the runner states. `hello.camera` is
+/// the camera of the image in the size sent.
 [[nodiscard]] Result<bridge::PushedFrame> read_runner_answer(std::string_view line,
                                                              const Question& question,
                                                              const bridge::Hello& hello);

@@ -1,4 +1,4 @@
-// The device `replay`: plays a recording in real time, with new time stamps.
+// The device `replay`: plays a recording, by default in real time and with new time stamps.
 #pragma once
 
 #include <filesystem>
@@ -28,9 +28,10 @@ struct ReplayOptions {
   ReplayEpoch epoch = ReplayEpoch::Now;
   /// If set, replaces `epoch`; for several processes that play in step.
   std::optional<Timestamp> epoch_at = {};
-  /// First capture time of the set; none: the one that the recording notes.
+  /// First capture time of the set; none: as the recording notes it, or that of its first frame.
   std::optional<Timestamp> origin = {};
-  std::optional<Duration> period = {};  ///< Length of the set; none: as the recording notes it.
+  /// Length of the set; none: as the recording notes it, or as long as it lasts.
+  std::optional<Duration> period = {};
 };
 
 /// Reads device.replay; the reader's finish() reports mistakes.

@@ -33,8 +33,8 @@ struct Turn {
 
 class ReplaySchedule {
  public:
-  /// Refuses an empty recording, a speed that is not positive, and a period that does not cover the
-  /// recording.
+  /// Refuses an empty recording, a speed that is not positive or is too high, and an origin or a
+  /// period that does not fit the recording.
   [[nodiscard]] static Result<ReplaySchedule> make(const TapeSpan& span,
                                                    const ReplayTiming& timing);
 
