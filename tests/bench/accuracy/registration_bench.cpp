@@ -359,8 +359,8 @@ Result<void> run_registration(Report& report) {
   if (!report.quick()) measure_scale(report);
   measure_gauss(report);
   for (const char* profile : {"A", "B", "C"}) measure_cases(report, profile);
-  measure_all_short_walks(report, report.quick() ? 20 : 1000);
-  measure_all_bystanders(report, report.quick() ? 10 : 250);
+  measure_all_short_walks(report, report.quick() ? 6 : 1000);
+  measure_all_bystanders(report, report.quick() ? 4 : 250);
   if (!report.quick()) {
     for (const char* profile : {"A", "B"}) measure_ablations(report, profile);
     sweep_stress(report);
