@@ -283,6 +283,21 @@ void measure_all_bystanders(Report& report, std::size_t count) {
       "else all the time.  honest-250: the same without.");
 }
 
+/// Measures how often stated regions contain the truth: our method alone, many draws of the pairs
+/// and the ring of 30 s.
+void measure_coverage(Report& report) {
+  for (const char* profile : {"A", "B", "C"}) {
+    for (RegistrationCase& each : registration_cases(profile)) {
+      const bool ring = each.name.starts_with("ring6-{}s") && each.lengths.front() == 30;
+      if (!ring && !each.name.starts_with("pair")) continue;
+      each.beside.clear();
+      each.lengths.resize(1);
+      each.draws = std::string_view(profile) == "C" ? 50 : 200;  // C is rendered
+      measure(report, each);
+    }
+  }
+}
+
 /// The name by which the case is asked for: with the length of its first walk.
 std::string full_name(const RegistrationCase& each) {
   return fmt::format(fmt::runtime(each.name), each.lengths.front());
@@ -326,7 +341,7 @@ void measure_ablations(Report& report, const std::string& profile) {
 Result<void> run_registration(Report& report) {
   constexpr std::string_view kBump = "bump";
   if (report.list()) {
-    std::cout << kBump << "\nwalks\nbystanders\n" << kScale << '\n';
+    std::cout << kBump << "\nwalks\nbystanders\ncoverage\n" << kScale << '\n';
     for (const char* profile : {"A", "B", "C"}) {
       for (const RegistrationCase& each : registration_cases(profile))
         std::cout << full_name(each) << '\n';
@@ -341,6 +356,10 @@ Result<void> run_registration(Report& report) {
   if (report.only() == "walks") {
     report.profile(described({"A", "B"}));
     measure_all_short_walks(report, 200);
+    return {};
+  }
+  if (report.only() == "coverage") {
+    measure_coverage(report);
     return {};
   }
   if (report.only() == "bystanders") {
