@@ -17,7 +17,10 @@ namespace {
 
 constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
-constexpr int kScaleRounds = 2;  // each with a new scale for Tukey's weights
+// Each with a new scale for Tukey's weights; the first with the points as seen, then whitened.
+constexpr int kRounds = 3;
+// The errors of joints are taken to last no longer [s]; see docs/decisions/0078.
+constexpr double kLongestMemory = 0.6;
 // [rad], [m]: an iteration that moves no sensor by more ends the last round.
 constexpr double kSettled = 1e-6;
 // [rad], [m]; the same for the rounds before, after which the scale is computed again.
@@ -31,7 +34,7 @@ constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependent = 1.2;  // [1/s] rate of independent measurements
+constexpr double kIndependent = 6.0;  // [1/s] rate of independent instants, once whitened
 // Weight of the expected factor, in degrees of freedom.
 constexpr double kPriorFreedom = 3.0;
 constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
@@ -74,12 +77,13 @@ struct Adjustment {
   double scale = 0.0;  ///< Standard deviation of a point, in units of its sigma.
   double along = 1.0;
   double upward = 1.0;
-  [[nodiscard]] std::vector<FusedPoint> fuse_all() const {
+  /// All points as counted, or as seen.
+  [[nodiscard]] std::vector<FusedPoint> fuse_all(bool as_seen = false) const {
     std::vector<Eigen::Isometry3d> places;
     for (const Station& station : stations) places.push_back(station.world_from_level);
     std::vector<FusedPoint> all;
     for (const WalkPoint& point : points)
-      all.push_back(fuse_point(point.seen, places, along_ratio));
+      all.push_back(fuse_point(as_seen ? point.seen : point.counted, places, along_ratio));
     return all;
   }
   [[nodiscard]] double weight(const FusedPoint& fused) const {
@@ -217,7 +221,7 @@ PlaceEquations walk_equations(Adjustment& adjustment) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double weight = adjustment.weight(all[k]);
     if (weight > 0) {
-      add_point(block, adjustment.points[k].seen, all[k], weight);
+      add_point(block, adjustment.points[k].counted, all[k], weight);
       misfit.add(all[k], weight);
     }
     const bool last = k + 1 == all.size() || blocks.index(adjustment.points[k].time) !=
@@ -284,18 +288,21 @@ bool iterate(Adjustment& adjustment, double settled) {
 /// Covariance of the places that the bias of all views causes.
 Eigen::MatrixXd bias_covariance(Adjustment& adjustment) {
   const std::vector<FusedPoint> all = adjustment.fuse_all();
-  const auto ways = ways_of(adjustment.points, all);
+  std::vector<Eigen::Vector3d> middles;
+  for (const FusedPoint& fused : adjustment.fuse_all(true)) middles.push_back(fused.x);
+  const auto ways = ways_of(adjustment.points, middles);
   std::vector<Eigen::Vector3d> eyes;
   for (const Station& station : adjustment.stations)
     eyes.push_back(station.world_from_sensor().translation());
   ViewBias bias(std::move(eyes));
   std::size_t terms = 0;
-  for (const WalkPoint& point : adjustment.points) terms += point.seen.size() * point.seen.size();
+  for (const WalkPoint& point : adjustment.points)
+    terms += point.counted.size() * point.counted.size();
   std::size_t step = 1 + terms / kBiasTerms;
   if (step > 1) step |= 1U;  // odd, so that the joints of an instant take turns
   for (std::size_t k = 0; k < all.size(); k += step) {
     const double weight = adjustment.weight(all[k]) * static_cast<double>(step);
-    if (weight > 0) bias.add(adjustment.points[k].seen, all[k], weight, ways[k]);
+    if (weight > 0) bias.add(adjustment.points[k].counted, all[k], weight, middles[k], ways[k]);
   }
   const PlaceEquations equations = equations_of(adjustment);
   const double factor = std::max(adjustment.along, adjustment.upward);
@@ -329,12 +336,21 @@ bool near(const Places& start, const Places& end) {
   });
 }
 
-/// Iterates with Tukey's scale at the start, then with that of the result, so that the end does not
-/// depend on how good the start was.  False if it was stopped.
+/// From now on counts what is new in each point.
+void whiten(Adjustment& adjustment) {
+  const std::vector<FusedPoint> all = adjustment.fuse_all();
+  std::vector<double> weights;
+  for (const FusedPoint& fused : all) weights.push_back(adjustment.weight(fused));
+  whiten(adjustment.points, std::min(memory_of(adjustment.points, all, weights), kLongestMemory));
+}
+
+/// Iterates with the points as seen, then with what is new in each, with Tukey's scale read before
+/// each round, so that the end does not depend on how good the start was.  False if it was stopped.
 bool settle(Adjustment& adjustment, const Stopped& stopped) {
-  for (int round = 0; round < kScaleRounds; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
+    if (round == 1) whiten(adjustment);
     adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
-    const double settled = round + 1 < kScaleRounds ? kNearly : kSettled;
+    const double settled = round + 1 < kRounds ? kNearly : kSettled;
     for (int i = 0; i < kIterations && iterate(adjustment, settled); ++i) {
       if (stopped && stopped()) return false;
     }

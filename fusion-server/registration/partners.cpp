@@ -66,12 +66,12 @@ void add_best(const Overlaps& overlaps, std::size_t i, Pairs& pairs) {
     pairs.insert(std::minmax(i, others[k]));
 }
 
-/// For each sensor the number of its group: sensors that `pairs` connect have the same number.
-std::vector<std::size_t> groups_of(const Pairs& pairs, const Overlaps& overlaps) {
-  std::vector<std::size_t> group(overlaps.size());
+/// For each of `count` sensors the number of its group: sensors that `links` connect have the same
+/// number.
+std::vector<std::size_t> groups_of(const Pairs& links, std::size_t count) {
+  std::vector<std::size_t> group(count);
   std::iota(group.begin(), group.end(), std::size_t{0});
-  for (const auto& [a, b] : pairs) {
-    if (overlaps[a][b] == 0) continue;
+  for (const auto& [a, b] : links) {
     const std::size_t from = group[a];
     const std::size_t to = group[b];
     std::ranges::replace(group, from, to);
@@ -79,31 +79,45 @@ std::vector<std::size_t> groups_of(const Pairs& pairs, const Overlaps& overlaps)
   return group;
 }
 
-Pairs chosen_among(const Overlaps& overlaps) {
+/// The pairs of sensors of different groups.
+Pairs between(const std::vector<std::size_t>& group) {
   Pairs pairs;
-  for (std::size_t i = 0; i < overlaps.size(); ++i) add_best(overlaps, i, pairs);
-  const std::vector<std::size_t> group = groups_of(pairs, overlaps);
-  for (std::size_t i = 0; i < overlaps.size(); ++i) {
-    for (std::size_t j = i + 1; j < overlaps.size(); ++j) {
-      if (overlaps[i][j] == 0 || group[i] != group[j]) pairs.insert({i, j});
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (std::size_t j = i + 1; j < group.size(); ++j) {
+      if (group[i] != group[j]) pairs.insert({i, j});
     }
   }
   return pairs;
 }
 
-Pairs all_of(std::size_t count) {
+Pairs chosen_among(const Overlaps& overlaps) {
   Pairs pairs;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = i + 1; j < count; ++j) pairs.insert({i, j});
+  Pairs links;  // those that saw the person together
+  for (std::size_t i = 0; i < overlaps.size(); ++i) add_best(overlaps, i, pairs);
+  for (const auto& [a, b] : pairs) {
+    if (overlaps[a][b] > 0) links.insert({a, b});
+  }
+  pairs.merge(between(groups_of(links, overlaps.size())));
+  for (std::size_t i = 0; i < overlaps.size(); ++i) {
+    for (std::size_t j = i + 1; j < overlaps.size(); ++j) {
+      if (overlaps[i][j] == 0) pairs.insert({i, j});  // which costs little: see partners_of()
+    }
   }
   return pairs;
+}
+
+Pairs all_of(std::size_t count) { return between(groups_of({}, count)); }
+
+std::vector<SensorId> names_of(const std::map<SensorId, Walker>& walkers) {
+  std::vector<SensorId> names;
+  for (const auto& [sensor, walker] : walkers) names.push_back(sensor);
+  return names;
 }
 
 }  // namespace
 
 std::vector<SensorPair> partners_of(const std::map<SensorId, Walker>& walkers) {
-  std::vector<SensorId> sensors;
-  for (const auto& [sensor, walker] : walkers) sensors.push_back(sensor);
+  const std::vector<SensorId> sensors = names_of(walkers);
   const bool few = sensors.size() <= kAllPairs;
   std::vector<SensorPair> partners;
   for (const auto& [a, b] : few ? all_of(sensors.size()) : chosen_among(overlaps_of(walkers)))
@@ -114,24 +128,19 @@ std::vector<SensorPair> partners_of(const std::map<SensorId, Walker>& walkers) {
 std::vector<SensorPair> untried_links(const std::map<SensorId, Walker>& walkers,
                                       const std::vector<SensorPair>& tried,
                                       const std::vector<PairwiseRegistration>& edges) {
-  std::map<SensorId, std::size_t> group;
-  for (const auto& [sensor, walker] : walkers) group.emplace(sensor, group.size());
-  for (const PairwiseRegistration& edge : edges) {
-    const std::size_t from = group.at(edge.target);
-    const std::size_t to = group.at(edge.source);
-    for (auto& [sensor, number] : group) {
-      if (number == from) number = to;
-    }
-  }
+  const std::vector<SensorId> sensors = names_of(walkers);
+  const auto number = [&](const SensorId& sensor) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(sensors, sensor) - sensors.begin());
+  };
+  Pairs links;
+  for (const PairwiseRegistration& edge : edges)
+    links.insert(std::minmax(number(edge.target), number(edge.source)));
   const std::set<SensorPair> known(tried.begin(), tried.end());
-  std::vector<SensorPair> links;
-  for (auto target = group.begin(); target != group.end(); ++target) {
-    for (auto source = std::next(target); source != group.end(); ++source) {
-      const SensorPair pair{target->first, source->first};
-      if (target->second != source->second && !known.contains(pair)) links.push_back(pair);
-    }
+  std::vector<SensorPair> untried;
+  for (const auto& [a, b] : between(groups_of(links, sensors.size()))) {
+    if (!known.contains({sensors[a], sensors[b]})) untried.emplace_back(sensors[a], sensors[b]);
   }
-  return links;
+  return untried;
 }
 
 }  // namespace chorus::registration

@@ -18,7 +18,7 @@ FusedPoint fuse_point(const PointMeasurements& measurements,
   for (const PointMeasurement& measured : measurements) {
     const Eigen::Isometry3d& place = world_from_level[measured.sensor];
     const Eigen::Vector3d ray = place.linear() * measured.ray;
-    fused.seen.push_back(place * measured.x);
+    fused.seen.push_back(place.linear() * measured.x + measured.lever * place.translation());
     fused.information.push_back((Eigen::Matrix3d::Identity() - blunt * ray * ray.transpose()) /
                                 (measured.sigma * measured.sigma));
     sum += fused.information.back();
@@ -27,6 +27,13 @@ FusedPoint fuse_point(const PointMeasurements& measurements,
   fused.covariance = sum.inverse();
   fused.x = fused.covariance * right;
   return fused;
+}
+
+Eigen::Matrix<double, 3, 6> derivative_of(const PointMeasurement& measured,
+                                          const Eigen::Vector3d& seen) {
+  Eigen::Matrix<double, 3, 6> derivative = at_point(seen).bottomRows<3>();
+  derivative.rightCols<3>() *= measured.lever;
+  return derivative;
 }
 
 double worst_norm(const FusedPoint& fused) {
@@ -42,7 +49,7 @@ void add_point(PlaceEquations& equations, const PointMeasurements& measurements,
                const FusedPoint& fused, double weight) {
   std::vector<Eigen::Matrix<double, 3, 6>> rows;
   for (std::size_t i = 0; i < measurements.size(); ++i) {
-    const Eigen::Matrix<double, 3, 6> motion = at_point(fused.seen[i]).bottomRows<3>();
+    const Eigen::Matrix<double, 3, 6> motion = derivative_of(measurements[i], fused.seen[i]);
     rows.push_back(fused.information[i] * motion);
     const auto at = static_cast<Eigen::Index>(6 * measurements[i].sensor);
     equations.information.block<6, 6>(at, at) += weight * motion.transpose() * rows[i];

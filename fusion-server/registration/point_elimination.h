@@ -5,7 +5,7 @@
 //   E(T) = min_x sum_i (T_i m_i - x)^T S_i^-1 (T_i m_i - x)
 //   x = C sum_i S_i^-1 T_i m_i,   C = (sum_i S_i^-1)^-1,   S_i = sigma_i^2 (I + e r_i r_i^T)
 // With a small motion (omega, tau) of T_i on the world's side and J_i = [-[T_i m_i]x  I], the Schur
-// complement of x is (docs/papers/registration.md):
+// complement of x is (docs/papers/registration.md, Section 8):
 //   H_ij = delta_ij J_i^T S_i^-1 J_i - J_i^T S_i^-1 C S_j^-1 J_j
 //   g_i = J_i^T S_i^-1 (x - T_i m_i)
 #pragma once
@@ -18,12 +18,14 @@
 
 namespace chorus::registration {
 
-/// One sensor's measurement of one point, in the sensor's levelled frame.
+/// One sensor's measurement of one point, in the sensor's levelled frame, or the difference of two:
+/// then T_i m_i stands for R_i m_i + lever * t_i, and the I in J_i for lever * I.
 struct PointMeasurement {
   std::size_t sensor = 0;  ///< Index into the places.
   Eigen::Vector3d x;       ///< [m]
   Eigen::Vector3d ray;     ///< Unit line of sight.
   double sigma = 0.0;      ///< Standard deviation across the line of sight [m].
+  double lever = 1.0;      ///< How much of the sensor's position the measurement contains.
 };
 
 using PointMeasurements = std::vector<PointMeasurement>;  ///< From two or more sensors.
@@ -40,6 +42,10 @@ struct FusedPoint {
 [[nodiscard]] FusedPoint fuse_point(const PointMeasurements& measurements,
                                     std::span<const Eigen::Isometry3d> world_from_level,
                                     double along_ratio);
+
+/// J_i of a measurement, seen in world space: its derivative by (omega, tau) of its sensor.
+[[nodiscard]] Eigen::Matrix<double, 3, 6> derivative_of(const PointMeasurement& measured,
+                                                        const Eigen::Vector3d& seen);
 
 /// The largest residual among the point's measurements, in sigmas; it decides how much the point as
 /// a whole is trusted.

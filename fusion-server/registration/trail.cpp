@@ -1,5 +1,8 @@
 #include "fusion-server/registration/trail.h"
 
+#include <map>
+#include <set>
+
 #include "common/base/units.h"
 #include "common/body/bones.h"
 
@@ -57,8 +60,49 @@ constexpr std::array<Slot, kJointCount> all_slots() {
 }
 constexpr std::array<Slot, kJointCount> kAllSlots = all_slots();
 
-const BodyFrame* sole_body(const SensorFrame& frame) {
-  return frame.bodies.size() == 1 ? &frame.bodies.front() : nullptr;
+constexpr double kStandsStill = mm(30);                    // a person sways more than that
+constexpr Duration kLongEnough = std::chrono::seconds(1);  // ... within this time
+
+/// When and where a body was seen.
+struct Stay {
+  Timestamp first;
+  Timestamp last;
+  Eigen::AlignedBox3d necks;  ///< Around all its necks [m].
+
+  [[nodiscard]] bool still() const {
+    return last - first >= kLongEnough && !necks.isEmpty() &&
+           necks.diagonal().norm() < kStandsStill;
+  }
+};
+
+/// Bodies that do not move for as long as they are seen: furniture taken for a person, or somebody
+/// who stands by.
+std::set<BodyId> statues_of(const WalkTrack& walk) {
+  std::map<BodyId, Stay> stays;
+  for (const SensorFrame& frame : walk.frames) {
+    for (const BodyFrame& body : frame.bodies) {
+      Stay& stay = stays.try_emplace(body.id, frame.captured, frame.captured).first->second;
+      stay.last = frame.captured;
+      const Joint& neck = body.skeleton[Neck];
+      if (neck.seen()) stay.necks.extend(neck.position);
+    }
+  }
+  std::set<BodyId> statues;
+  for (const auto& [id, stay] : stays) {
+    if (stay.still()) statues.insert(id);
+  }
+  return statues;
+}
+
+/// The only body of the frame that is not a statue; none if there are several.
+const BodyFrame* sole_body(const SensorFrame& frame, const std::set<BodyId>& statues) {
+  const BodyFrame* sole = nullptr;
+  for (const BodyFrame& body : frame.bodies) {
+    if (statues.contains(body.id)) continue;
+    if (sole != nullptr) return nullptr;
+    sole = &body;
+  }
+  return sole;
 }
 
 bool usable(const Joint& joint) { return joint.state == JointState::Tracked && joint.seen(); }
@@ -117,8 +161,9 @@ std::span<const Slot> slots_of(JointChoice choice) {
 Trail trail_of(const WalkTrack& walk, JointChoice choice) {
   Trail trail;
   trail.sensor = walk.sensor;
+  const std::set<BodyId> statues = statues_of(walk);
   for (const SensorFrame& frame : walk.frames) {
-    const BodyFrame* body = sole_body(frame);
+    const BodyFrame* body = sole_body(frame, statues);
     if (!body) continue;
     if (!trail.frames.empty() && frame.captured <= trail.frames.back().captured) continue;
     TrailFrame reduced = reduce(*body, frame.captured, slots_of(choice));

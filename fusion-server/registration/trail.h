@@ -39,8 +39,10 @@ struct Trail {
   std::vector<TrailFrame> frames;  ///< Strictly increasing in time.
 };
 
-/// Uses frames with exactly one body, and only tracked joints.  Frames with several bodies would
-/// first need association across sensors; `sole_body` is the place for that.
+/// Uses frames with exactly one body, and only tracked joints.  Bodies that stay within 50 mm for
+/// as long as their id is seen, a second or more, do not count: sensors take furniture for people.
+/// Frames with several other bodies would first need association across sensors; `sole_body` is the
+/// place for that.
 [[nodiscard]] Trail trail_of(const WalkTrack& walk, JointChoice choice);
 
 /// The middle of the walk as this sensor saw it: mean of the first slot [m].

@@ -21,10 +21,10 @@ class ViewBias {
  public:
   explicit ViewBias(std::vector<Eigen::Vector3d> eyes);
 
-  /// Adds one point, as the adjustment counts it.  `walking`: the direction in which the person
-  /// walks at this point, world; if none, only c_0 is counted.
+  /// Adds one point, as the adjustment counts it.  `at`: where it is, world; `walking`: the
+  /// direction in which the person walks there; if none, only c_0 is counted.
   void add(const PointMeasurements& measurements, const FusedPoint& fused, double weight,
-           const std::optional<Eigen::Vector3d>& walking);
+           const Eigen::Vector3d& at, const std::optional<Eigen::Vector3d>& walking);
 
   /// sum sigma^2 G G^T, of (omega, tau) of every sensor.
   [[nodiscard]] Eigen::MatrixXd scores() const;

@@ -1,6 +1,7 @@
 #include "fusion-server/registration/walk_points.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "fusion-server/registration/pairs.h"
@@ -16,19 +17,24 @@ constexpr Duration kFrame = std::chrono::milliseconds(33);
 constexpr double kAside = 0.3;
 // A point that moves less than this has no direction [m].
 constexpr double kLeastWay = 0.06;
+// Two points of a slot farther apart are not successive [s].
+constexpr double kSuccessive = 0.5;
+// The largest correlation of successive errors.
+constexpr double kMostAlike = 0.98;
 
 /// Adds the slots that several sensors saw at one instant.
 void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
                  const std::vector<Station>& stations, std::span<const Slot> slots, double time,
                  std::vector<WalkPoint>& points) {
   for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    WalkPoint point{time, slot, {}};
+    WalkPoint point{time, slot, {}, {}};
     for (std::size_t i = 0; i < stations.size(); ++i) {
       if (!moments[i] || !moments[i]->frame.has(slot)) continue;
       const Eigen::Vector3d& x = moments[i]->frame.points[slot];
       const Eigen::Isometry3d& turn = stations[i].level_from_sensor;
       point.seen.push_back({i, turn * x, turn.linear() * x.normalized(), slots[slot].sigma});
     }
+    point.counted = point.seen;
     if (point.seen.size() > 1) points.push_back(std::move(point));
   }
 }
@@ -65,6 +71,28 @@ std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::si
   return instants;
 }
 
+/// For each point the one of the same slot before it, if it was seen shortly before; else itself.
+std::vector<std::size_t> before_each(const std::vector<WalkPoint>& points) {
+  std::map<std::size_t, std::size_t> last;
+  std::vector<std::size_t> before(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto [at, first] = last.try_emplace(points[k].slot, k);
+    before[k] = points[k].time - points[at->second].time <= kSuccessive ? at->second : k;
+    at->second = k;
+  }
+  return before;
+}
+
+/// Calls each(i, j) for the sights i of `now` and j of `then` by the same sensor.
+template <class Each>
+void for_both(const PointMeasurements& now, const PointMeasurements& then, const Each& each) {
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    for (std::size_t j = 0; j < then.size(); ++j) {
+      if (now[i].sensor == then[j].sensor) each(i, j);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<WalkPoint> points_of(const std::vector<Station>& stations,
@@ -87,8 +115,50 @@ std::vector<WalkPoint> points_of(const std::vector<Station>& stations,
   return points;
 }
 
+double memory_of(const std::vector<WalkPoint>& points, const std::vector<FusedPoint>& fused,
+                 const std::vector<double>& weights) {
+  const std::vector<std::size_t> before = before_each(points);
+  double product = 0.0;
+  double squares = 0.0;
+  double lags = 0.0;
+  double count = 0.0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::size_t then = before[k];
+    if (then == k || !(weights[k] > 0.0) || !(weights[then] > 0.0)) continue;
+    for_both(points[k].seen, points[then].seen, [&](std::size_t i, std::size_t j) {
+      const Eigen::Vector3d off = fused[k].x - fused[k].seen[i];
+      const Eigen::Vector3d was = fused[then].x - fused[then].seen[j];
+      product += off.dot(was);
+      squares += 0.5 * (off.squaredNorm() + was.squaredNorm());
+      lags += points[k].time - points[then].time;
+      count += 1.0;
+    });
+  }
+  if (!(product > 0.0)) return 0.0;
+  return -lags / count / std::log(std::min(product / squares, kMostAlike));
+}
+
+void whiten(std::vector<WalkPoint>& points, double memory) {
+  if (!(memory > 0.0)) return;
+  const std::vector<std::size_t> before = before_each(points);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (before[k] == k) continue;
+    const WalkPoint& old = points[before[k]];
+    const double alike = std::exp(-(points[k].time - old.time) / memory);
+    PointMeasurements news;
+    for_both(points[k].seen, old.seen, [&](std::size_t i, std::size_t j) {
+      PointMeasurement fresh = points[k].seen[i];
+      fresh.x -= alike * old.seen[j].x;
+      fresh.lever = 1.0 - alike;
+      fresh.sigma *= std::sqrt(1.0 - alike * alike);
+      news.push_back(fresh);
+    });
+    if (news.size() > 1) points[k].counted = std::move(news);
+  }
+}
+
 std::vector<std::optional<Eigen::Vector3d>> ways_of(const std::vector<WalkPoint>& points,
-                                                    const std::vector<FusedPoint>& fused) {
+                                                    const std::vector<Eigen::Vector3d>& places) {
   std::map<std::size_t, std::vector<std::size_t>> by_slot;
   for (std::size_t k = 0; k < points.size(); ++k) by_slot[points[k].slot].push_back(k);
   std::vector<std::optional<Eigen::Vector3d>> ways(points.size());
@@ -98,7 +168,7 @@ std::vector<std::optional<Eigen::Vector3d>> ways_of(const std::vector<WalkPoint>
     for (const std::size_t k : own) {
       while (points[own[before]].time < points[k].time - kAside) ++before;
       while (after + 1 < own.size() && points[own[after]].time < points[k].time + kAside) ++after;
-      Eigen::Vector3d way = fused[own[after]].x - fused[own[before]].x;
+      Eigen::Vector3d way = places[own[after]] - places[own[before]];
       way.y() = 0.0;
       if (way.norm() > kLeastWay) ways[k] = way;
     }

@@ -29,6 +29,7 @@ struct WalkPoint {
   double time = 0.0;     ///< Since the first instant [s].
   std::size_t slot = 0;  ///< Index into slots_of().
   PointMeasurements seen;
+  PointMeasurements counted;  ///< What the adjustment counts: as seen, or whitened.
 };
 
 /// The points in order of time.  They are thinned out, but less so with many sensors, so that no
@@ -36,9 +37,21 @@ struct WalkPoint {
 [[nodiscard]] std::vector<WalkPoint> points_of(const std::vector<Station>& stations,
                                                const RegistrationConfig& config);
 
-/// The horizontal direction in which each point moves, computed from its fused places 0.3 s before
-/// and after.  None while the point hardly moves.
+/// How long the errors of the sights last: tau of the correlation exp(-lag / tau) of the residuals
+/// of successive points of a slot [s]; zero if they are independent.  `fused`: the
+/// points as seen; those of weight 0 are left out.
+[[nodiscard]] double memory_of(const std::vector<WalkPoint>& points,
+                               const std::vector<FusedPoint>& fused,
+                               const std::vector<double>& weights);
+
+/// Counts what is new in each point since the point of its slot before it:
+/// m_k - exp(-lag / memory) m_(k-1) of the sensors that saw both.  docs/papers/registration.md,
+/// Section 8.
+void whiten(std::vector<WalkPoint>& points, double memory);
+
+/// The horizontal direction in which each point moves, computed from its places 0.3 s before and
+/// after.  None while the point hardly moves.
 [[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> ways_of(
-    const std::vector<WalkPoint>& points, const std::vector<FusedPoint>& fused);
+    const std::vector<WalkPoint>& points, const std::vector<Eigen::Vector3d>& places);
 
 }  // namespace chorus::registration

@@ -15,9 +15,10 @@ const Eigen::Isometry3d kTarget = ring_place(0);
 Eigen::Isometry3d truth(const Eigen::Isometry3d& source) { return kTarget.inverse() * source; }
 
 TEST(RegisterPair, FindsThePlaceAtEveryAngle) {
+  const WalkSpec spec{.length = 12};
   for (const double angle : {0.0, 45.0, 90.0, 135.0, 180.0}) {  // Otto 7.2
     const Eigen::Isometry3d source = ring_place(deg(angle) + 0.01);
-    const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, {}), {});
+    const auto edge = register_pair(watch(1, kTarget, spec), watch(2, source, spec), {});
     ASSERT_TRUE(edge) << edge.error().message;
     const PlaceError off = difference(edge->target_from_source, truth(source));
     EXPECT_LT(off.position, mm(5)) << angle;
@@ -91,28 +92,11 @@ TEST(RegisterPair, MovingBothSensorsChangesNothing) {
   EXPECT_LT(difference(edge->target_from_source, other->target_from_source).position, mm(6));
 }
 
-TEST(RegisterPair, TheStatedCovarianceIsOfTheRightSize) {
-  const Eigen::Isometry3d source = ring_place(deg(10));  // small bias, mostly noise
-  double squares = 0.0;
-  double stated = 0.0;
-  constexpr int kRuns = 20;
-  for (unsigned seed = 1; seed <= kRuns; ++seed) {
-    const WalkSpec spec{.length = 10, .noise = 0.02, .seed = seed};
-    const auto edge = register_pair(watch(1, kTarget, spec), watch(2, source, spec), {});
-    ASSERT_TRUE(edge);
-    const Eigen::Vector3d off = (edge->target_from_source * truth(source).inverse()).translation();
-    squares += off.squaredNorm() / kRuns;
-    stated += edge->covariance.bottomRightCorner<3, 3>().trace() / kRuns;
-  }
-  EXPECT_LT(squares, 3.0 * stated);
-  EXPECT_GT(squares, 0.05 * stated);
-}
-
 /// Checks the whole covariance by the mean normalised squared error over many walks.
 TEST(RegisterPair, TheStatedCovarianceNeitherFlattersNorFrightens) {
   const Eigen::Isometry3d source = ring_place(deg(5));  // almost no bias
   double nees = 0.0;
-  constexpr int kRuns = 40;
+  constexpr int kRuns = 25;
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
     const WalkSpec spec{.length = 6, .noise = 0.02, .seed = seed};
     const auto edge = register_pair(watch(1, kTarget, spec), watch(2, source, spec), {});

@@ -189,6 +189,25 @@ TEST(TrailOf, TakesTrackedJointsOfALoneBodyInTheOrderOfTime) {
   }
 }
 
+TEST(TrailOf, LeavesOutBodiesThatNeverMove) {
+  WalkTrack walk = watch(1, ring_place(0), {.length = 4});
+  const BodyFrame statue = {BodyId{2}, {}, walk.frames[0].bodies[0].skeleton};
+  const std::size_t half = walk.frames.size() / 2;
+  for (std::size_t i = 0; i < half; ++i) walk.frames[i].bodies.push_back(statue);
+  for (std::size_t i = 0; i < half / 2; ++i)
+    walk.frames[i].bodies.erase(walk.frames[i].bodies.begin());
+  const Trail trail = trail_of(walk, JointChoice::Core);
+  // Beside the statue the person counts; the statue alone does not.
+  EXPECT_EQ(trail.frames.size(), walk.frames.size() - half / 2);
+  for (const TrailFrame& frame : trail.frames) EXPECT_EQ(frame.body, BodyId{1});
+}
+
+TEST(TrailOf, ABodySeenForLessThanASecondIsNoStatue) {
+  WalkTrack walk = watch(1, ring_place(0), {.length = 0.9});
+  for (SensorFrame& frame : walk.frames) frame.bodies[0] = walk.frames[0].bodies[0];
+  EXPECT_EQ(trail_of(walk, JointChoice::Core).frames.size(), walk.frames.size());
+}
+
 TEST(SlotsOf, EveryChoiceStartsWithWhatItPromises) {
   EXPECT_EQ(slots_of(JointChoice::Neck).size(), 1u);
   EXPECT_EQ(slots_of(JointChoice::Core).size(), 8u);

