@@ -38,13 +38,17 @@ std::vector<std::vector<MethodScores>> measure(Report& report, const Registratio
   return scores;
 }
 
+/// The name by which the case is asked for: with the length of its first walk.
+std::string full_name(const RegistrationCase& each) {
+  return fmt::format(fmt::runtime(each.name), each.lengths.front());
+}
+
 /// Checks a ceiling that only a broken estimator exceeds; the table shows how good the result is.
 void watch(Report& report, const RegistrationCase& each, const std::vector<Score>& ours) {
   constexpr double kCeiling = 60.0;  // [mm]
   std::vector<double> position;
   for (const Score& score : ours) position.push_back(to_mm(score.position));
-  const std::string name = fmt::format(fmt::runtime(each.name), each.lengths.front());
-  report.condition(fmt::format("{}: median position below {:.0f} mm", name, kCeiling),
+  report.condition(fmt::format("{}: median position below {:.0f} mm", full_name(each), kCeiling),
                    median(position) < kCeiling);
 }
 
@@ -299,11 +303,6 @@ void measure_coverage(Report& report) {
   }
 }
 
-/// The name by which the case is asked for: with the length of its first walk.
-std::string full_name(const RegistrationCase& each) {
-  return fmt::format(fmt::runtime(each.name), each.lengths.front());
-}
-
 /// Measures the case that was asked for; false if there is none of that name.
 bool measure_only(Report& report) {
   bool found = false;
@@ -358,10 +357,9 @@ std::vector<Part> parts() {
 Result<void> run_registration(Report& report) {
   if (report.list()) {
     for (const Part& part : parts()) std::cout << part.name << '\n';
-    for (const char* profile : {"A", "B", "C"}) {
+    for (const char* profile : {"A", "B", "C"})
       for (const RegistrationCase& each : registration_cases(profile))
         std::cout << full_name(each) << '\n';
-    }
     return {};
   }
   for (const Part& part : parts()) {

@@ -3,50 +3,18 @@
 
 #include "common/base/log.h"
 #include "common/base/units.h"
-#include "common/http/route_table.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/registration_resources.h"
 #include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/rest/tracker_description.h"
-#include "tests/support/builders.h"
+#include "tests/unit/rest/asked.h"
 
 namespace chorus::rest {
 namespace {
 
 using testing::kStart;
 using testing::sensor_id;
-
-Result<http::DocumentPtr> ask(const http::Router& router, const std::string& path,
-                              std::map<std::string, std::string, std::less<>> query = {}) {
-  const auto match = router.match(path);
-  if (!match) return pass(match);
-  if (match->entry->live && query.empty()) return match->entry->live->current();
-  http::Request request;
-  request.path = path;
-  request.query = std::move(query);
-  const auto& getter = match->entry->live ? match->entry->by_query : match->entry->getter;
-  return getter(request, match->params);
-}
-
-std::string body(const Result<http::DocumentPtr>& document, std::string_view accept) {
-  if (!document || !*document) return "nothing";
-  const auto chosen = (*document)->choose(accept);
-  return chosen ? std::string((*chosen)->body()) : to_string(chosen.error());
-}
-
-std::shared_ptr<const Snapshot> snapshot(std::uint64_t sequence) {
-  auto s = std::make_shared<Snapshot>();
-  s->sequence = sequence;
-  s->instant = kStart + testing::kFrameInterval * static_cast<int>(sequence);
-  s->sensors = {sensor_id("s1")};
-  FusedBody one;
-  one.id = {7};
-  one.skeleton = testing::standing_person();
-  one.contributors.fill(1);
-  s->bodies.push_back(one);
-  return s;
-}
 
 SensorStatus status(const char* name) {
   SensorStatus s;
@@ -60,54 +28,6 @@ SensorStatus status(const char* name) {
   s.clock_corrected = true;
   s.share = 0.75;
   return s;
-}
-
-TEST(FrameSink, SnapshotsBecomeFrames) {
-  http::Router router;
-  service::FrameResources frames({"run1"}, {});
-  frames.add_routes(router);
-  FrameSink sink(frames);
-  for (std::uint64_t i = 1; i <= 3; ++i) sink.publish(snapshot(i));
-  EXPECT_NE(body(ask(router, "/frame"), "text/turtle").find("<frames/3> a ch:Frame"),
-            std::string::npos);
-  EXPECT_NE(body(ask(router, "/skeletons/7"), "text/turtle").find("-Head>"), std::string::npos);
-}
-
-TEST(FrameSink, PredictsTheNewestFrameByAQuarterOfASecondAtMost) {
-  service::FrameResources frames({"run1"}, {});
-  FrameSink sink(frames);
-  EXPECT_EQ(sink.predicted(kStart), nullptr);
-  auto moving = *snapshot(1);
-  for (FusedBody& body : moving.bodies) {
-    body.motion.emplace();
-    for (JointMotion& motion : *body.motion) motion = {Eigen::Vector3d(0, 0, 1), 0.01};
-  }
-  const Timestamp instant = moving.instant;
-  sink.publish(std::make_shared<const Snapshot>(moving));
-  const auto head_at = [&](Duration after) {
-    return sink.predicted(instant + after)->bodies.at(0).joints[index_of(JointId::Head)];
-  };
-  const auto before = head_at(Duration{0});
-  const auto later = head_at(std::chrono::milliseconds(50));
-  EXPECT_NEAR(later.position.z() - before.position.z(), 0.047, 0.002);
-  EXPECT_GT(*later.variance, *before.variance);
-  EXPECT_EQ(sink.predicted(instant + std::chrono::seconds(9))->captured,
-            instant + FrameSink::kFarthest);
-}
-
-TEST(FrameSink, TheFrameOfNowIsServedWherePredictionsAreMade) {
-  http::Router router;
-  service::FrameResources frames({"run1"}, {});
-  frames.add_routes(router);
-  FrameSink sink(frames);
-  const auto now = [&] { return ask(router, "/frame", {{"at", "now"}}); };
-  EXPECT_EQ(now().error().code, ErrorCode::InvalidArgument);
-  frames.predict_with([&] { return sink.predicted(kStart + std::chrono::hours(1)); });
-  EXPECT_EQ(now().error().code, ErrorCode::Unavailable);
-  const auto newest = snapshot(1);
-  sink.publish(newest);
-  const std::string then = std::to_string(to_unix_ns(newest->instant + FrameSink::kFarthest));
-  EXPECT_NE(body(now(), "application/json").find(then), std::string::npos);
 }
 
 TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
