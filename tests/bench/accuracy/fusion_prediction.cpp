@@ -19,8 +19,8 @@ namespace {
 
 using Body = Skeleton<WorldSpace>;
 
-constexpr std::size_t kQuickDraws = 2;
-constexpr Duration kQuickLength = std::chrono::seconds(10);
+constexpr std::size_t kQuickTakes = 2;
+constexpr Duration kQuickTake = std::chrono::seconds(10);
 constexpr std::size_t kSettled = 30;     // instants before the first prediction that counts
 constexpr std::size_t kBlindEvery = 45;  // instants from one blindness to the next
 constexpr Duration kWithin = std::chrono::seconds(1);  // after a sensor has fallen silent
@@ -200,11 +200,11 @@ std::vector<PredictionCase> prediction_cases() {
 }
 
 void measure_prediction(Report& report, const PredictionCase& each) {
-  const std::size_t count = report.quick() ? kQuickDraws : each.draws;
+  const std::size_t count = report.quick() ? kQuickTakes : each.draws;
   const auto draws = over_draws(count, [&](std::size_t draw) {
     Contest contest = each.contest;
     contest.setting.seed = report.seed() + draw;
-    if (report.quick()) contest.setting.length = std::min(contest.setting.length, kQuickLength);
+    if (report.quick()) contest.setting.length = std::min(contest.setting.length, kQuickTake);
     return each.silence ? silenced(contest, draw) : foreseen(course_of(contest));
   });
   for (const auto& [figure, unused] : draws.front()) {
