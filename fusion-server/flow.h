@@ -53,6 +53,9 @@ struct Extrinsics {
   /// Covariance of (rotation vector, sensor position) in world axes, relative to the master [rad^2,
   /// rad m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// What the sensor's points are multiplied by, about its origin, before they are placed: not 1
+  /// for a camera that guesses depth from a person's size, once a length is known.
+  double scale = 1.0;
 };
 
 /// An edge: the registration of one overlapping pair, with the direction in which it was computed;

@@ -118,7 +118,8 @@ std::vector<CoveredCell> Coverage::cells(const Registration& registration) const
     if (place == registration.sensors.end()) continue;
     std::set<Cell> own;
     for (const auto& [cell, neck] : cells) {
-      const Eigen::Vector3d in_world = place->second.world_from_sensor * neck;
+      const Eigen::Vector3d in_world =
+          place->second.world_from_sensor * (place->second.scale * neck);
       own.insert({cell_of(in_world.x()), cell_of(in_world.z())});
     }
     for (const Cell& cell : own) ++seen_by[cell];

@@ -30,6 +30,23 @@ align::Patience patience_of(const Histories& histories, const Registration& regi
   return {placed, config.align};
 }
 
+/// The point times `scale`, about the sensor's origin.
+void enlarge(Joint& joint, double scale) {
+  if (joint.measurement == Measurement::Ray) return;
+  joint.position *= scale;
+  if (joint.covariance.known())
+    joint.covariance = Covariance(Eigen::Matrix3d(scale * scale * joint.covariance.matrix()));
+}
+
+/// The bodies in metres, where the sensor guesses lengths from the size of people.
+void enlarge(AlignedSensor& aligned, const Registration& registration) {
+  const auto place = registration.sensors.find(aligned.sensor);
+  if (place == registration.sensors.end() || place->second.scale == 1.0) return;
+  for (BodyFrame& body : aligned.bodies) {
+    for (Joint& joint : body.skeleton.joints) enlarge(joint, place->second.scale);
+  }
+}
+
 /// 5.2.4: moves every sensor's bodies to the common instant.
 std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& histories,
                                      const Registration& registration,
@@ -38,6 +55,7 @@ std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& historie
   std::vector<AlignedSensor> aligned;
   for (const auto& [sensor, history] : histories) {
     aligned.push_back(align::at(in.instant, in.now, sensor, history, patience.of(history)));
+    enlarge(aligned.back(), registration);
   }
   return aligned;
 }

@@ -30,7 +30,7 @@ constexpr std::size_t kBiasTerms = 1'000'000;
 constexpr double kRidge = 1e-6;  // keeps the equations solvable where nothing is measured
 // Sigma with which the master's yaw and its position on the floor are held [rad], [m].
 constexpr double kGauge = 1e-5;
-constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
+constexpr double kFarthest = 0.5;    // [m] that an adjustment may move a sensor, by along_ratio
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
@@ -74,7 +74,8 @@ struct Adjustment {
   std::vector<Station> stations;
   std::vector<WalkPoint> points;
   double along_ratio = 1.0;
-  double scale = 0.0;  ///< Standard deviation of a point, in units of its sigma.
+  double view_bias = 0.0;  ///< [m]
+  double scale = 0.0;      ///< Standard deviation of a point, in units of its sigma.
   double along = 1.0;
   double upward = 1.0;
   /// All points as counted, or as seen.
@@ -294,7 +295,7 @@ Eigen::MatrixXd bias_covariance(Adjustment& adjustment) {
   std::vector<Eigen::Vector3d> eyes;
   for (const Station& station : adjustment.stations)
     eyes.push_back(station.world_from_sensor().translation());
-  ViewBias bias(std::move(eyes));
+  ViewBias bias(std::move(eyes), adjustment.view_bias);
   std::size_t terms = 0;
   for (const WalkPoint& point : adjustment.points)
     terms += point.counted.size() * point.counted.size();
@@ -329,10 +330,11 @@ Adjusted adjusted(Adjustment& adjustment) {
 }
 
 /// True if no sensor ends far from where its chain put it.  Chains are robust, so a sensor that
-/// moves farther was misled by wrong views.
-bool near(const Places& start, const Places& end) {
+/// moves farther was misled by wrong views; but they are as wrong as the depths they are made of.
+bool near(const Places& start, const Places& end, double along_ratio) {
+  const double farthest = kFarthest * std::max(2.0, along_ratio);
   return std::ranges::all_of(start, [&](const auto& each) {
-    return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;
+    return (end.at(each.first).translation() - each.second.translation()).norm() < farthest;
   });
 }
 
@@ -378,11 +380,12 @@ std::optional<Adjusted> adjust_together(const Places& places, const Walkers& wal
   if (adjustment.points.empty()) return std::nullopt;
   hold_strangers(adjustment.stations, adjustment.points);
   adjustment.along_ratio = config.along_ratio;
+  adjustment.view_bias = config.view_bias;
   const std::vector<Station> start = adjustment.stations;
   if (!settle(adjustment, walkers.stopped)) return std::nullopt;
   if (!fits_better(adjustment, start)) return std::nullopt;
   Adjusted result = adjusted(adjustment);
-  if (!near(places, result.places)) return std::nullopt;
+  if (!near(places, result.places, config.along_ratio)) return std::nullopt;
   return result;
 }
 

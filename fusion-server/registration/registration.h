@@ -31,6 +31,15 @@ enum class JointChoice {
   All,   ///< All joints: if sensors distinguish left and right, and for motions beyond walking.
 };
 
+/// A measured distance between two sensors.
+struct KnownDistance {
+  SensorId first;
+  SensorId second;
+  double length = 0.0;  ///< Between their origins [m].
+
+  bool operator==(const KnownDistance&) const = default;
+};
+
 struct RegistrationConfig {
   PairMethod method = PairMethod::TimedRobust;
   JointChoice joints = JointChoice::Core;
@@ -51,7 +60,15 @@ struct RegistrationConfig {
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
   double good_position = 0.05;
-  double max_position = 0.10;      ///< With a larger radius the sensor is refused [m].
+  double max_position = 0.10;  ///< With a larger radius the sensor is refused [m].
+  /// Standard deviation of the coefficients of the bias of views (view_bias.h) [m].  Between what
+  /// pairs and rings say (2.5 mm) and what rows of sensors do (3.5 mm): likelihood of the errors of
+  /// simulated walks of profiles A and B, seeds 101-120.
+  double view_bias = mm(3.0);
+  /// Lengths for sensors that guess depth from a person's size (common_scale.h); where distances
+  /// are known, the stature is not used.
+  std::vector<KnownDistance> known_distances = {};
+  std::optional<double> stature = {};  ///< Of the person who walks [m].
   std::optional<SensorId> master;  ///< Default: the sensor with the best connection to all others.
 
   bool operator==(const RegistrationConfig&) const = default;

@@ -10,8 +10,10 @@
 
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
+#include "fusion-server/registration/common_scale.h"
 #include "fusion-server/registration/consensus.h"
 #include "fusion-server/registration/error_radius.h"
+#include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
@@ -384,17 +386,19 @@ Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTra
 }
 
 Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
-                   const RegistrationConfig& config) {
+                   const RegistrationConfig& wanted) {
+  const RegistrationConfig config = suited_to(walk, wanted);
   const PairEstimator estimate = [&](const Walker& target, const Walker& source) {
     return register_walkers(target, source, config);
   };
   const WalkClocks clocks = clocks_of(walk, config);
-  if (clocks.offsets.empty()) return solve_with(estimate, walk, now, config);
+  if (clocks.offsets.empty())
+    return with_scale(solve_with(estimate, walk, now, config), walk, config);
   std::vector<WalkTrack> in_step = walk;
   bring_in_step(in_step, clocks);
   Registration found = solve_with(unless_open(estimate, clocks), in_step, now, config);
   found.clocks = clocks.offsets;
-  return found;
+  return with_scale(std::move(found), in_step, config);
 }
 
 }  // namespace chorus::registration

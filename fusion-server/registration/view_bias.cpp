@@ -9,9 +9,6 @@
 namespace chorus::registration {
 namespace {
 
-// Standard deviation of each c.  Between what pairs and rings say (2.5 mm) and what rows of sensors
-// do (3.5 mm): likelihood of the errors of simulated walks of profiles A and B, seeds 101-120.
-constexpr double kCoefficient = mm(3.0);
 constexpr double kLevel = 1e-6;  // [m] a shorter horizontal part has no direction
 constexpr Eigen::Index kTerms = 5;
 
@@ -34,7 +31,8 @@ Eigen::Matrix3d axes_of(const Eigen::Vector3d& view) {
 
 }  // namespace
 
-ViewBias::ViewBias(std::vector<Eigen::Vector3d> eyes) : eyes_(std::move(eyes)) {
+ViewBias::ViewBias(std::vector<Eigen::Vector3d> eyes, double coefficient)
+    : eyes_(std::move(eyes)), coefficient_(coefficient) {
   const auto size = static_cast<Eigen::Index>(6 * eyes_.size());
   effects_.assign(eyes_.size(), Eigen::MatrixXd::Zero(size, 3 * kTerms));
 }
@@ -69,7 +67,7 @@ Eigen::MatrixXd ViewBias::scores() const {
   const auto size = static_cast<Eigen::Index>(6 * eyes_.size());
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
   for (const Eigen::MatrixXd& effect : effects_) sum += effect * effect.transpose();
-  return kCoefficient * kCoefficient * sum;
+  return coefficient_ * coefficient_ * sum;
 }
 
 }  // namespace chorus::registration

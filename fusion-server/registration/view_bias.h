@@ -19,7 +19,8 @@ namespace chorus::registration {
 /// Collects the scores that unit coefficients of the bias would cause.
 class ViewBias {
  public:
-  explicit ViewBias(std::vector<Eigen::Vector3d> eyes);
+  /// `coefficient`: standard deviation of each c [m].
+  ViewBias(std::vector<Eigen::Vector3d> eyes, double coefficient);
 
   /// Adds one point, as the adjustment counts it.  `at`: where it is, world; `walking`: the
   /// direction in which the person walks there; if none, only c_0 is counted.
@@ -31,6 +32,7 @@ class ViewBias {
 
  private:
   std::vector<Eigen::Vector3d> eyes_;     ///< Positions of the sensors, world [m].
+  double coefficient_;                    ///< [m]
   std::vector<Eigen::MatrixXd> effects_;  ///< G of each sensor.
 };
 

@@ -201,6 +201,31 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
                 std::chrono::seconds(300));
 }
 
+/// Two sensors and their distance.
+void read_known_distance(ConfigReader reader, registration::RegistrationConfig& out) {
+  constexpr double kLongest = 1000.0;  // [m]
+  std::vector<std::string> between;
+  double length = 0.0;
+  reader.read("between", between);
+  reader.read("m", length, 0.0, kLongest);
+  if (!(length > 0.0)) return reader.complain("m", "must be above 0, in metres");
+  if (between.size() != 2 || between[0] == between[1])
+    return reader.complain("between", "must name two sensors");
+  const auto first = SensorId::parse(between[0]);
+  const auto second = SensorId::parse(between[1]);
+  if (!first) return reader.complain("between", first.error().message);
+  if (!second) return reader.complain("between", second.error().message);
+  out.known_distances.push_back({*first, *second, length});
+}
+
+void read_lengths(ConfigReader& reader, registration::RegistrationConfig& out) {
+  constexpr double kTallest = 2.5;  // [m]
+  double stature = 0.0;
+  reader.read("stature_m", stature, 0.0, kTallest);
+  if (stature > 0.0) out.stature = stature;
+  for (const ConfigReader& each : reader.items("known_distances")) read_known_distance(each, out);
+}
+
 void read_watch(ConfigReader reader, watch::WatchConfig& out) {
   reader.read("enabled", out.enabled);
   reader.read("least_shift_m", out.least_shift, 0.005, 1.0);
@@ -234,6 +259,7 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
     }
   }
   read_pairing(reader, live.registration);
+  read_lengths(reader, live.registration);
   read_watch(reader.child("watch"), live.watch);
 }
 

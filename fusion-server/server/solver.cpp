@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "fusion-server/registration/common_scale.h"
+#include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
@@ -81,16 +83,17 @@ std::map<SensorId, Walker> walkers_of(const std::vector<WalkTrack>& walk,
 
 Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
   std::vector<WalkTrack> walk = core::assembled(job.walk);
+  const registration::RegistrationConfig config = registration::suited_to(walk, job.config);
   const registration::Stopped stopped = [&] { return job.stop.stop_requested(); };
   const registration::PairSearch search{
       stopped, [](std::size_t count, const auto& work) { on_all_cores(count, work); }};
-  const registration::WalkClocks clocks = registration::clocks_of(walk, job.config, search);
+  const registration::WalkClocks clocks = registration::clocks_of(walk, config, search);
   registration::bring_in_step(walk, clocks);
-  const auto walkers = walkers_of(walk, job.config);
+  const auto walkers = walkers_of(walk, config);
   std::vector<Pair> pairs = pairs_of(walkers);
   on_all_cores(pairs.size(), [&](std::size_t i) {
     if (job.stop.stop_requested()) return;
-    pairs[i].edge = registration::register_walkers(*pairs[i].target, *pairs[i].source, job.config);
+    pairs[i].edge = registration::register_walkers(*pairs[i].target, *pairs[i].source, config);
   });
   std::map<std::pair<SensorId, SensorId>, const Pair*> solved;
   for (const Pair& pair : pairs)
@@ -99,13 +102,13 @@ Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
     const auto found = solved.find({target.trail.sensor, source.trail.sensor});
     if (found != solved.end() && found->second->edge) return *found->second->edge;
     if (found == solved.end() && !stopped())
-      return registration::register_walkers(target, source, job.config);
+      return registration::register_walkers(target, source, config);
     return Result<PairwiseRegistration>(fail(ErrorCode::Unavailable, "registration", "given up"));
   };
   Registration found = registration::solve_with(registration::unless_open(look_up, clocks), walk,
-                                                now, job.config, stopped);
+                                                now, config, stopped);
   found.clocks = clocks.offsets;
-  return found;
+  return registration::with_scale(std::move(found), walk, config);
 }
 
 }  // namespace

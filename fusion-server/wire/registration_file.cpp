@@ -19,7 +19,9 @@ using nlohmann::json;
 
 // 64 sensors with covariances and all edges need less than 1 MB.
 constexpr JsonLimits kLimits{4U << 20U, 16};
-constexpr double kMaxPlace = 1000.0;    // [m]
+constexpr double kMaxPlace = 1000.0;  // [m]
+constexpr double kLeastScale = 0.1;
+constexpr double kMostScale = 10.0;
 constexpr double kMaxNormError = 0.01;  // Tolerates quaternions that were rounded to a few digits.
 constexpr const char* kClockOffset = "clockOffsetMilliseconds";
 constexpr const char* kClockUncertainty = "clockUncertaintyMilliseconds";
@@ -58,7 +60,8 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
           {"chain", names_of(place.chain)},
           {"nextChain", names_of(place.next_chain)},
           {"nextError", place.next_error},
-          {"covariance", std::move(covariance)}};
+          {"covariance", std::move(covariance)},
+          {"scale", place.scale}};
 }
 
 /// A finite number of magnitude up to `most`. An absent key gives `fallback`; without a fallback it
@@ -179,6 +182,11 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   if (!next_error) return pass(next_error);
   out.error = *error;
   out.next_error = *next_error;
+  const auto scale = number(object, where, "scale", kMostScale, 1.0);
+  if (!scale) return pass(scale);
+  if (*scale < kLeastScale)
+    return tl::unexpected(wrong(where + ".scale", "a scale from 0.1 to 10 is wanted"));
+  out.scale = *scale;
   if (auto ok = read_matrix(object, where, "covariance", out.covariance); !ok) return pass(ok);
   return out;
 }

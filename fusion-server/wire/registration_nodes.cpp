@@ -55,6 +55,7 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
     node.properties.emplace_back("nextChain", names_of(place.next_chain));
     put("nextError", place.next_error, kPlaceDigits);
   }
+  if (place.scale != 1.0) put("scale", place.scale, kRotationDigits);
   if (!place.covariance.isZero(0.0))  // All zero means that the covariance is unknown.
     node.properties.emplace_back("covariance", decimals_of(place.covariance));
   return node;

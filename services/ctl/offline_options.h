@@ -16,8 +16,10 @@ namespace chorus::ctl {
 struct OfflineOptions {
   std::string config;  ///< Empty: the documented defaults.
   std::vector<std::string> overrides;
-  std::string method;  ///< Empty: as configured.
-  std::string joints;  ///< Empty: as configured.
+  std::string method;    ///< Empty: as configured.
+  std::string joints;    ///< Empty: as configured.
+  std::string stature;   ///< [m]; empty: as configured.
+  std::string distance;  ///< "cam1,cam2=4.31" [m]; empty: as configured.
 };
 
 void add_offline_options(CLI::App& app, OfflineOptions& options);

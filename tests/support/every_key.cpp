@@ -33,6 +33,7 @@ std::vector<json> other_values(const json& value) {
     others.push_back(json::array({"127.0.0.1"}));
     others.push_back(json::parse(R"([{"kind": "pillar"}])"));
     others.push_back(json::parse(R"([{"token": "0123456789abcdef", "role": "images"}])"));
+    others.push_back(json::parse(R"([{"between": ["s1", "s2"], "m": 4.31}])"));
     others.push_back(json::parse(R"([{"slot": 1, "targets": ["127.0.0.1:7"]}])"));
   }
   std::erase(others, value);  // a factor does not change zero

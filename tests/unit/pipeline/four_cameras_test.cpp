@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/geometry/rotation.h"
@@ -177,6 +178,47 @@ TEST(FourRealCameras, AdjustingTogetherHelpsTheWorstCamera) {
     return most;
   };
   EXPECT_LT(worst(true), 0.6 * worst(false));
+}
+
+double between(const Registration& registration, const SensorId& a, const SensorId& b) {
+  return (registration.sensors.at(a).world_from_sensor.translation() -
+          registration.sensors.at(b).world_from_sensor.translation())
+      .norm();
+}
+
+/// Median length of the left thigh [m].
+double thigh(const std::vector<Snapshot>& snapshots) {
+  std::vector<double> lengths;
+  for (const Snapshot& snapshot : snapshots) {
+    for (const FusedBody& body : snapshot.bodies)
+      lengths.push_back(
+          (body.skeleton[JointId::HipLeft].position - body.skeleton[JointId::KneeLeft].position)
+              .norm());
+  }
+  return median(std::move(lengths));
+}
+
+TEST(FourRealCameras, OneMeasuredDistanceScalesPlacesAndPeopleWithNothingElseConfigured) {
+  const Recording recording = load();
+  ASSERT_EQ(recording.tracks.size(), 4u);
+  OfflineConfig config;
+  config.rate_hz = kFrameRate;
+  const auto unknown = fuse_offline(recording.tracks, std::nullopt, config);
+  ASSERT_TRUE(unknown) << unknown.error().message;
+  EXPECT_EQ(unknown->registration.verdict, Verdict::Provisional);
+  EXPECT_THAT(unknown->registration.reasons,
+              testing::Contains(testing::HasSubstr("scale unknown")));
+
+  const SensorId a = recording.tracks[0].sensor;
+  const SensorId b = recording.tracks[2].sensor;
+  const double apart = between(recording.published, a, b);
+  config.registration.known_distances = {{a, b, apart}};
+  const auto known = fuse_offline(recording.tracks, std::nullopt, config);
+  ASSERT_TRUE(known) << known.error().message;
+  EXPECT_NEAR(between(known->registration, a, b), apart, 1e-6);
+  const double scale = known->registration.sensors.at(a).scale;
+  EXPECT_NEAR(scale, apart / between(unknown->registration, a, b), 1e-6);
+  EXPECT_NEAR(thigh(known->snapshots) / thigh(unknown->snapshots), scale, 0.005);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ struct BiasScene {
     return equations.right;
   }
   [[nodiscard]] Eigen::MatrixXd scores(const std::optional<Eigen::Vector3d>& walking) const {
-    ViewBias bias({places[0].translation(), places[1].translation()});
+    ViewBias bias({places[0].translation(), places[1].translation()}, mm(3.0));
     bias.add(seen, fuse_point(seen, places, kRatio), 1.0, x, walking);
     return bias.scores();
   }
@@ -76,7 +76,7 @@ TEST(ViewBias, KnowsFiveTermsWhereTheWayIsKnown) {
 
 TEST(ViewBias, CancelsInPartWhereThePersonTurnsAround) {
   const BiasScene scene;
-  ViewBias bias({scene.places[0].translation(), scene.places[1].translation()});
+  ViewBias bias({scene.places[0].translation(), scene.places[1].translation()}, mm(3.0));
   const FusedPoint fused = fuse_point(scene.seen, scene.places, kRatio);
   bias.add(scene.seen, fused, 1.0, scene.x, Eigen::Vector3d(0, 0, 1));
   bias.add(scene.seen, fused, 1.0, scene.x, Eigen::Vector3d(0, 0, -1));

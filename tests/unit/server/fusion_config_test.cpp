@@ -86,6 +86,24 @@ TEST(FusionConfig, TwoSensorsOfOneNameOrTooManyAreRefused) {
   EXPECT_NE(why(R"({"sensors": [)" + many + "]}").find("64"), std::string::npos);
 }
 
+TEST(FusionConfig, ALengthForCamerasNamesTwoSensors) {
+  const auto config = read(R"({"registration": {"stature_m": 1.78,
+      "known_distances": [{"between": ["cam1", "cam2"], "m": 4.31}]}})");
+  ASSERT_TRUE(config) << to_string(config.error());
+  const auto& registration = config->live.registration;
+  EXPECT_EQ(registration.stature, 1.78);
+  ASSERT_EQ(registration.known_distances.size(), 1u);
+  EXPECT_EQ(registration.known_distances[0].second.str(), "cam2");
+  EXPECT_EQ(registration.known_distances[0].length, 4.31);
+  const auto refused = [](const std::string& one) {
+    return why(R"({"registration": {"known_distances": [)" + one + "]}}");
+  };
+  EXPECT_NE(refused(R"({"between": ["cam1"], "m": 4.31})").find("must name two sensors"),
+            std::string::npos);
+  EXPECT_NE(refused(R"({"between": ["cam1", "cam1"], "m": 4.31})"), "");
+  EXPECT_NE(refused(R"({"between": ["cam1", "cam2"]})").find("above 0"), std::string::npos);
+}
+
 TEST(FusionConfig, AReloadTakesEveryKeyOverOrItWaits) {
   const std::string text = read_file("deploy/config/fusion.json", 1 << 20).value();
   const std::string plain = ConfigReader::parse(text, "shipped")->text();

@@ -43,6 +43,7 @@ Registration example() {
   r.edges.back().apart = 0.012;
   r.sensors.at(sensor_id("s3")).next_chain = {sensor_id("s2"), sensor_id("s1"), sensor_id("s3")};
   r.sensors.at(sensor_id("s3")).next_error = 0.034;
+  r.sensors.at(sensor_id("s2")).scale = 1.0625;
   return r;
 }
 
@@ -71,6 +72,8 @@ TEST(RegistrationFile, ReadsWhatItWrites) {
   EXPECT_EQ(read->edges.at(0).apart, 0.012);
   EXPECT_FALSE(read->edges.at(0).loop);
   EXPECT_EQ(read->sensors.at(sensor_id("s3")).next_chain.size(), 3u);
+  EXPECT_EQ(read->sensors.at(sensor_id("s2")).scale, 1.0625);
+  EXPECT_EQ(read->sensors.at(sensor_id("s3")).scale, 1.0);
   EXPECT_EQ(read->sensors.at(sensor_id("s3")).next_error, 0.034);
   EXPECT_TRUE(read->sensors.at(sensor_id("s1")).next_chain.empty());
   ASSERT_EQ(read->sensors.size(), 3u);
