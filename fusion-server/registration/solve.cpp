@@ -22,8 +22,8 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kMinUpright = 0.0;   // cos of the tilt beyond which a sensor would be upside down
-constexpr double kLeastHeight = 0.0;  // [m] a sensor below the floor is a wrong solution
+constexpr double kMinUpright = 0.0;  // cos of the tilt beyond which a sensor would be upside down
+constexpr double kBelowGuess = 1.0;  // [m] how far below a guessed floor a sensor may seem to stand
 
 /// Why two sensors have no edge.
 struct Refusal {
@@ -48,9 +48,7 @@ struct Work {
     doubtful = true;
     note(std::move(reason));
   }
-  /// Notes why one sensor has no place; the others stay good.
-  void refuse(const SensorId& sensor, std::string reason) { doubt(sensor, std::move(reason)); }
-  /// Adds a doubt about the place of one sensor; the others stay good.
+  /// Adds a doubt about the place of one sensor, or why it has none; the others stay good.
   void doubt(const SensorId& sensor, std::string reason) {
     result.verdicts[sensor].reasons.push_back(reason);
     note(std::move(reason));
@@ -94,7 +92,7 @@ void refuse_outcasts(Work& work) {
     evidence.middles[sensor] = middle_of(walker.trail);
   for (const Outcast& outcast : cast_out(evidence)) {
     work.outcasts.insert(outcast.sensor);
-    work.refuse(outcast.sensor, outcast.reason);
+    work.doubt(outcast.sensor, outcast.reason);
   }
   work.result.edges = std::move(evidence.edges);
 }
@@ -151,19 +149,14 @@ std::optional<FloorPlane> floor_in_master(const Work& work,
   return common_floor(floors);
 }
 
-/// The master's floor, guessed from the upright body.
-FloorPlane guessed_floor(Work& work) {
-  work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
-  return floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
-}
-
 /// Why a sensor cannot stand there: "would hang head down", "would stand 0.35 m below the floor".
-/// None when it can.
-std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor) {
+/// None when it can.  A floor that was guessed from one view may be wrong by decimetres.
+std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor, bool guessed) {
   if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
   if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";
   const double height = world_from_sensor.translation().y();
-  if (height < kLeastHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
+  if (height < (guessed ? -kBelowGuess : 0.0))
+    return fmt::format("would stand {:.2f} m below the floor", -height);
   return std::nullopt;
 }
 
@@ -177,7 +170,10 @@ struct Placed {
 std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& chains) {
   std::optional<FloorPlane> guessed;
   std::optional<FloorPlane> floor = floor_in_master(work, chains);
-  if (!floor) floor = guessed = guessed_floor(work);
+  if (!floor) {
+    work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
+    floor = guessed = floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
+  }
   const Eigen::Isometry3d in_world = world_from_master(*floor);
   const Matrix6 turn = adjoint(in_world);
   std::map<SensorId, Placed> all;
@@ -201,6 +197,7 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
 
 void place_sensors(Work& work) {
   const std::map<SensorId, Chain> chains = best_chains(work.result.master, work.result.edges);
+  const bool guessed = !floor_in_master(work, chains);
   for (const auto& [sensor, found] : placed(work, chains)) {
     const Chain& chain = chains.at(sensor);
     Extrinsics place;
@@ -210,7 +207,7 @@ void place_sensors(Work& work) {
     const Matrix6 shift = at_point(place.world_from_sensor.translation());
     place.covariance = shift * found.covariance * shift.transpose();
     const bool is_master = sensor == work.result.master;
-    if (const auto why = impossible(place.world_from_sensor); why && !is_master) {
+    if (const auto why = impossible(place.world_from_sensor, guessed); why && !is_master) {
       work.doubt(sensor,
                  fmt::format("sensor {} {}: its registration was refused", sensor.str(), *why));
     } else {
@@ -226,11 +223,11 @@ void refuse_wide(Work& work) {
     const double radius = radius_on_floor(place.covariance);
     if (radius <= work.config.max_position || place.chain.size() < 2) continue;
     const SensorId& neighbour = place.chain[place.chain.size() - 2];
-    work.refuse(sensor,
-                fmt::format("sensor {} would be placed only to within {:.2f} m, of {:.2f} m "
-                            "allowed: walk where {} and {} both see you, and further to and fro",
-                            sensor.str(), radius, work.config.max_position,
-                            std::min(neighbour, sensor).str(), std::max(neighbour, sensor).str()));
+    work.doubt(sensor,
+               fmt::format("sensor {} would be placed only to within {:.2f} m, of {:.2f} m "
+                           "allowed: walk where {} and {} both see you, and further to and fro",
+                           sensor.str(), radius, work.config.max_position,
+                           std::min(neighbour, sensor).str(), std::max(neighbour, sensor).str()));
     work.result.sensors.erase(sensor);
   }
 }
@@ -370,9 +367,7 @@ Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTra
   Work work{walk, config, stopped, {}, {}, {}, {}, {}, false};
   work.result.solved = now;
   reduce_tracks(work);
-  const bool silent =
-      std::ranges::all_of(walk, [](const WalkTrack& track) { return track.frames.empty(); });
-  if (silent) {
+  if (std::ranges::all_of(walk, [](const WalkTrack& track) { return track.frames.empty(); })) {
     work.result.reasons.push_back("no sensor has delivered a frame yet");
     return work.result;
   }

@@ -326,6 +326,11 @@ TEST(Solve, AHeadDownOrBuriedSensorIsRefusedAndNamed) {
   wrong.translation().y() = -2.5;
   const Registration buried = solve_with(estimate, walk, kWalkStart, config);
   EXPECT_THAT(buried.reasons, Contains(HasSubstr("m below the floor")));
+  wrong.translation().y() = -2.0;
+  EXPECT_FALSE(solve_with(estimate, walk, kWalkStart, config).sensors.contains(sensor(1)));
+  for (SensorFrame& frame : walk[0].frames) frame.floor.reset();
+  EXPECT_TRUE(solve_with(estimate, walk, kWalkStart, config).sensors.contains(sensor(1)))
+      << "a guessed floor refuses nobody for less than a metre";
 }
 
 TEST(Solve, EdgesThatFitBadlyMakeTheVerdictProvisional) {
