@@ -62,6 +62,22 @@ std::optional<double> lowest_feet(const WalkTrack& walk, const FloorPlane& floor
   return quantile(heights, kLowestShare);
 }
 
+/// Where the person walked, in sensor space.
+std::optional<Eigen::Vector3d> middle_of_hips(const WalkTrack& walk) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (const SensorFrame& frame : walk.frames) {
+    for (const BodyFrame& body : frame.bodies) {
+      const Joint& base = body.skeleton[JointId::SpineBase];
+      if (!base.seen()) continue;
+      sum += base.position;
+      count += 1.0;
+    }
+  }
+  if (count == 0.0) return std::nullopt;
+  return Eigen::Vector3d(sum / count);
+}
+
 std::string objection_to(const FloorPlane& floor, const WalkTrack& walk) {
   if (floor.normal.y() < kMinUp) return "its floor plane does not point up";
   if (floor.offset < kMinHeight) return "its floor plane is not below it";
@@ -102,6 +118,26 @@ std::optional<FloorPlane> floor_from_body(const WalkTrack& walk) {
   const auto feet = lowest_feet(walk, floor);
   floor.offset = feet ? kFootJointHeight - *feet : 0.0;
   return floor;
+}
+
+std::optional<FloorPlane> floor_from_bodies(const std::vector<PlacedWalk>& walks) {
+  std::vector<PlacedFloor> floors;
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  for (const PlacedWalk& each : walks) {
+    const auto own = floor_from_body(*each.walk);
+    const auto middle = middle_of_hips(*each.walk);
+    if (!own || !middle) continue;
+    const Eigen::Vector3d normal = each.common_from_sensor.linear() * own->normal;
+    const double offset = own->offset - normal.dot(each.common_from_sensor.translation());
+    floors.push_back({{normal, offset}, each.common_from_sensor * *middle});
+    up += normal;
+  }
+  if (floors.empty() || !(up.norm() > 0)) return std::nullopt;
+  const Eigen::Vector3d normal = up.normalized();
+  std::vector<double> offsets;
+  for (const PlacedFloor& each : floors)
+    offsets.push_back(each.floor.distance(each.eye) - normal.dot(each.eye));
+  return FloorPlane{normal, quantile(offsets, 0.5)};
 }
 
 FloorPlane common_floor(const std::vector<PlacedFloor>& floors) {

@@ -23,6 +23,18 @@ struct WalkFloor {
 /// is up, and the lowest feet are on the floor.  Accurate to a few degrees.
 [[nodiscard]] std::optional<FloorPlane> floor_from_body(const WalkTrack& walk);
 
+/// What one sensor saw of the walk, and its place in a common space.
+struct PlacedWalk {
+  const WalkTrack* walk = nullptr;
+  Eigen::Isometry3d common_from_sensor = Eigen::Isometry3d::Identity();
+};
+
+/// The floor from the bodies of all sensors, in their common space: the mean direction, and the
+/// median height where the person walked.  A camera that guesses depth tilts the bodies that it
+/// sees towards or away from itself, by tens of degrees; cameras on different sides do not do so
+/// alike. None if no sensor saw an upright person.
+[[nodiscard]] std::optional<FloorPlane> floor_from_bodies(const std::vector<PlacedWalk>& walks);
+
 /// One sensor's floor and place, both in a common space.
 struct PlacedFloor {
   FloorPlane floor;

@@ -6,7 +6,6 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
@@ -40,7 +39,7 @@ struct Work {
   std::map<SensorId, Walker> walkers;
   std::map<SensorId, const WalkTrack*> tracks;
   std::vector<Refusal> refusals;
-  std::set<SensorId> outcasts;  ///< Sensors that contradict the others; the reason is noted.
+  std::set<SensorId> outcasts;  ///< They contradict the others; the reason is noted.
   Registration result;
   bool doubtful = false;  ///< True if there is a doubt that concerns all places.
 
@@ -150,7 +149,7 @@ std::optional<FloorPlane> floor_in_master(const Work& work,
 }
 
 /// Why a sensor cannot stand there: "would hang head down", "would stand 0.35 m below the floor".
-/// None when it can.  A floor that was guessed from one view may be wrong by decimetres.
+/// None when it can.  A floor that was guessed may be wrong by decimetres.
 std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor, bool guessed) {
   if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
   if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";
@@ -172,7 +171,10 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   std::optional<FloorPlane> floor = floor_in_master(work, chains);
   if (!floor) {
     work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
-    floor = guessed = floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
+    std::vector<PlacedWalk> walks;
+    for (const auto& [sensor, chain] : chains)
+      walks.push_back({work.tracks.at(sensor), chain.master_from_sensor});
+    floor = guessed = floor_from_bodies(walks).value_or(FloorPlane{});
   }
   const Eigen::Isometry3d in_world = world_from_master(*floor);
   const Matrix6 turn = adjoint(in_world);
@@ -189,8 +191,7 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   if (!adjusted) return all;
   for (auto& [sensor, place] : all) {
     place.world_from_sensor = adjusted->places.at(sensor);
-    const auto own = adjusted->covariances.find(sensor);
-    if (own != adjusted->covariances.end()) place.covariance = own->second;
+    if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
   }
   return all;
 }
@@ -206,8 +207,8 @@ void place_sensors(Work& work) {
     place.error = chain.error;
     const Matrix6 shift = at_point(place.world_from_sensor.translation());
     place.covariance = shift * found.covariance * shift.transpose();
-    const bool is_master = sensor == work.result.master;
-    if (const auto why = impossible(place.world_from_sensor, guessed); why && !is_master) {
+    const auto why = impossible(place.world_from_sensor, guessed);
+    if (why && sensor != work.result.master) {
       work.doubt(sensor,
                  fmt::format("sensor {} {}: its registration was refused", sensor.str(), *why));
     } else {

@@ -8,6 +8,8 @@ import jsonld from 'jsonld';
 import { DataFactory, Parser, Store } from 'n3';
 import Validator from 'rdf-validate-shacl';
 
+import { lines } from '../support/triples.mjs';
+
 const fusion = process.env.CHORUS_FUSION_URL;
 const sensor = process.env.CHORUS_SENSOR_URL;
 assert.ok(fusion && sensor, 'CHORUS_FUSION_URL and CHORUS_SENSOR_URL name running services');
@@ -52,8 +54,7 @@ test('JSON-LD is the graph of the Turtle', async () => {
       return { contextUrl: null, documentUrl: address, document: JSON.parse(await read(address, 'application/ld+json, application/json')) };
     };
     const nquads = await jsonld.toRDF(document, { base: url, format: 'application/n-quads', documentLoader });
-    const canonical = (quads) => quads.map((q) => `${q.subject.value} ${q.predicate.value} ${q.object.value}^^${q.object.datatype?.value ?? ''}`).sort();
-    assert.deepEqual(canonical(new Parser().parse(nquads)), canonical((await graph(url)).getQuads()));
+    assert.deepEqual(lines(new Parser().parse(nquads)), lines((await graph(url)).getQuads()));
   }
 });
 

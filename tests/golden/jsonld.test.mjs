@@ -8,6 +8,8 @@ import { fileURLToPath } from 'node:url';
 import jsonld from 'jsonld';
 import { Parser, Writer } from 'n3';
 
+import { lines } from '../support/triples.mjs';
+
 const proto = fileURLToPath(new URL('../../proto/', import.meta.url));
 const base = 'http://localhost/frame';
 const context = JSON.parse(readFileSync(`${proto}context.jsonld`, 'utf8'));
@@ -15,23 +17,6 @@ const context = JSON.parse(readFileSync(`${proto}context.jsonld`, 'utf8'));
 async function documentLoader(url) {
   assert.equal(url, 'http://localhost/context.jsonld', 'the only document to be loaded is our context');
   return { contextUrl: null, documentUrl: url, document: context };
-}
-
-const RDF = 'http://www.w3.org/1999/02/22-rdf-syntax-ns#';
-
-/// Triples as text that can be compared.  The only blank nodes of our documents are the cells of lists, which stand where their list does.
-function lines(quads) {
-  const cell = (name) => new Map(quads.filter((q) => q.predicate.value === RDF + name).map((q) => [q.subject.value, q.object]));
-  const [first, rest] = [cell('first'), cell('rest')];
-  const text = (term) => {
-    if (term.termType === 'Literal') return `"${term.value}"^^${term.datatype.value}`;
-    if (term.termType !== 'BlankNode') return term.value;
-    const items = [];
-    for (let at = term; at.value !== `${RDF}nil`; at = rest.get(at.value)) items.push(text(first.get(at.value)));
-    return `( ${items.join(' ')} )`;
-  };
-  return quads.filter((q) => q.subject.termType !== 'BlankNode')
-    .map((q) => [q.subject, q.predicate, q.object].map(text).join(' ')).sort();
 }
 
 async function fromJsonLd(document) {

@@ -43,6 +43,32 @@ TEST(FloorFromBody, StandsUnderTheFeetOfAnUprightPerson) {
   EXPECT_FALSE(floor_from_body({sensor(1), {}}));
 }
 
+/// A camera that guesses depth sees everybody lean away from it by `lean` [rad].
+WalkTrack leaning(WalkTrack walk, double lean) {
+  for (SensorFrame& frame : walk.frames) {
+    for (BodyFrame& body : frame.bodies) {
+      const Eigen::Vector3d base = body.skeleton[JointId::SpineBase].position;
+      const auto turn = Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitX());
+      for (Joint& joint : body.skeleton.joints)
+        joint.position = base + turn * (joint.position - base);
+    }
+  }
+  return walk;
+}
+
+TEST(FloorFromBodies, CamerasOnOppositeSidesLeanThemApart) {
+  const Eigen::Isometry3d opposite = ring_place(deg(210));
+  const WalkTrack one = leaning(watch(1, kPlace, {.floor_in_world = std::nullopt}), deg(20));
+  const WalkTrack other = leaning(watch(2, opposite, {.floor_in_world = std::nullopt}), deg(20));
+  const auto alone = floor_from_bodies({{&one, kPlace}});
+  const auto both = floor_from_bodies({{&one, kPlace}, {&other, opposite}});
+  ASSERT_TRUE(alone && both);
+  EXPECT_GT(std::acos(alone->normal.y()), deg(10));
+  EXPECT_LT(std::acos(both->normal.y()), deg(3));
+  EXPECT_NEAR(both->offset, 0.0, 0.15);
+  EXPECT_FALSE(floor_from_bodies({}));
+}
+
 /// A floor tilted by `degrees` about z, correct right below a sensor at x.
 PlacedFloor tilted_floor(double degrees, double x, double height_error = 0.0) {
   const double angle = deg(degrees);
