@@ -19,7 +19,8 @@ Result<std::string> text_of(const std::string& path) {
 Result<ConfigReader> read_config(const ConfigSource& source) {
   const auto text = text_of(source.path);
   if (!text) return pass(text);
-  auto root = ConfigReader::parse(*text, source.path.empty() ? "defaults" : source.path);
+  const std::string assigned = source.assignments.empty() ? "defaults" : "--set";
+  auto root = ConfigReader::parse(*text, source.path.empty() ? assigned : source.path);
   if (!root) return root;
   for (const std::string& assignment : source.assignments) {
     if (auto ok = root->set(assignment); !ok) return pass(ok);

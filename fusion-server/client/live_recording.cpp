@@ -163,6 +163,13 @@ void LiveRecording::take_clocks(const http::ClientResponse& answer) {
 }
 
 void LiveRecording::take_registration(const http::ClientResponse& answer) {
+  const auto document = parse_json(answer.body, {.bytes = answer.body.size()});
+  if (document && document->is_object() && part_at(*document, "sensors").empty()) {
+    troubles_["/registration"] =
+        "no sensor is registered yet (chorus register), so the recording says of none where it "
+        "stands";
+    return;
+  }
   const auto registration = wire::read_registration(answer.body);
   if (!registration) troubles_["/registration"] = to_string(registration.error());
   if (!registration || registration->sensors.empty()) return;

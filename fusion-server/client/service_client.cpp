@@ -19,6 +19,12 @@ constexpr const char* kAuthoritiesOfWorkshop = "/etc/chorus/tls/ca.crt";
 /// The environment variable that holds the bearer token for servers that require a token.
 constexpr const char* kTokenVariable = "CHORUS_TOKEN";
 
+/// What to do about a 401, in words of this program: the server's own speak of HTTP headers.
+std::string token_advice() {
+  return authorization().empty() ? "set CHORUS_TOKEN to a token of this server"
+                                 : "the server does not know the token in CHORUS_TOKEN";
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> authorization() {
@@ -53,6 +59,7 @@ Result<http::ClientResponse> fetch_trusted(const http::Url& url, const http::Cli
 Error refusal_of(const http::ClientResponse& answer, const std::string& where) {
   const auto problem = parse_json(answer.body).value_or(nlohmann::json());
   std::string message = fmt::format("answers with status {}", answer.status);
+  if (answer.status == http::status::kUnauthorized) message += ": " + token_advice();
   for (const char* key : {"title", "detail"}) {
     if (problem.is_object() && problem.contains(key) && problem[key].is_string())
       message += ": " + problem[key].get<std::string>();

@@ -15,7 +15,7 @@
 namespace chorus::client {
 
 /// The error that the answer's problem document states; if it has none, an error with the bare
-/// status.  `where`: the request.
+/// status; a 401 says first what to do about CHORUS_TOKEN.  `where`: the request.
 [[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
 
 /// The Authorization header with the bearer token in CHORUS_TOKEN; empty if the variable is not

@@ -36,7 +36,8 @@ bool say_silent(const Situation& s, std::vector<std::string>& out) {
     out.emplace_back("no sensors are configured: add them under \"sensors\" in the configuration");
   } else if (silent.size() == s.sensors.size()) {
     out.emplace_back(
-        "none of the sensors delivers frames: start them, see /sensors/ for the reasons");
+        "none of the sensors delivers frames: see /sensors/ for the reasons (not started, a wrong "
+        "token, ...)");
   } else if (!silent.empty()) {
     out.push_back(named(silent) + (silent.size() == 1 ? " delivers" : " deliver") +
                   " no frames: see /sensors/ for the reason");

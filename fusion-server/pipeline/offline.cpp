@@ -47,7 +47,7 @@ Result<void> check_rate(const OfflineConfig& config) {
 
 tl::unexpected<Error> no_frame() {
   return fail(ErrorCode::InvalidArgument, "recordings",
-              "there is no frame of a sensor to fuse; was it recorded with --fused alone?");
+              "hold no frames of a sensor; were they recorded with --fused alone?");
 }
 
 Result<void> check(const std::vector<registration::WalkTrack>& sensors,

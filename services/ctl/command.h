@@ -16,8 +16,9 @@ class App;
 namespace chorus::ctl {
 
 inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailed = 1;  ///< The command was valid but failed.
-inline constexpr int kExitUsage = 2;   ///< The command line itself is wrong.
+inline constexpr int kExitFailed = 1;         ///< The command was valid but failed.
+inline constexpr int kExitUsage = 2;          ///< The command line itself is wrong.
+inline constexpr int kExitInterrupted = 130;  ///< Ctrl-C, as shells count it.
 
 /// Returns the exit code, or an error, which is printed and becomes kExitFailed.
 using Run = std::function<Result<int>()>;

@@ -83,8 +83,9 @@ void report(const Done& done, bool as_json) {
     return;
   }
   for (const std::string& note : notes) std::cerr << "note: " << note << '\n';
-  std::cerr << fmt::format("{} persons, {} frames at {:.6g} Hz from {}\n", take.persons.size(),
-                           take.frames, take.rate_hz, to_iso8601(take.start));
+  std::cerr << fmt::format("{} {}, {} frames at {:.6g} Hz from {}\n", take.persons.size(),
+                           take.persons.size() == 1 ? "person" : "persons", take.frames,
+                           take.rate_hz, to_iso8601(take.start));
   for (const std::string& remark : exported.remarks) std::cerr << remark << '\n';
   for (const std::string& file : written) std::cerr << "wrote " << file << '\n';
   if (!written.empty() && written.front().ends_with(".gltf"))
@@ -147,6 +148,7 @@ Run add_export(CLI::App& options) {
       ->check(CLI::IsMember({"cm", "m"}))
       ->capture_default_str();
   add_authority_option(options);
+  add_token_footer(options);
   options.add_flag("--json", arguments->json, "Summary as JSON");
   return [arguments] { return run_export(*arguments); };
 }

@@ -33,18 +33,22 @@ constexpr std::array kHostCommands{
             "  chorus doctor --json | jq '.findings[] | select(.good | not)'\n"
             "Exit code 0: all is well; 1: something is not, and what to do about it is printed.",
             &add_doctor},
-    Command{"register", "Finds where the sensors stand, from a person who walks through the room",
-            "Examples:\n"
-            "  chorus register                        walk through the room until it says so\n"
-            "  chorus register --seconds 45 --fresh   forget what is known first\n"
-            "  chorus register --cancel               end the session that runs\n"
-            "  chorus register --json | jq .verdict\n"
-            "A session that has started by itself is joined.  The verdict is this walk's own.\n"
-            "Exit code 0: good or provisional, and in use; 1: refused (the reasons are printed),\n"
-            "cancelled, nobody walked, or no server.",
-            &add_register},
+    Command{
+        "register", "Finds where the sensors stand, from a person who walks through the room",
+        "Examples:\n"
+        "  chorus register                        walk through the room until it says so\n"
+        "  chorus register --seconds 45 --fresh   forget what is known first\n"
+        "  chorus register --cancel               end the session that runs\n"
+        "  chorus register --json | jq .verdict\n"
+        "A session that has started by itself is joined.  The verdict is this walk's own.\n"
+        "Exit code 0: good or provisional, in use, and every sensor that took part has a "
+        "place;\n"
+        "1: refused, or a sensor is left without a place (the reasons are printed), cancelled,\n"
+        "nobody walked, or no server; 130: Ctrl-C, and the session goes on.",
+        &add_register},
     Command{"origin", "Says where the world begins and where its front is",
             "Examples:\n"
+            "  chorus origin                          shows where it is now\n"
             "  chorus origin --here                   stand there, face the front\n"
             "  chorus origin --x 1.5 --z -2           by numbers, in the world as it is\n"
             "  chorus origin --yaw 90                 turns the world and leaves its origin\n"

@@ -11,6 +11,7 @@
 
 #include "common/base/json.h"
 #include "common/base/units.h"
+#include "common/geometry/rotation.h"
 #include "common/http/client.h"
 #include "fusion-server/client/live_poll.h"
 #include "fusion-server/client/service_client.h"
@@ -34,6 +35,7 @@ struct OriginArguments {
   double z = 0.0;
   double yaw = 0.0;
   bool here = false;
+  bool set = false;  ///< An origin is given in one of the two ways.
   double seconds = 2.0;
   bool json = false;
 };
@@ -89,11 +91,46 @@ Result<Stance> watch(const std::string& server, double seconds) {
   return StanceWatch(*url, std::move(*trust)).run(seconds);
 }
 
+/// Where the master stands in the world: an origin there with its yaw is that of a fresh walk.
+Stance place_of(const nlohmann::json& sensor) {
+  const Eigen::Quaterniond q(client::number_at(sensor, "qw"), client::number_at(sensor, "qx"),
+                             client::number_at(sensor, "qy"), client::number_at(sensor, "qz"));
+  return {client::number_at(sensor, "x"), client::number_at(sensor, "z"),
+          q.coeffs().allFinite() ? yaw_of(normalised_or_identity(q).toRotationMatrix()) : 0.0};
+}
+
+/// Where the world begins now, in terms of the master sensor, and how to change that.
+std::string origin_report(const nlohmann::json& registration) {
+  const std::string master = client::text_at(registration, "master", "");
+  const auto& sensors = client::part_at(registration, "sensors");
+  if (master.empty() || !sensors.contains(master))
+    return "the world has no origin yet: no sensor is registered (chorus register)\n";
+  const Stance own = place_of(client::part_at(sensors, master.c_str()));
+  const std::string name = printable(master);
+  return fmt::format(
+      "the world begins where x and z are 0: there the master, {}, stands at x {:.3f} m, z {:.3f} "
+      "m, and looks {:.1f} deg away from the front\n"
+      "to change it: chorus origin --here, or --x, --z, --yaw; back to below {}, in its "
+      "direction: chorus origin --x={:.4f} --z={:.4f} --yaw={:.2f}\n",
+      name, own.x, own.z, to_deg(own.yaw), name, own.x, own.z, to_deg(own.yaw));
+}
+
+/// Without an origin to set: shows the present one.
+Result<int> show_origin(const ServiceClient& server, bool json) {
+  const auto registration = server.get("/registration");
+  if (!registration) return pass(registration);
+  std::cout << (json ? json_text(*registration) : origin_report(*registration));
+  return kExitOk;
+}
+
 Result<int> run_origin(const OriginArguments& arguments) {
   const auto server = ServiceClient::of(arguments.url);
   if (!server) return pass(server);
+  if (!arguments.set) return show_origin(*server, arguments.json);
   Stance origin{arguments.x, arguments.z, deg(arguments.yaw)};
   if (arguments.here) {
+    // Nobody shall stand still for a server that is not there.
+    if (const auto there = server->get("/registration"); !there) return pass(there);
     std::cerr << fmt::format("stand still for {} s, facing the front\n", arguments.seconds);
     const auto stance = watch(arguments.url, arguments.seconds);
     if (!stance) return pass(stance);
@@ -136,9 +173,8 @@ Run add_origin(CLI::App& options) {
       ->needs(here)
       ->capture_default_str();
   options.add_flag("--json", arguments->json, "Report as JSON");
-  options.callback([x, z, yaw, here] {
-    if (x->count() + z->count() + yaw->count() + here->count() == 0)
-      throw CLI::RequiredError("--here, or --x, --z, --yaw");
+  options.callback([x, z, yaw, here, arguments] {
+    arguments->set = x->count() + z->count() + yaw->count() + here->count() > 0;
   });
   return [arguments] { return run_origin(*arguments); };
 }

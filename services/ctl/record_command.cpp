@@ -1,6 +1,7 @@
 // chorus record URL --out FILE: records a running sensor or fusion server into a file on this
 // machine.
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -14,6 +15,7 @@
 #include "services/ctl/console.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/server_option.h"
+#include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
 namespace {
@@ -150,12 +152,17 @@ Result<int> judge(const client::LiveRecording& live, const record::RecordingRepo
     return fail(ErrorCode::Io, arguments.out,
                 report.reason.empty() ? "the file could not be finished in time" : report.reason);
   }
+  if (report.frames == 0) {
+    // Only our own empty file: the recorder never opens one that was there before.
+    std::error_code ignored;
+    std::filesystem::remove(arguments.out, ignored);
+    return fail(ErrorCode::Unavailable, arguments.url,
+                "delivered no frame in this time; no file is left behind");
+  }
   if (end == End::Gone) {
     return fail(ErrorCode::Unavailable, arguments.url,
                 "has not answered for ten seconds; what came before is in " + arguments.out);
   }
-  if (report.frames == 0)
-    return fail(ErrorCode::Unavailable, arguments.url, "delivered no frame in this time");
   if (const auto silent = silent_streams(live); !silent.empty()) {
     return fail(ErrorCode::Unavailable, arguments.url,
                 fmt::format("delivered no frame of {}; the others are in {}",
@@ -167,6 +174,7 @@ Result<int> judge(const client::LiveRecording& live, const record::RecordingRepo
 Result<int> run_record(const RecordArguments& arguments) {
   const auto url = http::parse_url(arguments.url);
   if (!url) return pass(url);
+  if (auto ok = may_write(arguments.out, {}); !ok) return pass(ok);
   client::LiveRecordingOptions options;
   options.service = *url;
   options.file = arguments.out;

@@ -2,7 +2,9 @@
 // its verdict.
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -42,6 +44,27 @@ struct RegisterArguments {
   bool undo = false;
   bool history = false;
   bool json = false;
+};
+
+volatile std::sig_atomic_t ctrl_c_seen = 0;
+
+/// While it lives, Ctrl-C is noted; a second one ends the program at once.
+class CtrlC {
+ public:
+  CtrlC() {
+    ctrl_c_seen = 0;
+    struct sigaction wanted {};
+    wanted.sa_handler = [](int) { ctrl_c_seen = 1; };
+    wanted.sa_flags = static_cast<int>(SA_RESETHAND);
+    ::sigaction(SIGINT, &wanted, &before_);
+  }
+  ~CtrlC() { ::sigaction(SIGINT, &before_, nullptr); }
+  CtrlC(const CtrlC&) = delete;
+  CtrlC& operator=(const CtrlC&) = delete;
+  [[nodiscard]] static bool seen() { return ctrl_c_seen != 0; }
+
+ private:
+  struct sigaction before_ {};
 };
 
 /// The path that shows the progress of the newest session in this /registration document; NotFound
@@ -110,7 +133,7 @@ std::string remark_of(const nlohmann::json& session) {
   return std::isfinite(target) ? text + fmt::format(" of {:.0f}", to_mm(target)) : text;
 }
 
-/// Follows one session to its end; every answer updates the bar.
+/// Follows one session to its end, or until Ctrl-C; every answer updates the bar.
 Result<nlohmann::json> follow(const ServiceClient& server, const std::string& path,
                               const std::string& url) {
   Progress progress(std::cerr, on_terminal(), "walk through the room");
@@ -121,9 +144,9 @@ Result<nlohmann::json> follow(const ServiceClient& server, const std::string& pa
     const auto session = server.get(path);
     if (!session) return pass(session);
     const std::string state = text_at(*session, "state");
-    const std::string verdict = text_at(*session, "verdict");
-    if (state == "done" || state == "cancelled") {
-      progress.show(1.0, state == "done" ? verdict : state);
+    const bool over = state == "done" || state == "cancelled";
+    if (over) progress.show(1.0, state == "done" ? text_at(*session, "verdict") : state);
+    if (over || CtrlC::seen()) {
       progress.finish();
       return session;
     }
@@ -166,6 +189,31 @@ bool proposed_by(const nlohmann::json& session, const nlohmann::json& registrati
   return waiting == client::number_at(session, "sessionId");
 }
 
+/// The sensors that took part and are refused or have no place, each with the reason.
+std::map<std::string, std::string> left_out(const nlohmann::json& session,
+                                            const nlohmann::json& registration, bool proposed) {
+  const auto reason = [](const nlohmann::json& sensor) {
+    const std::string why = fmt::format("{}", fmt::join(lines_at(sensor, "reasons"), "; "));
+    return why.empty() ? std::string("the walk does not tell where it stands") : why;
+  };
+  std::map<std::string, std::string> out;
+  const auto& placed = part_at(registration, "sensors");
+  if (!proposed) {
+    for (const auto& [name, sensor] : part_at(registration, "unplaced").items())
+      out.emplace(name, reason(sensor));
+    for (const auto& [name, sensor] : placed.items()) {
+      if (text_at(sensor, "verdict") == "Refused") out.emplace(name, reason(sensor));
+    }
+  }
+  // A session states no radius for a sensor without a place.
+  for (const auto& own : part_at(session, "accuracy")) {
+    const std::string name = text_at(own, "sensorId");
+    if (std::isfinite(client::number_at(own, "expectedRadius"))) continue;
+    if (proposed || !placed.contains(name)) out.emplace(name, reason(session));
+  }
+  return out;
+}
+
 /// Reports the session's own verdict; a registration that was in use before does not count.
 int report(const nlohmann::json& session, const nlohmann::json& registration, bool json) {
   const std::string verdict = text_at(session, "verdict");
@@ -187,7 +235,11 @@ int report(const nlohmann::json& session, const nlohmann::json& registration, bo
     std::cout << (waits ? proposal_report(part_at(registration, "proposal"))
                         : registration_report(registration));
   }
-  return good ? kExitOk : kExitFailed;
+  if (!good) return kExitFailed;
+  const auto missing = left_out(session, registration, waits);
+  for (const auto& [name, reason] : missing)
+    std::cerr << fmt::format("{} has no place: {}\n", printable(name), reason);
+  return missing.empty() ? kExitOk : kExitFailed;
 }
 
 Result<int> print_json(const Result<nlohmann::json>& document) {
@@ -271,10 +323,17 @@ Result<int> run_register(const RegisterArguments& arguments) {
   if (arguments.fresh) {
     if (const auto forgotten = server->remove("/registration"); !forgotten) return pass(forgotten);
   }
+  const CtrlC ctrl_c;
   const auto path = start(*server, arguments);
   if (!path) return pass(path);
   const auto session = follow(*server, *path, arguments.url);
   if (!session) return pass(session);
+  const std::string state = text_at(*session, "state");
+  if (CtrlC::seen() && state != "done" && state != "cancelled") {
+    std::cerr << "the session goes on without this command (chorus register joins it, chorus "
+                 "register --cancel ends it)\n";
+    return kExitInterrupted;
+  }
   const auto registration = server->get("/registration");
   if (!registration) return pass(registration);
   return report(*session, *registration, arguments.json);

@@ -36,7 +36,7 @@ std::string chain_shown(const nlohmann::json& sensor, const char* key) {
 
 /// "s1 > s3 (24.0 mm)": the chain that would have been next, and its error.
 std::string next_shown(const nlohmann::json& sensor) {
-  if (!sensor.contains("nextChain")) return "-";
+  if (client::part_at(sensor, "nextChain").empty()) return "-";
   return fmt::format("{} ({} mm)", chain_shown(sensor, "nextChain"),
                      shown(to_mm(client::number_at(sensor, "nextError")), 1));
 }

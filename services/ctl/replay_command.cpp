@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "common/net/listen.h"
 #include "common/record/cell_outline.h"
 #include "common/time/clock.h"
 #include "fusion-server/client/recordings.h"
@@ -104,6 +105,19 @@ Result<void> hand_on_registration(const std::vector<record::CellLine>& lines,
   return write_text(file, **recorded);
 }
 
+/// Refuses ports that are taken before any sensor starts: each of them would name a key of its own
+/// configuration, which `chorus replay` does not have.
+Result<void> check_ports(int first, std::size_t count) {
+  for (int port = first; port < first + static_cast<int>(count); ++port) {
+    asio::io_context io{1};
+    net::Acceptor acceptor(io.get_executor());
+    const auto unused =
+        net::listen_on(acceptor, {"127.0.0.1", static_cast<std::uint16_t>(port), "--port"});
+    if (!unused) return unused;
+  }
+  return {};
+}
+
 Result<int> play(const std::vector<Part>& parts, const std::optional<Round>& round,
                  const ReplayArguments& arguments) {
   const Timestamp epoch = std::chrono::ceil<std::chrono::seconds>(SystemClock().now() + kHeadStart);
@@ -136,6 +150,7 @@ Result<int> run_replay(const ReplayArguments& arguments) {
   if (!parts) return pass(parts);
   if (arguments.port + static_cast<int>(parts->size()) - 1 > kLastPort)
     return fail(ErrorCode::InvalidArgument, "--port", "leaves too few ports above it.");
+  if (auto ok = check_ports(arguments.port, parts->size()); !ok) return pass(ok);
   if (auto ok = hand_on_registration(*lines, arguments.save_registration); !ok) return pass(ok);
   return play(*parts, plan.round, arguments);
 }

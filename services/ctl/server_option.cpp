@@ -10,6 +10,12 @@ void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names) {
   app.add_option(names, url, what)->envname("CHORUS_URL")->capture_default_str();
   add_authority_option(app);
+  add_token_footer(app);
+}
+
+void add_token_footer(CLI::App& app) {
+  app.footer(app.get_footer() +
+             "\nIf the server wants a token: export CHORUS_TOKEN=TOKEN, one of its http.tokens.");
 }
 
 void add_authority_option(CLI::App& app) {

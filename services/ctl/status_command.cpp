@@ -101,11 +101,23 @@ std::string bodies_report(const nlohmann::json& frame) {
   return text;
 }
 
+/// The error of /sensors/, or that this is a sensor, which has no such resource.
+Error no_fusion_server(const client::ServiceClient& server, const std::string& url, Error error) {
+  if (error.code != ErrorCode::NotFound) return error;
+  const auto self = server.get("/");
+  if (!self || client::text_at(*self, "sensorId", "").empty()) return error;
+  return {ErrorCode::Unsupported, url,
+          "is sensor " + client::text_at(*self, "sensorId") +
+              ", not a fusion server; its own state is at " + url +
+              (url.ends_with('/') ? "healthz" : "/healthz")};
+}
+
 Result<int> run_status(const StatusArguments& arguments) {
   const auto server = client::ServiceClient::of(arguments.url);
   if (!server) return pass(server);
   const auto sensors = server->get("/sensors/");
-  if (!sensors) return pass(sensors);
+  if (!sensors)
+    return tl::unexpected<Error>(no_fusion_server(*server, arguments.url, sensors.error()));
   const auto registration = server->get("/registration");
   if (!registration) return pass(registration);
   // Before the first fused frame the server answers with 503, which is a state, not a failure.

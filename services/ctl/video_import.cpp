@@ -12,6 +12,7 @@
 #include "services/ctl/lens_file.h"
 #include "services/sensor/device/camera/film.h"
 #include "services/sensor/device/camera/shipped_runner.h"
+#include "services/sensor/device/camera/video.h"
 
 namespace chorus::ctl {
 namespace {
@@ -65,6 +66,29 @@ Result<camera::CameraSettings> settings_for(const fs::path& video, const VideoIm
   return settings;
 }
 
+/// Looks at the beginning of every input, because the runner may take minutes for each.
+Result<void> check_inputs(const std::vector<fs::path>& inputs, const VideoImport& how,
+                          const importers::ImportOptions& options) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    std::error_code ignored;
+    if (fs::file_size(inputs[i], ignored) == 0) continue;  // the others are imported without it
+    if (const auto sensor = importers::sensor_for(inputs[i], options); !sensor) return pass(sensor);
+    const auto settings = settings_for(inputs[i], how, i);
+    if (!settings) return pass(settings);
+    auto video = camera::open_video(*settings);
+    if (video) {
+      const auto moment = (*video)->next();
+      if (moment && *moment) continue;
+      video = fail(ErrorCode::InvalidArgument, inputs[i].string(),
+                   "no pictures can be read from the file; is it a video?");
+    }
+    Error error = video.error();
+    if (inputs[i].extension() == ".json") error.message += " Each lens needs its own --intrinsics.";
+    return tl::unexpected<Error>(std::move(error));
+  }
+  return {};
+}
+
 Result<record::FrameRecording> import_one(const fs::path& file, const VideoImport& how,
                                           std::size_t index,
                                           const importers::ImportOptions& options) {
@@ -100,6 +124,7 @@ Result<importers::ImportedSet> import_videos(const std::vector<fs::path>& inputs
                                              const importers::ImportOptions& options,
                                              const VideoImport& how) {
   if (auto ok = check_lens_count(how.lenses, inputs.size()); !ok) return pass(ok);
+  if (auto ok = check_inputs(inputs, how, options); !ok) return pass(ok);
   return importers::import_recordings(
       inputs, options,
       [&](const fs::path& file, const importers::ImportOptions& own, std::size_t index) {

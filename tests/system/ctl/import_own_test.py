@@ -64,6 +64,16 @@ class ImportOwn(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("is it a video?", errors)
 
+    def test_no_video_is_looked_at_while_another_input_is_none(self):
+        lens = self.at / "lens.json"
+        lens.write_text("{}")
+        code, _, errors = chorus("import", "video", VIDEOS / "cam01.mp4", lens, "--out", self.at / "none")
+        self.assertEqual(code, 1)
+        self.assertIn("lens.json: no pictures can be read", errors)
+        self.assertIn("Each lens needs its own --intrinsics", errors)
+        self.assertNotIn("cam01", errors, "nothing of the first was looked at")
+        self.assertFalse((self.at / "none").exists())
+
     @unittest.skipUnless(RUNNER.is_dir(), "runs after npm ci in services/pose-runner/")
     def test_videos_become_rays_close_to_what_another_network_saw(self):
         cameras = ["cam01", "cam02"]

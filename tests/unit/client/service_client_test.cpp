@@ -21,6 +21,18 @@ TEST(ServiceClient, ReadsTheAuthoritiesOnceAndBeforeTheFirstRequest) {
   EXPECT_THAT(plain, chorus::testing::IsOk()) << "needs none";
 }
 
+TEST(Refusal, OfATokenNamesTheVariableThatItComesFrom) {
+  const http::ClientResponse answer{401, {}, R"({"detail": "send a bearer token"})"};
+  ::unsetenv("CHORUS_TOKEN");
+  EXPECT_THAT(refusal_of(answer, "/").message,
+              ::testing::HasSubstr("set CHORUS_TOKEN to a token of this server"));
+  ::setenv("CHORUS_TOKEN", "secret", 1);
+  const std::string wrong = refusal_of(answer, "/").message;
+  ::unsetenv("CHORUS_TOKEN");
+  EXPECT_THAT(wrong, ::testing::HasSubstr("the server does not know the token in CHORUS_TOKEN"));
+  EXPECT_THAT(wrong, ::testing::Not(::testing::HasSubstr("secret")));
+}
+
 TEST(DefaultServer, HasTlsWhereInitGivesItToServices) {
   const chorus::testing::TemporaryFolder folder;
   EXPECT_EQ(default_server(folder.path().string()), "http://127.0.0.1:8080/");

@@ -23,6 +23,11 @@ TEST(CommandLine, WhoeverAsksAServerMayNameItsAuthority) {
     EXPECT_THAT(run_chorus({command, "--help"}).out, HasSubstr("--ca")) << command;
 }
 
+TEST(CommandLine, WhoeverAsksAServerIsToldWhereItsTokenComesFrom) {
+  for (const char* command : {"status", "register", "origin", "record", "export"})
+    EXPECT_THAT(run_chorus({command, "--help"}).out, HasSubstr("CHORUS_TOKEN")) << command;
+}
+
 TEST(CommandLine, KnowsWhatTheSmallProgramLeavesOut) {
   std::vector<std::string_view> names;
   for (const Command& command : recording_commands()) names.push_back(command.name);

@@ -33,7 +33,7 @@ TEST(ExportCommand, WritesEveryFormatItNames) {
     const Outcome done =
         run_chorus({"export", cell.file("fused.ndjson"), "--format", format, "--out", out});
     ASSERT_EQ(done.code, kExitOk) << format << ": " << done.error;
-    EXPECT_THAT(done.error, HasSubstr("1 persons"));
+    EXPECT_THAT(done.error, HasSubstr("1 person,"));
     EXPECT_THAT(done.error, HasSubstr("wrote " + out));
     EXPECT_THAT(bytes_of(out), StartsWith(beginning)) << format;
     EXPECT_GT(bytes_of(out).size(), 10'000u) << format;

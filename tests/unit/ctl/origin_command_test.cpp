@@ -29,16 +29,17 @@ std::string frame_text(int index) {
 TEST(Origin, ThePersonIsWatchedOnOneConnection) {
   std::vector<std::string> frames;
   for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
-  const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}});
+  const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
   // The server of this test has no /registration/origin; only the request counts.
   EXPECT_THAT(done.error, HasSubstr("/registration/origin"));
-  EXPECT_LE(server.connections(), 2u) << "one for the frames, one to set the origin";
+  EXPECT_LE(server.connections(), 3u)
+      << "one to see that it is there, one for the frames, one to set the origin";
 }
 
 TEST(Origin, NobodyThereIsSaid) {
-  const ScriptedServer server(
-      ScriptedServer::Texts{{"/frame", {R"({"captured": "x", "bodies": []})"}}});
+  const ScriptedServer server(ScriptedServer::Texts{
+      {"/frame", {R"({"captured": "x", "bodies": []})"}}, {"/registration", {"{}"}}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.5"});
   EXPECT_EQ(done.code, kExitFailed);
   EXPECT_EQ(done.error.find("/registration/origin"), std::string::npos);
@@ -47,8 +48,24 @@ TEST(Origin, NobodyThereIsSaid) {
 TEST(Origin, AServerThatIsNotThereIsNamed) {
   std::string gone;
   gone = ScriptedServer(ScriptedServer::Texts{{"/frame", {"{}"}}}).url();
-  EXPECT_THAT(run_chorus({"origin", "--url", gone, "--here", "--seconds", "0.5"}).error,
-              HasSubstr("is chorus-fusion running there?"));
+  const Outcome told = run_chorus({"origin", "--url", gone, "--here", "--seconds", "0.5"});
+  EXPECT_THAT(told.error, HasSubstr("is chorus-fusion running there?"));
+  EXPECT_EQ(told.error.find("stand still"), std::string::npos) << "nobody waits for nothing";
+}
+
+TEST(Origin, WithoutOptionsItIsShownWithTheWayBack) {
+  const ScriptedServer server(ScriptedServer::Texts{
+      {"/registration",
+       {R"({"master": "s1", "sensors": {"s1": {"x": -1.5, "z": 2, "qw": 1, "qx": 0, "qy": 0, "qz": 0}}})",
+        R"({"verdict": "None"})"}}});
+  const Outcome told = run_chorus({"origin", "--url", server.url()});
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_THAT(told.out, HasSubstr("s1, stands at x -1.500 m, z 2.000 m"));
+  EXPECT_THAT(told.out, HasSubstr("chorus origin --x=-1.5000 --z=2.0000 --yaw=0.00"));
+  EXPECT_TRUE(server.written().empty());
+  const Outcome none = run_chorus({"origin", "--url", server.url()});
+  EXPECT_EQ(none.code, kExitOk);
+  EXPECT_THAT(none.out, HasSubstr("no sensor is registered"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "common/http/client.h"
 #include "common/record/cell_writer.h"
 #include "tests/unit/ctl/program_run.h"
 #include "tests/unit/ctl/scripted_server.h"
@@ -29,6 +30,16 @@ TEST(ReplayCommand, NeedsAPortForEverySensor) {
   EXPECT_EQ(told.code, kExitFailed) << "three sensors";
   EXPECT_THAT(told.error, HasSubstr("--port"));
   EXPECT_EQ(told.out, "") << "half a cell is not started";
+}
+
+TEST(ReplayCommand, NamesItsOwnOptionForAPortThatIsTaken) {
+  const Cell cell(0.5);
+  const ScriptedServer other(ScriptedServer::Texts{});
+  const std::string port = std::to_string(http::parse_url(other.url()).value().port);
+  const Outcome told = run_chorus({"replay", cell.recordings() + "/s1.mcap", "--port", port});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("set --port to a port that is free"));
+  EXPECT_EQ(told.out, "") << "nothing plays";
 }
 
 TEST(ReplayCommand, RefusesSpeedsAndPortsThatAreNone) {
@@ -93,7 +104,21 @@ TEST(RecordCommand, NeverWritesOverAFile) {
   const Outcome told = run_chorus({"record", server.url(), "--out", file, "--seconds", "1"});
   EXPECT_EQ(told.code, kExitFailed);
   EXPECT_THAT(told.error, HasSubstr(file));
+  EXPECT_THAT(told.error, HasSubstr("exists already, and a recording is never overwritten"));
   EXPECT_EQ(std::filesystem::file_size(file), 8u);
+}
+
+TEST(RecordCommand, WithoutAFrameLeavesNoFileSoThatItCanBeTriedAgain) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string file = (folder / "a.mcap").string();
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/", {R"({"@type": ["Tracker"]})"}}, {"/sensors/", {"{}"}}});
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const Outcome told = run_chorus({"record", server.url(), "--out", file, "--seconds", "1"});
+    EXPECT_EQ(told.code, kExitFailed);
+    EXPECT_THAT(told.error, HasSubstr("delivered no frame in this time"));
+    EXPECT_FALSE(std::filesystem::exists(file));
+  }
 }
 
 TEST(RecordCommand, NeedsAServiceOfOurs) {

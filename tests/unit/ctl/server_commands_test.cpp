@@ -1,5 +1,9 @@
 // `chorus status` and `chorus register` with a server whose answers are scripted.
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdlib>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -100,6 +104,21 @@ TEST(Status, SurvivesAnyJson) {
   }
 }
 
+TEST(Status, TellsASensorFromAFusionServer) {
+  const ScriptedServer sensor(
+      ScriptedServer::Texts{{"/", {R"({"@type": ["Sensor"], "sensorId": "s1"})"}}});
+  const Outcome told = status_of(sensor);
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("is sensor s1, not a fusion server"));
+}
+
+TEST(Status, AChainThatDoesNotExistHasNoError) {
+  auto texts = calm();
+  texts["/registration"] = {
+      R"({"verdict": "Good", "sensors": {"s1": {"nextChain": [], "nextError": 0.0}}})"};
+  EXPECT_THAT(status_of(ScriptedServer(texts)).out, Not(HasSubstr("- (0.0 mm)")));
+}
+
 TEST(Status, NamesTheServerThatIsNotThere) {
   std::string gone;
   gone = ScriptedServer(calm()).url();
@@ -161,6 +180,50 @@ TEST(Register, AnotherRegistrationInUseIsNoSuccess) {
 
 TEST(Register, ProvisionalIsInUseToo) {
   EXPECT_EQ(register_at(ScriptedServer(walk(session("done", "Provisional", true)))).code, kExitOk);
+}
+
+TEST(Register, ASensorWithoutAPlaceIsNoSuccessThoughTheRestIsGood) {
+  const auto good = Json::parse(kIdle);
+  auto unplaced = good;
+  unplaced["unplaced"]["s3"] = {{"verdict", "Refused"}, {"reasons", {"a mirror"}}};
+  auto refused = good;
+  refused["sensors"]["s3"] = {{"verdict", "Refused"}, {"reasons", {"a mirror"}}};
+  for (const Json& registration : {unplaced, refused}) {
+    auto texts = walk(session("done", "Good", true));
+    texts["/registration"] = {kRuns, registration.dump()};
+    const Outcome told = register_at(ScriptedServer(texts));
+    EXPECT_EQ(told.code, kExitFailed);
+    EXPECT_THAT(told.out, StartsWith("registration: Good"));
+    EXPECT_THAT(told.error, HasSubstr("s3 has no place: a mirror\n"));
+    EXPECT_THAT(told.error, Not(HasSubstr("not good enough")));
+  }
+}
+
+TEST(Register, WhatTheSessionCouldNotPlaceMayHaveAPlaceFromBefore) {
+  auto done = Json::parse(session("done", "Good", true));
+  done["accuracy"] = {{{"sensorId", "s2"}, {"expectedRadius", 0.02}}, {{"sensorId", "s3"}}};
+  auto texts = walk(done.dump());
+  const Outcome missing = register_at(ScriptedServer(texts));
+  EXPECT_EQ(missing.code, kExitFailed);
+  EXPECT_THAT(missing.error, HasSubstr("s3 has no place: the walk lasted only 2 s\n"));
+  auto placed = Json::parse(kIdle);
+  placed["sensors"]["s3"] = {{"verdict", "Good"}};
+  texts["/registration"] = {kRuns, placed.dump()};
+  EXPECT_EQ(register_at(ScriptedServer(texts)).code, kExitOk);
+}
+
+TEST(Register, CtrlCEndsTheCommandAndSaysThatTheSessionGoesOn) {
+  const ScriptedServer server(walk(session("collecting", "None", false)));
+  std::thread somebody([&] {
+    while (server.written().empty()) std::this_thread::yield();
+    ::kill(::getpid(), SIGINT);
+  });
+  const Outcome told = register_at(server);
+  somebody.join();
+  EXPECT_EQ(told.code, kExitInterrupted);
+  EXPECT_THAT(told.error, HasSubstr("the session goes on"));
+  EXPECT_THAT(told.error, HasSubstr("chorus register --cancel ends it"));
+  EXPECT_EQ(server.written().size(), 1u) << "nothing was cancelled";
 }
 
 TEST(Register, SaysWhenSomebodyElseCancels) {
