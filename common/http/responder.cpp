@@ -62,18 +62,28 @@ bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
   return query && query->contains(entry.query_key);
 }
 
-/// The Accept header; a path that ends in ".json" replaces it, for clients that cannot send one,
-/// unless a resource has that very name.
-std::string_view accept_of(const RequestHead& head, const Router& router) {
-  const bool added = head.path.ends_with(kJsonSuffix) && !router.match(head.path);
-  return added ? "application/json, */*;q=0.5" : head.accept;
+/// True if the path ends in ".json" and no resource has that very name.  Ids of sensors and people
+/// and names of recordings have no dot, so {id} at the end of a pattern is not meant to take one.
+bool asks_for_json(const Router& router, std::string_view path) {
+  if (!path.ends_with(kJsonSuffix)) return false;
+  const auto match = router.match(path);
+  return !match || match->entry->pattern.ends_with('}');
 }
 
-/// The route for a path or, if there is none, for the path without its ".json".
+/// The Accept header; a path that ends in ".json" replaces it, for clients that cannot send one.
+std::string_view accept_of(const RequestHead& head, const Router& router) {
+  return asks_for_json(router, head.path) ? "application/json, */*;q=0.5" : head.accept;
+}
+
+/// The route for a path; of one that asks for JSON the route without ".json", or that of the
+/// container of this name.
 Result<Router::Match> named(const Router& router, std::string_view path) {
-  auto match = router.match(path);
-  if (match || !path.ends_with(kJsonSuffix)) return match;
-  return router.match(path.substr(0, path.size() - kJsonSuffix.size()));
+  if (!asks_for_json(router, path)) return router.match(path);
+  const std::string_view plain = path.substr(0, path.size() - kJsonSuffix.size());
+  auto match = router.match(plain);
+  if (match) return match;
+  auto container = router.match(std::string(plain) + "/");
+  return container && !container->entry->files ? container : match;
 }
 
 /// The entry of the path that differs from this one only by a slash at the end; null if there is

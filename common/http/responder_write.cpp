@@ -51,9 +51,9 @@ std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& 
                                            std::string_view route) const {
   const auto now = std::chrono::steady_clock::now();
   const bool tries = !guard_.tokens.empty() && is_present(head.authorization);
-  if (tries && !tries_->may_try(peer.account, now)) {
+  if (tries && !tries_->may_try(peer.account, head.authorization, now)) {
     const std::string detail =
-        "too many wrong tokens came from your address; try again in a second";
+        "too many different wrong tokens came from your address; try again in a second";
     Answer answer = complaint(
         {status::kTooManyRequests, name_of(ErrorCode::Unauthorized), {}, {}, detail}, head, route);
     answer.extra = "Retry-After: 1\r\n";
@@ -62,7 +62,7 @@ std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& 
   const auto refused = refuse_access(head, peer, needed, guard_);
   if (!refused) return std::nullopt;
   if (has_wrong_token(head, guard_)) {
-    tries_->note_wrong(peer.account, now);
+    tries_->note_wrong(peer.account, head.authorization, now);
     wrong_tokens_->hit(peer.account);
   }
   return fault(*refused, head, route);

@@ -1,5 +1,7 @@
 #include "common/http/token_tries.h"
 
+#include <openssl/sha.h>
+
 #include <algorithm>
 
 namespace chorus::http {
@@ -8,23 +10,41 @@ namespace {
 constexpr std::chrono::seconds kPerTry{1};
 constexpr int kAtOnce = 10;
 constexpr std::size_t kMaxAddresses = 4096;
+// More than are checked at once, so that a guesser does not push out what others repeat too soon.
+constexpr std::size_t kMarksKept = 16;
 const std::string kShared = "others";
 
 }  // namespace
 
+TokenTries::Mark TokenTries::mark_of(std::string_view authorization) {
+  Mark mark{};
+  static_assert(sizeof(Mark) == SHA256_DIGEST_LENGTH);
+  SHA256(reinterpret_cast<const unsigned char*>(authorization.data()), authorization.size(),
+         mark.data());
+  return mark;
+}
+
 const std::string& TokenTries::account(const std::string& address) const {
-  return forgiven_.contains(address) || forgiven_.size() < kMaxAddresses ? address : kShared;
+  return records_.contains(address) || records_.size() < kMaxAddresses ? address : kShared;
 }
 
-bool TokenTries::may_try(const std::string& address, Time now) const {
-  const auto known = forgiven_.find(account(address));
-  return known == forgiven_.end() || known->second - now <= (kAtOnce - 1) * kPerTry;
+bool TokenTries::may_try(const std::string& address, std::string_view authorization,
+                         Time now) const {
+  const auto known = records_.find(account(address));
+  if (known == records_.end()) return true;
+  const Record& record = known->second;
+  if (record.forgiven - now <= (kAtOnce - 1) * kPerTry) return true;
+  return std::ranges::find(record.wrong, mark_of(authorization)) != record.wrong.end();
 }
 
-void TokenTries::note_wrong(const std::string& address, Time now) {
-  std::erase_if(forgiven_, [now](const auto& entry) { return entry.second <= now; });
-  Time& forgiven = forgiven_[account(address)];
-  forgiven = std::max(forgiven, now) + kPerTry;
+void TokenTries::note_wrong(const std::string& address, std::string_view authorization, Time now) {
+  std::erase_if(records_, [now](const auto& entry) { return entry.second.forgiven <= now; });
+  Record& record = records_[account(address)];
+  const Mark mark = mark_of(authorization);
+  if (std::ranges::find(record.wrong, mark) != record.wrong.end()) return;
+  record.wrong.push_back(mark);
+  if (record.wrong.size() > kMarksKept) record.wrong.pop_front();
+  record.forgiven = std::max(record.forgiven, now) + kPerTry;
 }
 
 }  // namespace chorus::http

@@ -49,7 +49,9 @@ CommandLine read_command_line(const About& about, int argc, const char* const* a
   app.add_option("--set", sets, "Overrides one key: PATH=VALUE; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_flag("--check", out.check_only, "Only says whether the configuration is good");
+  app.add_flag("--check", out.check_only,
+               "Only says whether the configuration is good (exit code 0 or 2), and on standard "
+               "error what would not work on this host now");
   const std::vector<Shortcut> shortcuts = shortcuts_of(about);
   std::vector<std::optional<std::string>> given(shortcuts.size());
   for (std::size_t i = 0; i < shortcuts.size(); ++i) {

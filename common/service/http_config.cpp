@@ -26,8 +26,16 @@ void read_names(ConfigReader& config, http::ServerConfig& out) {
   }
 }
 
-void read_tokens(ConfigReader& config, std::vector<http::Token>& out) {
+/// Complains about a token that somebody could guess.
+void check_length(ConfigReader& config, std::string_view key, const std::string& token) {
   constexpr std::size_t kShortest = 12;
+  if (token.size() < kShortest)
+    config.complain(key, "needs at least 12 characters, such as `openssl rand -hex 16` makes");
+}
+
+void read_tokens(ConfigReader& config, http::ServerConfig& http) {
+  config.read("bearer_token", http.bearer_token);
+  if (!http.bearer_token.empty()) check_length(config, "bearer_token", http.bearer_token);
   const auto names = {http::name_of(http::Role::Read), http::name_of(http::Role::Images),
                       http::name_of(http::Role::Control)};
   for (ConfigReader& reader : config.items("tokens")) {
@@ -36,10 +44,8 @@ void read_tokens(ConfigReader& config, std::vector<http::Token>& out) {
     reader.read("token", token.secret);
     reader.read_choice("role", role, names);
     token.role = static_cast<http::Role>(role);
-    if (token.secret.size() < kShortest)
-      reader.complain("token",
-                      "needs at least 12 characters, such as `openssl rand -hex 16` makes");
-    out.push_back(std::move(token));
+    check_length(reader, "token", token.secret);
+    http.tokens.push_back(std::move(token));
   }
 }
 
@@ -84,8 +90,7 @@ void read_http(ConfigReader config, http::ServerConfig& out) {
   int port = out.port;
   config.read("port", port, 0, 65535);
   out.port = static_cast<std::uint16_t>(port);
-  config.read("bearer_token", out.bearer_token);
-  read_tokens(config, out.tokens);
+  read_tokens(config, out);
   read_identity(config.child("tls"), out.identity);
   config.read("allowed_origin", out.allowed_origin);
   read_names(config, out);

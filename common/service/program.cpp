@@ -78,9 +78,12 @@ int serve(const About& about, Program& program, const CommandLine& command) {
   });
   if (!log) return refuse(about, log.error());
   if (command.check_only) {
-    std::puts("The configuration is good.");
+    const auto concerns = program.concerns();
+    std::puts(concerns.empty() ? "The configuration is good."
+                               : "The configuration is good.  What does not work on this host now "
+                                 "is on standard error.");
     std::fflush(stdout);
-    for (const std::string& concern : program.concerns())
+    for (const std::string& concern : concerns)
       std::fprintf(stderr, "%s: but now, %s\n", about.name.c_str(), concern.c_str());
     return kExitStopped;
   }

@@ -29,20 +29,28 @@ constexpr std::size_t kMaxBeside = 100;
 // Clock requests after an odd frame; the filter accepts a step of the clock with the third answer.
 constexpr int kClockChecks = 4;
 
-Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
+/// Between half of and the whole of `first`, doubled for each failure, but at most `most`.
+Duration backoff(Duration first, Duration most, int failures_in_row, double jitter) {
   const int doublings = std::clamp(failures_in_row - 1, 0, kMaxDoublings);
-  Duration whole = timings.first_backoff;
-  for (int i = 0; i < doublings && whole < timings.max_backoff; ++i) whole *= 2;
-  whole = std::min(whole, timings.max_backoff);
+  Duration whole = first;
+  for (int i = 0; i < doublings && whole < most; ++i) whole *= 2;
+  whole = std::min(whole, most);
   const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // Also 0 for NaN.
   return whole / 2 + from_seconds(seconds(whole) * 0.5 * fraction);
 }
 
+Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
+  return backoff(timings.first_backoff, timings.max_backoff, failures_in_row, jitter);
+}
+
+bool refuses_token(int status) {
+  return status == http::status::kUnauthorized || status == http::status::kForbidden ||
+         status == http::status::kTooManyRequests;
+}
+
 /// Says why there was no frame, and what to do about it.
 std::string refusal_words(int status) {
-  const bool of_token = status == http::status::kUnauthorized ||
-                        status == http::status::kForbidden ||
-                        status == http::status::kTooManyRequests;
+  const bool of_token = refuses_token(status);
   return "GET frame answers " + std::to_string(status) +
          (of_token ? "; give the sensor's entry here a token of its http.tokens"
                    : "; check that the url is that of a sensor service");
@@ -85,9 +93,10 @@ Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
   }
   if (answer.status != http::status::kNotModified &&
       (answer.status != http::status::kOk || !answer.captured)) {
-    return fail(SensorState::Refused, refusal_words(answer.status), jitter);
+    return refuse(answer.status, jitter);
   }
   failures_in_row_ = 0;
+  tokens_refused_ = 0;
   const bool news = answer.captured && answer.captured != last_captured_;
   if (answer.status == http::status::kOk) etag_ = answer.etag;
   if (news) {
@@ -230,8 +239,21 @@ Step PollFsm::go_on(Duration now) {
 Step PollFsm::fail(SensorState state, std::string reason, double jitter) {
   ++failures_;
   ++failures_in_row_;
+  tokens_refused_ = 0;
   enter(state, std::move(reason));
   return {Sleep{backoff(timings_, failures_in_row_, jitter)}};
+}
+
+Step PollFsm::refuse(int status, double jitter) {
+  const int before = tokens_refused_;
+  // 429 only says that wrong tokens came before; the answer to those has the reason.
+  const bool known = before > 0 && status == http::status::kTooManyRequests;
+  Step step = fail(SensorState::Refused, known ? last_error_ : refusal_words(status), jitter);
+  if (!refuses_token(status)) return step;
+  tokens_refused_ = before + 1;
+  step.action = Sleep{
+      backoff(timings_.first_token_backoff, timings_.max_token_backoff, tokens_refused_, jitter)};
+  return step;
 }
 
 SensorState PollFsm::gone() const {

@@ -55,6 +55,7 @@ class PollFsm {
   Step on(const StreamEnded& end, Duration now, double jitter);
 
   Step fail(SensorState state, std::string reason, double jitter);
+  Step refuse(int status, double jitter);
   Step go_on(Duration now);
   Action next_request(Duration now);
   Action next_frame();
@@ -82,6 +83,7 @@ class PollFsm {
   bool floor_known_ = false;
   Duration floor_pause_{0};  ///< Grows when requests for the floor plane fail although frames come.
   int failures_in_row_ = 0;
+  int tokens_refused_ = 0;  ///< In a row.
   std::uint64_t failures_ = 0;
 
   bool stream_asked_ = false;  ///< True while a stream is being opened or is open.

@@ -105,15 +105,21 @@ std::string probe_folders(const StartSettings& config, const std::string& state_
     if (!probe) log::error(what, {{"reason", to_string(probe.error())}});
     return probe ? std::string() : to_string(probe.error());
   };
-  if (!config.viewer_dir.empty()) told("viewer cannot be served", probe_viewer(config.viewer_dir));
+  if (!config.viewer_dir.empty())
+    told("viewer cannot be served", probe_viewer(viewer_folder(config.viewer_dir)));
   if (!config.recording.folder.empty())
     told("nothing can be recorded", probe_folder(config.recording.folder));
   if (state_folder.empty()) {
-    log::warn("state_dir is empty: registration and ids of people are forgotten at the end");
+    log::warn(
+        config.state_dir.empty()
+            ? "state_dir is empty: registration and ids of people are forgotten at the end"
+            : "state_dir is \"auto\", but HOME and XDG_STATE_HOME are not set, or http.port is "
+              "0: registration and ids of people are forgotten at the end");
     return {};
   }
-  log::info("state is kept", {{"folder", state_folder}});
-  return told("state cannot be kept", probe_folder(state_folder));
+  const std::string trouble = told("state cannot be kept", probe_folder(state_folder));
+  if (trouble.empty()) log::info("state is kept", {{"folder", state_folder}});
+  return trouble;
 }
 
 service::RecordingsOptions recordings_options(const StartSettings& config,
@@ -219,7 +225,8 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   frames->add_routes(*router);
   sensors->add_routes(*router);
   registration->add_routes(*router);
-  rest::add_description_routes(*router, serving, config.at_start.title, config.at_start.viewer_dir);
+  rest::add_description_routes(*router, serving, config.at_start.title,
+                               viewer_folder(config.at_start.viewer_dir));
   service::CommonResources common;
   common.clock = clock;
   common.health = [this] { return health_of(status_now()); };
@@ -297,7 +304,7 @@ service::Concerns FusionServer::concerns() const {
   if (!state.empty())
     add("where the sensors stand cannot be kept: ", service::usable_folder(state));
   if (!config.viewer_dir.empty())
-    add("the viewer cannot be served: ", probe_viewer(config.viewer_dir));
+    add("the viewer cannot be served: ", probe_viewer(viewer_folder(config.viewer_dir)));
   if (impl_->config.live.sensors.empty())
     all.emplace_back("no sensor is named in the section \"sensors\"");
   return all;

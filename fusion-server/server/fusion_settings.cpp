@@ -269,6 +269,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   FusionSettings settings;
   auto& [live, at_start] = settings;
   at_start.state_dir = "auto";
+  at_start.viewer_dir = "auto";
   root.read("title", at_start.title);
   service::read_http(root.child("http"), at_start.http);
   live.tokens = http::all_tokens(std::exchange(at_start.http.bearer_token, {}),

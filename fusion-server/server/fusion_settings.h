@@ -47,7 +47,8 @@ struct StartSettings {
   /// The folder for state that is kept across restarts; "auto": see state_folder(); empty: none.
   std::string state_dir;
   service::RecordingConfig recording;
-  std::string viewer_dir;  ///< The folder of the static files of /viewer/; empty: no viewer.
+  /// The folder of the static files of /viewer/; "auto": see viewer_folder(); empty: no viewer.
+  std::string viewer_dir;
 
   bool operator==(const StartSettings&) const = default;
 };

@@ -2,13 +2,18 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "common/base/file.h"
+#include "common/base/shipped_folder.h"
 
 namespace chorus::server {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kAdvice =
+    "; give it to the user of the service (chown), or name another folder";
 
 }  // namespace
 
@@ -29,16 +34,31 @@ std::string state_folder(std::string_view configured, std::uint16_t port,
 Result<void> probe_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) return fail(ErrorCode::Io, folder, "cannot be created: " + error.message());
+  if (error)
+    return fail(ErrorCode::Io, folder,
+                "cannot be created: " + error.message() + std::string(kAdvice));
   const fs::path probe = fs::path(folder) / ".probe";
   if (auto written = replace_file(probe, "probe\n"); !written) {
-    return fail(ErrorCode::Io, folder, "cannot be written to: " + written.error().message);
+    return fail(ErrorCode::Io, folder,
+                "cannot be written to: " + written.error().message + std::string(kAdvice));
   }
   fs::remove(probe, error);
   return {};
 }
 
+std::string viewer_folder(const std::string& configured) {
+  if (configured != "auto") return configured;
+  auto shipped = shipped_folder("viewer", "index.html");
+  return shipped ? std::move(*shipped) : std::string();
+}
+
 Result<void> probe_viewer(const std::string& folder) {
+  if (folder.empty()) {
+    return fail(ErrorCode::NotFound, "viewer_dir",
+                "there is no index.html in ../share/chorus/viewer or ../../../services/viewer "
+                "beside the program, nor in services/viewer here: set viewer_dir to the folder of "
+                "the viewer, or to \"\"");
+  }
   std::error_code ignored;
   if (!fs::exists(fs::path(folder) / "index.html", ignored)) {
     return fail(ErrorCode::NotFound, folder,

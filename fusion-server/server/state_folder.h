@@ -1,5 +1,5 @@
-// Decides in which folder a fusion server keeps state across restarts, and checks that folders can
-// be used.
+// Decides in which folder a fusion server keeps state across restarts and from which it serves the
+// viewer, and checks that folders can be used.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,12 @@ namespace chorus::server {
 /// Creates the folder if necessary and writes a test file; the error says what is wrong.
 [[nodiscard]] Result<void> probe_folder(const std::string& folder);
 
-/// Checks that the viewer's files are there, with everything that they need.
+/// Returns `configured` unless it is "auto". For "auto", returns the viewer that was installed with
+/// the program or is in its sources (shipped_folder), empty if there is none.
+[[nodiscard]] std::string viewer_folder(const std::string& configured);
+
+/// Checks that the viewer's files are there, with everything that they need.  `folder`: what
+/// viewer_folder() returned.
 [[nodiscard]] Result<void> probe_viewer(const std::string& folder);
 
 }  // namespace chorus::server

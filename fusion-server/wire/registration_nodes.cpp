@@ -161,8 +161,9 @@ void add_storage(Node& node, const StorageStatus& storage) {
   if (stored(storage)) return;
   node.properties.emplace_back("storeProblem",
                                storage.folder.empty()
-                                   ? std::string("state_dir is empty: the registration is "
-                                                 "forgotten when the server ends")
+                                   ? std::string("state_dir is empty, or \"auto\" without a "
+                                                 "HOME: the registration is forgotten when the "
+                                                 "server ends")
                                    : storage.trouble);
 }
 

@@ -295,8 +295,8 @@ Result<int> cancel(const ServiceClient& server, const RegisterArguments& argumen
 Result<int> undo(const ServiceClient& server, bool json) {
   const auto registration = server.post("/registration/undo", nlohmann::json::object());
   if (!registration || json) return print_json(registration);
-  std::cout << "the registration from before is in use again; the same command brings this one "
-               "back\n"
+  std::cout << "the registration from before the last change is in use again, with its origin; the "
+               "same command brings the other one back\n"
             << registration_report(*registration);
   return kExitOk;
 }
@@ -359,8 +359,10 @@ Run add_register(CLI::App& options) {
       options.add_flag("--cancel", arguments->cancel,
                        "End the session that runs; the registration is then what it was before"),
       options.add_flag("--undo", arguments->undo,
-                       "Go back to the registration before this one; twice changes nothing"),
-      options.add_flag("--history", arguments->history, "List the last sessions, and start none")};
+                       "Go back one step: to the registration and the origin before the last "
+                       "change; again: forward to those of now"),
+      options.add_flag("--history", arguments->history,
+                       "List the last sessions since the server started, and start none")};
   for (std::size_t i = 0; i < apart.size(); ++i) {
     apart[i]->excludes(propose);
     for (std::size_t j = 0; j < i; ++j) apart[i]->excludes(apart[j]);

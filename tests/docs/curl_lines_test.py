@@ -87,6 +87,7 @@ class CurlLines(unittest.TestCase):
                                         capture_output=True, text=True, timeout=60, cwd=self.folder)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertNotEqual(result.stdout.strip(), "")
+                self.assertNotRegex(result.stdout, r"(?m)^null\b", "jq prints null for what is not there")
 
 
 if __name__ == "__main__":

@@ -166,8 +166,9 @@ Result<void> guessed_tokens(Trial& trial) {
   int judged = 0;
   int guesses = 0;
   while (seconds(now() - begun) < kGuessing) {
+    const std::string guess = bearer(fmt::format("wrong {}", guesses));
     const auto answer =
-        head_of_answer({*host, cell->port()}, request_of("POST", "/registration", bearer("wrong")));
+        head_of_answer({*host, cell->port()}, request_of("POST", "/registration", guess));
     judged += status_of(answer) == 401 ? 1 : 0;
     ++guesses;
   }

@@ -16,7 +16,9 @@ namespace {
 
 constexpr int kTrusting = 3;
 constexpr double kTrustedAgain = 1.5;  // until a repaired sensor contributes again, at most [s]
-constexpr double kTrustPatience = 8.0;
+// The same after a refused token, which the tracker tries again only after 5 to 10 s.
+constexpr double kTokenAgain = 11.5;
+constexpr double kTrustPatience = 14.0;
 
 /// A certificate authority that issues certificates for sensors, as files.
 class Authority {
@@ -70,10 +72,11 @@ bool says(const Cell& cell, const std::string& sensor, const std::string& text) 
   });
 }
 
-void check_return(Trial& trial, const Watch& watch, const Cell& cell, Timestamp since) {
+void check_return(Trial& trial, const Watch& watch, const Cell& cell, Timestamp since,
+                  double limit = kTrustedAgain) {
   (void)wait_until(kTrustPatience,
                    [&] { return std::isfinite(recovery(watch.seen(), since, cell.placed())); });
-  trial.check_recovery(recovery(watch.seen(), since, cell.placed()), kTrustedAgain);
+  trial.check_recovery(recovery(watch.seen(), since, cell.placed()), limit);
 }
 
 Result<void> certificate_expired(Trial& trial) {
@@ -128,7 +131,7 @@ Result<void> wrong_token(Trial& trial) {
   cell->sensor(1).kill();
   cell->change_sensor(1, {});
   if (auto started = cell->start_sensor(1); !started) return started;
-  check_return(trial, watch, *cell, now());
+  check_return(trial, watch, *cell, now(), kTokenAgain);
   return {};
 }
 

@@ -192,8 +192,10 @@ TEST(Dialogue, WrongTokensAreCountedAsWithAnyOtherWriting) {
   config.bearer_token = "right";
   TalkServer service(config);
   std::string last;
-  for (int i = 0; i < 12; ++i)
-    last = service.answer_to(hello("Sec-WebSocket-Protocol: chorus.token.wrong\r\n"));
+  for (int i = 0; i < 12; ++i) {
+    const std::string guess = "chorus.token.wrong" + std::to_string(i);
+    last = service.answer_to(hello("Sec-WebSocket-Protocol: " + guess + "\r\n"));
+  }
   EXPECT_EQ(status_in(last), 429);
 }
 

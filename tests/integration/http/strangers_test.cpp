@@ -99,12 +99,24 @@ TEST(Strangers, WrongTokensAreCountedAndSlowed) {
   };
   EXPECT_EQ(service.ask("/registration", {}, "DELETE").status, 401) << "from loopback";
   EXPECT_EQ(write("secret").status, 204);
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(write("guess").status, 401);
-  const auto slowed = write("guess");
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(write("guess " + std::to_string(i)).status, 401);
+  const auto slowed = write("one more");
   EXPECT_EQ(slowed.status, 429);
   EXPECT_EQ(slowed.headers.at("retry-after"), "1");
   EXPECT_EQ(write("secret").status, 429) << "or a guess would tell";
   EXPECT_EQ(service.server.counters().unauthorized, 13u);
+}
+
+TEST(Strangers, OneOutdatedTokenDoesNotHoldUpTheRightOne) {
+  ServerConfig config;
+  config.bearer_token = "secret";
+  TestServer service(config);
+  const auto write = [&](const std::string& token) {
+    return service.ask("/registration", {{"Authorization", "Bearer " + token}}, "DELETE").status;
+  };
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(write("outdated"), 401);
+  EXPECT_EQ(write("secret"), 204);
+  EXPECT_EQ(service.server.counters().unauthorized, 30u);
 }
 
 ServerConfig guarded() {
@@ -149,8 +161,10 @@ TEST(Guarded, EachRoleGetsWhatIsItsOwn) {
 
 TEST(Guarded, GuessingAtReadingIsSlowedToo) {
   TestServer service(guarded());
-  for (int i = 0; i < 10; ++i)
-    EXPECT_EQ(service.ask("/frame", {{"Authorization", "Bearer guess"}}).status, 401);
+  for (int i = 0; i < 10; ++i) {
+    const std::string guess = "Bearer guess " + std::to_string(i);
+    EXPECT_EQ(service.ask("/frame", {{"Authorization", guess}}).status, 401);
+  }
   EXPECT_EQ(service.ask("/frame", {{"Authorization", "Bearer a reader's"}}).status, 429);
 }
 

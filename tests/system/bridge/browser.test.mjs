@@ -89,11 +89,11 @@ test('a page of an allowed origin pushes rays with its token', async (t) => {
 
 test('a page that may not push gets no further', async (t) => {
   const origin = await pages(t);
-  const sensor = await sensorProcess(t, 'http.bearer_token=right', `http.allowed_origin=${origin}`);
-  const closed = await sensorProcess(t, 'http.bearer_token=right');
+  const sensor = await sensorProcess(t, 'http.bearer_token=the-right-token', `http.allowed_origin=${origin}`);
+  const closed = await sensorProcess(t, 'http.bearer_token=the-right-token');
   const browser = await launch();
   t.after(() => browser.close());
-  for (const [url, token] of [[sensor, 'wrong'], [sensor, ''], [closed, 'right']]) {
+  for (const [url, token] of [[sensor, 'wrong'], [sensor, ''], [closed, 'the-right-token']]) {
     const page = await browser.newPage();
     await page.goto(origin);
     await pushFrom(page, url.replace('http', 'ws') + 'push', token);

@@ -256,7 +256,7 @@ class Hostile(BridgeRig):
         self.with_good(endless)
 
     def test_who_may_push(self):
-        sensor = self.bridge(**{"http.bearer_token": "right"})
+        sensor = self.bridge(**{"http.bearer_token": "the-right-token"})
         body = "\n".join([hello_line(), frame_line()]).encode()
         self.assertEqual(send("POST", sensor.url + "push", body)[0], 401)
         self.assertEqual(send("POST", sensor.url + "push", body, {"Authorization": "Bearer wrong"})[0], 401)
@@ -264,8 +264,8 @@ class Hostile(BridgeRig):
             raw_websocket(sensor)
         self.assertEqual(self.push_state(sensor)["state"], "waiting")
         body = "\n".join([hello_line(), frame_line()]).encode()
-        self.assertEqual(send("POST", sensor.url + "push", body, {"Authorization": "Bearer right"})[0], 200)
-        foreign = {"Authorization": "Bearer right", "Host": "evil.example"}
+        self.assertEqual(send("POST", sensor.url + "push", body, {"Authorization": "Bearer the-right-token"})[0], 200)
+        foreign = {"Authorization": "Bearer the-right-token", "Host": "evil.example"}
         self.assertEqual(send("POST", sensor.url + "push", body, foreign)[0], 421)
         self.assertEqual(os.stat(sensor.path).st_mode & 0o777, 0o660)
 

@@ -95,7 +95,7 @@ class Program(Rig):
         self.assertEqual(fusion.stop(), 0)
 
     def test_log_and_token_are_reloaded_while_it_runs(self):
-        config = self.write("fusion.json", '{"log": {"format": "json"}, "http": {"bearer_token": "old"}}')
+        config = self.write("fusion.json", '{"log": {"format": "json"}, "http": {"bearer_token": "the-old-token"}}')
         port = free_port()
         fusion = Process("chorus-fusion", "--config", config, "--port", str(port), "--log-level", "info")
         self.processes.append(fusion)
@@ -107,11 +107,11 @@ class Program(Rig):
             headers = {"Authorization": f"Bearer {token}"}
             return send("DELETE", url + "recordings/none", headers=headers)[0] == 404
 
-        self.assertEqual((allowed("old"), allowed("new")), (True, False))
-        self.write("fusion.json", '{"log": {"format": "text"}, "http": {"bearer_token": "new"}}')
+        self.assertEqual((allowed("the-old-token"), allowed("the-new-token")), (True, False))
+        self.write("fusion.json", '{"log": {"format": "text"}, "http": {"bearer_token": "the-new-token"}}')
         fusion.child.send_signal(signal.SIGHUP)
-        wait_for("the new token", lambda: allowed("new"))
-        self.assertFalse(allowed("old"))
+        wait_for("the new token", lambda: allowed("the-new-token"))
+        self.assertFalse(allowed("the-old-token"))
         wait_for("the new format", lambda: "configuration reloaded" in fusion.text())
         self.assertFalse(fusion.text().splitlines()[-1].startswith("{"), fusion.text())
         self.assertNotIn("wait for a restart", fusion.text())

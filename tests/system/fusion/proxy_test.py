@@ -8,7 +8,7 @@ import unittest
 from rig import BIN, Rig, free_port, get, wait_for
 
 NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
-TOKEN = "open sesame"
+TOKEN = "open sesame 1"
 CONFIG = """
 daemon off; worker_processes 1; pid {folder}/pid; error_log {folder}/error.log;
 events {{}}

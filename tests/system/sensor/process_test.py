@@ -98,7 +98,7 @@ class Process(unittest.TestCase):
         sensor.signal(signal.SIGHUP)
         self.assertIn("images", str(sensor.wait_for_event("configuration not reloaded, the old one stays")))
         self.assertEqual(sensor.get("/frame").status, 200)
-        configure(images=True, id="other", http={"bearer_token": "secret"})
+        configure(images=True, id="other", http={"bearer_token": "secret-of-many"})
         sensor.signal(signal.SIGHUP)
         self.assertEqual(sensor.wait_for_event("changes wait for a restart")["keys"], "id")
         sensor.wait_for_event("configuration reloaded")

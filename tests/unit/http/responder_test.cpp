@@ -18,6 +18,9 @@ class ResponderTest : public ::testing::Test {
     router->get("/list/", [](const Request&, const PathParams&) {
       return Result<DocumentPtr>(make_document("text/plain", "list", {"1"}));
     });
+    router->get("/list/{id}", [](const Request&, const PathParams& params) {
+      return Result<DocumentPtr>(make_document("application/json", params.at("id"), {"1"}));
+    });
     router->action(Method::Post, "/do", [](const Request& request, const PathParams&) {
       return Result<ActionResult>(
           ActionResult{200, make_document("text/plain", std::string(request.body), {"1"})});
@@ -71,6 +74,12 @@ TEST_F(ResponderTest, ANameThatEndsInJsonAsksForJson) {
   publish(2);
   EXPECT_EQ(responder_->waited(*waiting.entry, head_)->status, 200);
   EXPECT_EQ(react("GET /nothing.json HTTP/1.1\r\nHost: localhost\r\n").answer.status, 404);
+}
+
+TEST_F(ResponderTest, NamesWithAnIdAndContainersMayEndInJsonToo) {
+  EXPECT_EQ(react("GET /list/s1.json HTTP/1.1\r\nHost: localhost\r\n").answer.body, "s1");
+  EXPECT_EQ(react("GET /list.json HTTP/1.1\r\nHost: localhost\r\n").answer.body, "list");
+  EXPECT_EQ(react("GET /list/s1 HTTP/1.1\r\nHost: localhost\r\n").answer.body, "s1");
 }
 
 TEST_F(ResponderTest, ThePathWithOrWithoutItsSlashLeadsToTheOther) {

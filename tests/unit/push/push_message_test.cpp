@@ -233,6 +233,15 @@ TEST(PushedFrame, MistakesAreNamedWithTheirPlace) {
   expect_refused(frame_of("pixels", landmarks({{3, {1, 2}}})), "bodies[0].pixels", "intrinsics");
 }
 
+TEST(PushedFrame, ABodyInMillimetresIsRefusedAndAWrongPointIsNot) {
+  expect_refused(frame_of("points", landmarks({{5, {300, 100, 2500}}, {6, {-100, 100, 2400}}})),
+                 "bodies[0].points", "are these millimetres?");
+  EXPECT_THAT(read_frame(frame_of("points", landmarks({{5, {0, 0, 100}}}))), IsOk());
+  EXPECT_THAT(read_frame(frame_of("points", landmarks({{5, {0, 0, 2500}}, {6, {0, 0, 2.4}}}))),
+              IsOk());
+  EXPECT_THAT(read_frame(frame_of("points", landmarks({}))), IsOk()) << "nothing was seen";
+}
+
 TEST(PushedFrame, TooManyBodiesAreRefused) {
   Json frame{{"type", "frame"}, {"captured", kTime}, {"bodies", Json::array()}};
   for (std::size_t i = 0; i <= kMaxBodies; ++i)

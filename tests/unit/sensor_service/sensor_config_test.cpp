@@ -48,19 +48,28 @@ TEST(SensorConfig, TheCommentedFileSaysTheDefaults) {
 
 TEST(SensorConfig, EveryKeyIsRead) {
   const auto settings = settings_with(
-      {"id=cam-2", "http.address=0.0.0.0", "http.port=9000", "http.bearer_token=secret",
+      {"id=cam-2", "http.address=0.0.0.0", "http.port=9000", "http.bearer_token=a secret of 12",
        "http.allowed_origin=http://a", "images=true", "history_s=7", "clock.offset_ms=-250",
        "clock.drift_ppm=50", "clock.step_ms=-2000", "clock.step_after_s=30", "log.level=warn",
        "log.format=json"});
   const auto& [live, at_start] = settings;
   EXPECT_EQ(at_start.id.str(), "cam-2");
   EXPECT_EQ(at_start.http, (http::ServerConfig{"0.0.0.0", 9000, "", "http://a"}));
-  EXPECT_EQ(live.tokens, (std::vector<http::Token>{{"secret", http::Role::Control}}));
+  EXPECT_EQ(live.tokens, (std::vector<http::Token>{{"a secret of 12", http::Role::Control}}));
   EXPECT_TRUE(live.images);
   EXPECT_EQ(at_start.history, std::chrono::seconds(7));
   EXPECT_EQ(at_start.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
                                          std::chrono::seconds(-2), std::chrono::seconds(30)}));
   EXPECT_EQ(live.log, (service::LogConfig{log::Level::Warn, log::Format::Json}));
+}
+
+TEST(SensorConfig, NoTokenIsShort) {
+  for (const std::string shorter :
+       {"http.bearer_token=elevenchars", R"(http.tokens=[{"token":"elevenchars"}])"}) {
+    EXPECT_THAT(refusal({shorter}), HasSubstr("at least 12 characters")) << shorter;
+  }
+  EXPECT_EQ(refusal({"http.bearer_token=twelve chars"}), "");
+  EXPECT_EQ(refusal({"http.bearer_token="}), "") << "none";
 }
 
 TEST(SensorConfig, AllMistakesComeTogether) {

@@ -31,9 +31,8 @@ TEST(FusionConfig, TheShippedFileIsGoodAndSaysTheDefaults) {
       service::read_config({"deploy/config/fusion.json", {}}).and_then(read_fusion_settings);
   ASSERT_TRUE(shipped) << to_string(shipped.error());
   EXPECT_EQ(shipped->live.sensors.size(), 6u);
-  EXPECT_EQ(shipped->at_start.viewer_dir, "services/viewer");
+  EXPECT_EQ(shipped->at_start.viewer_dir, "auto");
   shipped->live.sensors.clear();
-  shipped->at_start.viewer_dir.clear();
   const auto bare = read("{}");
   ASSERT_TRUE(bare);
   EXPECT_EQ(shipped->at_start, bare->at_start);

@@ -56,7 +56,20 @@ TEST(Probing, NamesTheFolderThatCannotBeUsed) {
     const auto probe = probe_folder(path);
     ASSERT_FALSE(probe) << path;
     EXPECT_EQ(probe.error().context, path);
+    EXPECT_NE(probe.error().message.find("chown"), std::string::npos) << path;
   }
+}
+
+TEST(ViewerFolder, ByDefaultIsTheOneThatComesWithTheProgram) {
+  EXPECT_TRUE(viewer_folder("auto").ends_with("services/viewer")) << viewer_folder("auto");
+  EXPECT_EQ(viewer_folder("elsewhere"), "elsewhere");
+  EXPECT_EQ(viewer_folder(""), "") << "none, on purpose";
+}
+
+TEST(Probing, AViewerThatIsNotThereIsSaidToBeLookedForWhere) {
+  const auto probe = probe_viewer("");
+  ASSERT_FALSE(probe);
+  EXPECT_NE(probe.error().message.find("services/viewer"), std::string::npos);
 }
 
 TEST(Probing, TheViewerNeedsItsFilesAndThree) {

@@ -115,9 +115,16 @@ TEST(ProgramShell, CheckSaysWhatWouldNotWorkNow) {
   NotingProgram program;
   program.worries = {"the moon is full: wait"};
   ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
   EXPECT_EQ(run(program, {"--check"}), kExitStopped) << "the configuration is good";
+  EXPECT_THAT(::testing::internal::GetCapturedStdout(),
+              HasSubstr("What does not work on this host now is on standard error"));
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
               HasSubstr("chorus-noting: but now, the moon is full: wait\n"));
+  program.worries.clear();
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(run(program, {"--check"}), kExitStopped);
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "The configuration is good.\n");
 }
 
 TEST(ProgramShell, NamesItselfAndTheMistake) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include <fmt/format.h>
@@ -20,6 +22,9 @@ using layout::Landmark;
 
 constexpr double kMaxVariance = 1e8;  // [m^2]
 constexpr double kMaxShape = 10.0;    // Limit of a coordinate in a shape [m].
+// No camera sees a person from so far away [m], but one at 2 m in millimetres or centimetres seems
+// to be farther.
+constexpr double kFarthestBody = 100.0;
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 
 /// An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
@@ -193,6 +198,19 @@ Result<std::vector<Landmark>> read_landmarks(const Json& value, ReadLandmark rea
   return landmarks;
 }
 
+/// Refuses a body of which every point is too far away.  Single points may be, since depth cameras
+/// measure some wrongly.
+Result<void> check_distance(const Skeleton<SensorSpace>& skeleton, const At& at) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Joint& joint : skeleton.joints) {
+    if (joint.seen()) nearest = std::min(nearest, joint.position.norm());
+  }
+  if (nearest <= kFarthestBody || std::isinf(nearest)) return {};
+  return wrong(at, fmt::format("are all {:.0f} m or more from the sensor; lengths are in metres: "
+                               "are these millimetres?",
+                               nearest));
+}
+
 struct PushedBody {
   BodyFrame body;
   Skeleton<SensorSpace> shape;
@@ -238,6 +256,7 @@ Result<PushedBody> read_body(const Json& value, const Hello& hello, const At& at
                           ? read_joints(places->points, &read_point, hello, at["points"])
                           : read_joints(places->pixels, &read_pixel, hello, at["pixels"]);
   if (!joints) return pass(joints);
+  if (const auto ok = check_distance(*joints, at["points"]); !ok) return pass(ok);
   const auto shape = read_joints(places->world, &read_shape_point, hello, at["world"]);
   if (!shape) return pass(shape);
   PushedBody out{{BodyId{*number}, {}, *joints}, *shape};
