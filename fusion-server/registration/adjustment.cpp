@@ -34,7 +34,10 @@ constexpr double kFarthest = 0.5;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependent = 6.0;  // [1/s] rate of independent instants, once whitened
+constexpr double kIndependentAsSeen = 1.2;  // [1/s] rate of independent instants, as seen
+constexpr double kIndependent = 6.0;        // and once whitened
+// A walk is so many times as long as the memory taken out of it; else what is new is mostly noise.
+constexpr double kMemoriesInWalk = 15.0;
 // Weight of the expected factor, in degrees of freedom.
 constexpr double kPriorFreedom = 3.0;
 constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
@@ -78,6 +81,7 @@ struct Adjustment {
   double scale = 0.0;      ///< Standard deviation of a point, in units of its sigma.
   double along = 1.0;
   double upward = 1.0;
+  double independent = kIndependentAsSeen;  ///< [1/s]
   /// All points as counted, or as seen.
   [[nodiscard]] std::vector<FusedPoint> fuse_all(bool as_seen = false) const {
     std::vector<Eigen::Isometry3d> places;
@@ -204,7 +208,7 @@ struct Misfit {
 
 /// The expected factor: a joint's error lasts for about a second, so few points are independent.
 BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) {
-  const double independent = std::max(1.0, kIndependent * adjustment.points.back().time);
+  const double independent = std::max(1.0, adjustment.independent * adjustment.points.back().time);
   const double variance =
       std::max(kMinScale * kMinScale, misfit.squares / std::max(1.0, misfit.freedom));
   return {variance * std::max(1.0, misfit.weights / independent), kPriorFreedom};
@@ -343,7 +347,11 @@ void whiten(Adjustment& adjustment) {
   const std::vector<FusedPoint> all = adjustment.fuse_all();
   std::vector<double> weights;
   for (const FusedPoint& fused : all) weights.push_back(adjustment.weight(fused));
-  whiten(adjustment.points, std::min(memory_of(adjustment.points, all, weights), kLongestMemory));
+  const double lasts = std::min(memory_of(adjustment.points, all, weights), kLongestMemory);
+  const double memory = std::min(lasts, adjustment.points.back().time / kMemoriesInWalk);
+  const double whitened = lasts > 0 ? memory / lasts : 1.0;
+  adjustment.independent = kIndependentAsSeen + whitened * (kIndependent - kIndependentAsSeen);
+  whiten(adjustment.points, memory);
 }
 
 /// Iterates with the points as seen, then with what is new in each, with Tukey's scale read before

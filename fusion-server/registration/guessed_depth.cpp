@@ -19,7 +19,7 @@ constexpr double kCameraBias = mm(12);  // of joints that a network finds in pic
 constexpr double kCameraRms = 0.5;        // [m]
 constexpr double kCameraSpeed = 10.0;     // [m/s]
 constexpr double kCameraDistance = 12.0;  // [m] pictures show people as far as that
-constexpr double kCameraPosition = 1.5;   // [m]
+constexpr double kCameraPosition = 2.0;   // [m] 95 %, of a whole room
 
 bool guessed(const Joint& joint) {
   const double range = joint.position.norm();
@@ -63,7 +63,8 @@ RegistrationConfig suited_to(const std::vector<WalkTrack>& walk, const Registrat
   if (nobody || config.method != PairMethod::TimedRobust || std::ranges::any_of(walk, measures))
     return config;
   RegistrationConfig suited = config;
-  suited.along_ratio = std::max(config.along_ratio, kGuessedAlong);
+  // What somebody has chosen stays.
+  if (config.along_ratio == RegistrationConfig{}.along_ratio) suited.along_ratio = kGuessedAlong;
   suited.view_bias = std::max(config.view_bias, kCameraBias);
   if (config.joints == JointChoice::Core) suited.joints = JointChoice::All;
   suited.min_spread = 0.0;

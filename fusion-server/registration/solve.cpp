@@ -13,6 +13,7 @@
 #include "fusion-server/registration/consensus.h"
 #include "fusion-server/registration/error_radius.h"
 #include "fusion-server/registration/guessed_depth.h"
+#include "fusion-server/registration/impossible_place.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
@@ -20,9 +21,6 @@
 
 namespace chorus::registration {
 namespace {
-
-constexpr double kMinUpright = 0.0;  // cos of the tilt beyond which a sensor would be upside down
-constexpr double kBelowGuess = 1.0;  // [m] how far below a guessed floor a sensor may seem to stand
 
 /// Why two sensors have no edge.
 struct Refusal {
@@ -148,22 +146,27 @@ std::optional<FloorPlane> floor_in_master(const Work& work,
   return common_floor(floors);
 }
 
-/// Why a sensor cannot stand there: "would hang head down", "would stand 0.35 m below the floor".
-/// None when it can.  A floor that was guessed may be wrong by decimetres.
-std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor, bool guessed) {
-  if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
-  if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";
-  const double height = world_from_sensor.translation().y();
-  if (height < (guessed ? -kBelowGuess : 0.0))
-    return fmt::format("would stand {:.2f} m below the floor", -height);
-  return std::nullopt;
-}
-
 /// A sensor in the world, with the covariance of (omega, tau) applied on the world's side.
 struct Placed {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   Matrix6 covariance = Matrix6::Zero();
 };
+
+/// Levels the world again.  Where no floor was measured, little holds it while sensors are
+/// adjusted.
+void level_by_bodies(const Work& work, std::map<SensorId, Placed>& all) {
+  std::vector<PlacedWalk> walks;
+  for (const auto& [sensor, place] : all)
+    walks.push_back({work.tracks.at(sensor), place.world_from_sensor});
+  const auto floor = floor_from_bodies(walks);
+  if (!floor) return;
+  const Eigen::Isometry3d levelled = level(*floor);
+  const Matrix6 turn = adjoint(levelled);
+  for (auto& [sensor, place] : all) {
+    place.world_from_sensor = levelled * place.world_from_sensor;
+    place.covariance = (turn * place.covariance * turn.transpose()).eval();
+  }
+}
 
 /// The places along the chains, on the common floor; then adjusted all together if configured.
 std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& chains) {
@@ -193,6 +196,7 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
     place.world_from_sensor = adjusted->places.at(sensor);
     if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
   }
+  if (guessed) level_by_bodies(work, all);
   return all;
 }
 
@@ -286,18 +290,10 @@ Duration duration_of(const Work& work) {
   return longest;
 }
 
-const PairwiseRegistration* edge_between(const Work& work, const SensorId& a, const SensorId& b) {
-  const auto& edges = work.result.edges;
-  const auto found = std::find_if(edges.begin(), edges.end(), [&](const auto& edge) {
-    return std::minmax(edge.target, edge.source) == std::minmax(a, b);
-  });
-  return found == edges.end() ? nullptr : &*found;
-}
-
 /// Adds a doubt if the chain of a sensor contains pairs that do not agree well.
 void judge_chain(Work& work, const SensorId& sensor, const std::vector<SensorId>& chain) {
   for (std::size_t i = 1; i < chain.size(); ++i) {
-    const PairwiseRegistration* edge = edge_between(work, chain[i - 1], chain[i]);
+    const PairwiseRegistration* edge = edge_between(work.result.edges, chain[i - 1], chain[i]);
     if (edge == nullptr || edge->rms <= work.config.good_rms) continue;
     work.doubt(
         sensor,

@@ -81,4 +81,12 @@ std::map<SensorId, Chain> best_chains(const SensorId& master,
   return best;
 }
 
+const PairwiseRegistration* edge_between(const std::vector<PairwiseRegistration>& edges,
+                                         const SensorId& a, const SensorId& b) {
+  const auto found = std::find_if(edges.begin(), edges.end(), [&](const auto& edge) {
+    return std::minmax(edge.target, edge.source) == std::minmax(a, b);
+  });
+  return found == edges.end() ? nullptr : &*found;
+}
+
 }  // namespace chorus::registration

@@ -28,4 +28,8 @@ struct Chain {
 /// constant, so that among equal chains the shorter one wins.
 [[nodiscard]] double edge_error(const PairwiseRegistration& edge);
 
+/// The edge of two sensors, in either direction; null if there is none.
+[[nodiscard]] const PairwiseRegistration* edge_between(
+    const std::vector<PairwiseRegistration>& edges, const SensorId& a, const SensorId& b);
+
 }  // namespace chorus::registration

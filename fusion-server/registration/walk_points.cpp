@@ -144,7 +144,7 @@ void whiten(std::vector<WalkPoint>& points, double memory) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (before[k] == k) continue;
     const WalkPoint& old = points[before[k]];
-    const double alike = std::exp(-(points[k].time - old.time) / memory);
+    const double alike = std::min(kMostAlike, std::exp(-(points[k].time - old.time) / memory));
     PointMeasurements news;
     for_both(points[k].seen, old.seen, [&](std::size_t i, std::size_t j) {
       PointMeasurement fresh = points[k].seen[i];

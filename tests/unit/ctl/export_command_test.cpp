@@ -15,9 +15,9 @@ using Json = nlohmann::json;
 /// The walk, fused once for all tests in this file.
 const Cell& fused_cell() {
   static const Cell cell(3.0);
-  static const bool fused =
-      run_chorus({"fuse", cell.recordings(), "--out", cell.file("fused.ndjson")}).code == kExitOk;
-  EXPECT_TRUE(fused);
+  static const Outcome fused =
+      run_chorus({"fuse", cell.recordings(), "--out", cell.file("fused.ndjson")});
+  EXPECT_EQ(fused.code, kExitOk) << fused.error;
   return cell;
 }
 

@@ -65,7 +65,7 @@ TEST(FloorFromBodies, CamerasOnOppositeSidesLeanThemApart) {
   ASSERT_TRUE(alone && both);
   EXPECT_GT(std::acos(alone->normal.y()), deg(10));
   EXPECT_LT(std::acos(both->normal.y()), deg(3));
-  EXPECT_NEAR(both->offset, 0.0, 0.15);
+  EXPECT_NEAR(both->offset, 0.0, 0.3);  // leaning feet are lower
   EXPECT_FALSE(floor_from_bodies({}));
 }
 
