@@ -63,11 +63,14 @@ bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
 }
 
 /// True if the path ends in ".json" and no resource has that very name.  Ids of sensors and people
-/// and names of recordings have no dot, so {id} at the end of a pattern is not meant to take one.
+/// and names of recordings have no dot, so {id} at the end of a pattern is not meant to take one;
+/// only {file} is.
 bool asks_for_json(const Router& router, std::string_view path) {
   if (!path.ends_with(kJsonSuffix)) return false;
   const auto match = router.match(path);
-  return !match || match->entry->pattern.ends_with('}');
+  if (!match) return true;
+  const std::string& pattern = match->entry->pattern;
+  return pattern.ends_with('}') && !pattern.ends_with("{file}");
 }
 
 /// The Accept header; a path that ends in ".json" replaces it, for clients that cannot send one.

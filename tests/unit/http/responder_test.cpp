@@ -21,6 +21,9 @@ class ResponderTest : public ::testing::Test {
     router->get("/list/{id}", [](const Request&, const PathParams& params) {
       return Result<DocumentPtr>(make_document("application/json", params.at("id"), {"1"}));
     });
+    router->get("/files/{file}", [](const Request&, const PathParams& params) {
+      return Result<DocumentPtr>(make_document("text/plain", params.at("file"), {"1"}));
+    });
     router->action(Method::Post, "/do", [](const Request& request, const PathParams&) {
       return Result<ActionResult>(
           ActionResult{200, make_document("text/plain", std::string(request.body), {"1"})});
@@ -76,9 +79,10 @@ TEST_F(ResponderTest, ANameThatEndsInJsonAsksForJson) {
   EXPECT_EQ(react("GET /nothing.json HTTP/1.1\r\nHost: localhost\r\n").answer.status, 404);
 }
 
-TEST_F(ResponderTest, NamesWithAnIdAndContainersMayEndInJsonToo) {
+TEST_F(ResponderTest, NamesWithAnIdAndContainersMayEndInJsonTooFilesKeepTheirs) {
   EXPECT_EQ(react("GET /list/s1.json HTTP/1.1\r\nHost: localhost\r\n").answer.body, "s1");
   EXPECT_EQ(react("GET /list.json HTTP/1.1\r\nHost: localhost\r\n").answer.body, "list");
+  EXPECT_EQ(react("GET /files/a.json HTTP/1.1\r\nHost: localhost\r\n").answer.body, "a.json");
   EXPECT_EQ(react("GET /list/s1 HTTP/1.1\r\nHost: localhost\r\n").answer.body, "s1");
 }
 
