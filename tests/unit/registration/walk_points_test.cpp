@@ -88,6 +88,15 @@ TEST(Whiten, CountsOnlySensorsThatSawBothAndNothingAcrossAGap) {
   EXPECT_EQ(points[3].counted[0].lever, 1.0);
 }
 
+/// Two sights of a slot at one instant would have no error left.
+TEST(Whiten, PointsOfOneInstantKeepAnError) {
+  std::vector<WalkPoint> points = points_with(kMemory);
+  points[1].time = points[0].time;
+  whiten(points, kMemory);
+  EXPECT_GT(points[1].counted[0].sigma, 0.1 * points[1].seen[0].sigma);
+  EXPECT_GT(points[1].counted[0].lever, 0.01);
+}
+
 TEST(Whiten, WithoutMemoryChangesNothing) {
   std::vector<WalkPoint> points = points_with(0.0);
   whiten(points, 0.0);
