@@ -1,5 +1,6 @@
 #include "fusion-server/associate/stated_place.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
