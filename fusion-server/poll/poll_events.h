@@ -27,10 +27,6 @@ struct PollTimings {
   Duration idle_interval = std::chrono::milliseconds(10);
   Duration first_backoff = std::chrono::milliseconds(100);
   Duration max_backoff = std::chrono::seconds(1);
-  /// As first_backoff and max_backoff, after an answer that refuses the token: the same token will
-  /// be refused again, so asking often only fills the sensor's log.
-  Duration first_token_backoff = std::chrono::seconds(10);
-  Duration max_token_backoff = std::chrono::seconds(30);
   Duration floor_interval = std::chrono::seconds(10);  ///< How often the floor plane is requested.
   bool stream = true;  ///< Use an event stream if the sensor offers one.
 

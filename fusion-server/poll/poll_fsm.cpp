@@ -29,18 +29,15 @@ constexpr std::size_t kMaxBeside = 100;
 // Clock requests after an odd frame; the filter accepts a step of the clock with the third answer.
 constexpr int kClockChecks = 4;
 
-/// Between half of and the whole of `first`, doubled for each failure, but at most `most`.
-Duration backoff(Duration first, Duration most, int failures_in_row, double jitter) {
+/// Between half of and the whole of first_backoff, doubled for each failure, but at most
+/// max_backoff.
+Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
   const int doublings = std::clamp(failures_in_row - 1, 0, kMaxDoublings);
-  Duration whole = first;
-  for (int i = 0; i < doublings && whole < most; ++i) whole *= 2;
-  whole = std::min(whole, most);
+  Duration whole = timings.first_backoff;
+  for (int i = 0; i < doublings && whole < timings.max_backoff; ++i) whole *= 2;
+  whole = std::min(whole, timings.max_backoff);
   const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // Also 0 for NaN.
   return whole / 2 + from_seconds(seconds(whole) * 0.5 * fraction);
-}
-
-Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
-  return backoff(timings.first_backoff, timings.max_backoff, failures_in_row, jitter);
 }
 
 bool refuses_token(int status) {
@@ -96,7 +93,7 @@ Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
     return refuse(answer.status, jitter);
   }
   failures_in_row_ = 0;
-  tokens_refused_ = 0;
+  token_refused_ = false;
   const bool news = answer.captured && answer.captured != last_captured_;
   if (answer.status == http::status::kOk) etag_ = answer.etag;
   if (news) {
@@ -239,20 +236,16 @@ Step PollFsm::go_on(Duration now) {
 Step PollFsm::fail(SensorState state, std::string reason, double jitter) {
   ++failures_;
   ++failures_in_row_;
-  tokens_refused_ = 0;
+  token_refused_ = false;
   enter(state, std::move(reason));
   return {Sleep{backoff(timings_, failures_in_row_, jitter)}};
 }
 
 Step PollFsm::refuse(int status, double jitter) {
-  const int before = tokens_refused_;
   // 429 only says that wrong tokens came before; the answer to those has the reason.
-  const bool known = before > 0 && status == http::status::kTooManyRequests;
+  const bool known = token_refused_ && status == http::status::kTooManyRequests;
   Step step = fail(SensorState::Refused, known ? last_error_ : refusal_words(status), jitter);
-  if (!refuses_token(status)) return step;
-  tokens_refused_ = before + 1;
-  step.action = Sleep{
-      backoff(timings_.first_token_backoff, timings_.max_token_backoff, tokens_refused_, jitter)};
+  token_refused_ = refuses_token(status);
   return step;
 }
 

@@ -83,7 +83,7 @@ class PollFsm {
   bool floor_known_ = false;
   Duration floor_pause_{0};  ///< Grows when requests for the floor plane fail although frames come.
   int failures_in_row_ = 0;
-  int tokens_refused_ = 0;  ///< In a row.
+  bool token_refused_ = false;  ///< By the last answer.
   std::uint64_t failures_ = 0;
 
   bool stream_asked_ = false;  ///< True while a stream is being opened or is open.

@@ -16,9 +16,7 @@ namespace {
 
 constexpr int kTrusting = 3;
 constexpr double kTrustedAgain = 1.5;  // until a repaired sensor contributes again, at most [s]
-// The same after a refused token, which the tracker tries again only after 5 to 10 s.
-constexpr double kTokenAgain = 11.5;
-constexpr double kTrustPatience = 14.0;
+constexpr double kTrustPatience = 8.0;
 
 /// A certificate authority that issues certificates for sensors, as files.
 class Authority {
@@ -72,11 +70,10 @@ bool says(const Cell& cell, const std::string& sensor, const std::string& text) 
   });
 }
 
-void check_return(Trial& trial, const Watch& watch, const Cell& cell, Timestamp since,
-                  double limit = kTrustedAgain) {
+void check_return(Trial& trial, const Watch& watch, const Cell& cell, Timestamp since) {
   (void)wait_until(kTrustPatience,
                    [&] { return std::isfinite(recovery(watch.seen(), since, cell.placed())); });
-  trial.check_recovery(recovery(watch.seen(), since, cell.placed()), limit);
+  trial.check_recovery(recovery(watch.seen(), since, cell.placed()), kTrustedAgain);
 }
 
 Result<void> certificate_expired(Trial& trial) {
@@ -131,7 +128,7 @@ Result<void> wrong_token(Trial& trial) {
   cell->sensor(1).kill();
   cell->change_sensor(1, {});
   if (auto started = cell->start_sensor(1); !started) return started;
-  check_return(trial, watch, *cell, now(), kTokenAgain);
+  check_return(trial, watch, *cell, now());
   return {};
 }
 
