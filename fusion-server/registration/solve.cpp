@@ -40,6 +40,7 @@ struct Work {
   std::set<SensorId> outcasts;  ///< They contradict the others; the reason is noted.
   Registration result;
   bool doubtful = false;  ///< True if there is a doubt that concerns all places.
+  bool floor_guessed = false;
 
   void doubt(std::string reason) {
     doubtful = true;
@@ -146,6 +147,13 @@ std::optional<FloorPlane> floor_in_master(const Work& work,
   return common_floor(floors);
 }
 
+/// The floor from the bodies that all sensors saw from these places, in the space of the places.
+std::optional<FloorPlane> floor_by_bodies(const Work& work, const Places& places) {
+  std::vector<PlacedWalk> walks;
+  for (const auto& [sensor, place] : places) walks.push_back({work.tracks.at(sensor), place});
+  return floor_from_bodies(walks);
+}
+
 /// A sensor in the world, with the covariance of (omega, tau) applied on the world's side.
 struct Placed {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
@@ -154,11 +162,8 @@ struct Placed {
 
 /// Levels the world again.  Where no floor was measured, little holds it while sensors are
 /// adjusted.
-void level_by_bodies(const Work& work, std::map<SensorId, Placed>& all) {
-  std::vector<PlacedWalk> walks;
-  for (const auto& [sensor, place] : all)
-    walks.push_back({work.tracks.at(sensor), place.world_from_sensor});
-  const auto floor = floor_from_bodies(walks);
+void level_by_bodies(const Work& work, const Places& places, std::map<SensorId, Placed>& all) {
+  const auto floor = floor_by_bodies(work, places);
   if (!floor) return;
   const Eigen::Isometry3d levelled = level(*floor);
   const Matrix6 turn = adjoint(levelled);
@@ -174,10 +179,10 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   std::optional<FloorPlane> floor = floor_in_master(work, chains);
   if (!floor) {
     work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
-    std::vector<PlacedWalk> walks;
-    for (const auto& [sensor, chain] : chains)
-      walks.push_back({work.tracks.at(sensor), chain.master_from_sensor});
-    floor = guessed = floor_from_bodies(walks).value_or(FloorPlane{});
+    Places in_master;
+    for (const auto& [sensor, chain] : chains) in_master[sensor] = chain.master_from_sensor;
+    floor = guessed = floor_by_bodies(work, in_master).value_or(FloorPlane{});
+    work.floor_guessed = true;
   }
   const Eigen::Isometry3d in_world = world_from_master(*floor);
   const Matrix6 turn = adjoint(in_world);
@@ -196,13 +201,12 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
     place.world_from_sensor = adjusted->places.at(sensor);
     if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
   }
-  if (guessed) level_by_bodies(work, all);
+  if (guessed) level_by_bodies(work, adjusted->places, all);
   return all;
 }
 
 void place_sensors(Work& work) {
   const std::map<SensorId, Chain> chains = best_chains(work.result.master, work.result.edges);
-  const bool guessed = !floor_in_master(work, chains);
   for (const auto& [sensor, found] : placed(work, chains)) {
     const Chain& chain = chains.at(sensor);
     Extrinsics place;
@@ -211,7 +215,7 @@ void place_sensors(Work& work) {
     place.error = chain.error;
     const Matrix6 shift = at_point(place.world_from_sensor.translation());
     place.covariance = shift * found.covariance * shift.transpose();
-    const auto why = impossible(place.world_from_sensor, guessed);
+    const auto why = impossible(place.world_from_sensor, work.floor_guessed);
     if (why && sensor != work.result.master) {
       work.doubt(sensor,
                  fmt::format("sensor {} {}: its registration was refused", sensor.str(), *why));
