@@ -20,6 +20,11 @@ double changed(double elapsed, const Spell& spell) {
 
 }  // namespace
 
+double new_evidence(double now, double before, double elapsed, double same) {
+  const double kept = std::exp(-elapsed / same);
+  return (now - kept * before) / (1.0 + kept);
+}
+
 PersonFilter::PersonFilter(const PersonPrior& prior)
     : weight_{0.5 * (1.0 - prior.backwards.share), 0.5 * (1.0 - prior.backwards.share),
               0.5 * prior.backwards.share, 0.5 * prior.backwards.share} {}

@@ -32,6 +32,11 @@ struct Evidence {
   double share = 1.0;    ///< Share of `walking` that is new, in [0, 1].
 };
 
+/// The new evidence in what is seen now, given what was seen `elapsed` seconds before, in log odds.
+/// A misleading posture or label misleads for as long as it lasts, so its error is autoregressive
+/// with the time constant `same`.
+[[nodiscard]] double new_evidence(double now, double before, double elapsed, double same);
+
 struct PersonPrior {
   Spell backwards{0.15, 3.0};
   double slip = 0.0001;  ///< Rate at which the held sides become wrong unnoticed [1/s].

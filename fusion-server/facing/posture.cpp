@@ -138,9 +138,4 @@ double posture_log_odds(const std::vector<SensorView>& views, const Eigen::Vecto
          of(cues.hidden, seen_from(views, forward));
 }
 
-double news(double now, double before, double elapsed, double same) {
-  const double kept = std::exp(-elapsed / same);
-  return (now - kept * before) / (1.0 + kept);
-}
-
 }  // namespace chorus::facing

@@ -40,9 +40,4 @@ struct PostureCues {
 [[nodiscard]] double posture_log_odds(const std::vector<SensorView>& views,
                                       const Eigen::Vector3d& forward, const PostureCues& cues);
 
-/// The new evidence in what is seen now, given what was seen `elapsed` seconds before, in log odds.
-/// A misleading posture or label misleads for as long as it lasts, so its error is autoregressive
-/// with the time constant `same`.
-[[nodiscard]] double news(double now, double before, double elapsed, double same);
-
 }  // namespace chorus::facing

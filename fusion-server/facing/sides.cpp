@@ -50,15 +50,19 @@ void keep_lost(Spans& spans, const Spans& before) {
   }
 }
 
+/// What is known of how the sensor labels people who turn their backs on it.
+Telling known_of(const SensorId& sensor, const SidesMemory& memory) {
+  const auto known = memory.telling.find(sensor);
+  return known == memory.telling.end() ? Telling{} : known->second;
+}
+
 /// True if the view opposes the held sides. A view that clearly shows left and right is trusted;
 /// for an unclear one the last decision is kept. A sensor that tells front from rear seldom swaps
 /// left and right, so its view must show more clearly that it did.
 bool opposes(const SensorView& view, const Spans& spans, const Sides& sides,
              const SidesMemory& memory, const SidesConfig& config) {
-  const auto telling = memory.telling.find(view.sensor);
-  const double usually =
-      telling == memory.telling.end() ? 0.0 : usual_log_odds(telling->second, config.telling);
-  const double agree = usually + shown_log_odds(spans, sides.spans);
+  const double agree = usual_log_odds(known_of(view.sensor, memory), config.telling) +
+                       shown_log_odds(spans, sides.spans);
   if (std::abs(agree) > kClear) return agree < 0;
   const auto before = sides.views.find(view.sensor);
   return before != sides.views.end() && before->second.exchanged.held > 0.5;
@@ -152,11 +156,8 @@ bool nobody_tells(const Instant& now) {
 double sight_of_all(const Instant& now, const Person& person, const SidesMemory& memory,
                     const TellingPrior& prior) {
   double sum = 0.0;
-  for (std::size_t v = 0; v < person.views.size(); ++v) {
-    const auto telling = memory.telling.find(person.views[v].sensor);
-    if (telling != memory.telling.end())
-      sum += sight_log_odds(now.agree[v], telling->second, prior);
-  }
+  for (std::size_t v = 0; v < person.views.size(); ++v)
+    sum += sight_log_odds(now.agree[v], known_of(person.views[v].sensor, memory), prior);
   return sum;
 }
 
@@ -168,10 +169,11 @@ Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, con
   const double posture = posture_log_odds(person.views, forward, config.posture);
   Evidence evidence;
   evidence.news =
-      now.first ? posture : news(posture, sides.posture, now.elapsed, config.posture.same);
+      now.first ? posture : new_evidence(posture, sides.posture, now.elapsed, config.posture.same);
   for (const LabelStep& step : now.steps) evidence.news += step.log_ratio;
   const double sight = sight_of_all(now, person, memory, config.telling);
-  if (!now.first) evidence.news += news(sight, sides.sight, now.elapsed, config.telling.same);
+  if (!now.first)
+    evidence.news += new_evidence(sight, sides.sight, now.elapsed, config.telling.same);
   sides.sight = sight;
   evidence.walking = sides.walk.log_odds(forward, config.walking);
   evidence.share = now.first ? 1.0 : std::min(1.0, now.elapsed / config.walking.same);

@@ -14,13 +14,13 @@
 namespace chorus::facing {
 
 struct TellingPrior {
-  double from =
-      deg(135);  ///< Beyond this angle to the sensor somebody turns their back on it [rad].
+  /// Beyond this angle to the sensor somebody turns their back on it [rad].
+  double from = deg(135);
   double log_odds = 2.2;  ///< Evidence of `time` seconds of right labels there.
   double time = 1.0;      ///< [s]
   double limit = 4.6;     ///< Of the log odds of a sensor.
-  double mistaken =
-      0.03;           ///< Share of the time in which a sensor that tells is wrong nevertheless.
+  /// Share of the time in which a sensor that tells front from rear is wrong nevertheless.
+  double mistaken = 0.03;
   double same = 1.0;  ///< Time constant of the autocorrelation of its mistakes [s].
 
   bool operator==(const TellingPrior&) const = default;

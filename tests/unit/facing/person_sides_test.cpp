@@ -79,5 +79,16 @@ TEST(PersonFilter, OutlivesAnyEvidence) {
   EXPECT_LT(filter.right(), 0.001);
 }
 
+TEST(NewEvidence, IsHardlyAnyInWhatStaysTheSame) {
+  EXPECT_NEAR(new_evidence(2.0, 2.0, 0.033, 5.0), 2.0 * 0.033 / 10.0, 1e-4);
+  EXPECT_NEAR(new_evidence(2.0, -1.0, 0.033, 5.0), 1.5,
+              0.02);  // the mean of the first and the last
+  EXPECT_NEAR(new_evidence(2.0, -1.0, 1e3, 5.0), 2.0, 1e-9);
+  double sum = 0.0;
+  for (int i = 0; i < 300; ++i) sum += new_evidence(2.0, 2.0, 0.033, 5.0);
+  // One long step contains slightly less information.
+  EXPECT_NEAR(sum, new_evidence(2.0, 2.0, 9.9, 5.0), 0.6);
+}
+
 }  // namespace
 }  // namespace chorus::facing

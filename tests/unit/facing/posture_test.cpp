@@ -48,17 +48,6 @@ TEST(Posture, ArmsThatOnlyOneSideSeesAreOnThatSide) {
   EXPECT_GT(posture_log_odds(views, kAhead, {}), 0.2);
 }
 
-TEST(Posture, ThatStaysTheSameIsHardlyNews) {
-  EXPECT_NEAR(news(2.0, 2.0, 0.033, 5.0), 2.0 * 0.033 / 10.0, 1e-4);
-  EXPECT_NEAR(news(2.0, -1.0, 0.033, 5.0), 1.5,
-              0.02);  // the mean of the first and the last
-  EXPECT_NEAR(news(2.0, -1.0, 1e3, 5.0), 2.0, 1e-9);
-  double sum = 0.0;
-  for (int i = 0; i < 300; ++i) sum += news(2.0, 2.0, 0.033, 5.0);
-  // One long step contains slightly less information.
-  EXPECT_NEAR(sum, news(2.0, 2.0, 9.9, 5.0), 0.6);
-}
-
 TEST(Posture, OfNobodyOrWithoutDirectionOrWithoutJointsTellsNothing) {
   EXPECT_EQ(posture_log_odds({}, kAhead, {}), 0.0);
   EXPECT_EQ(posture_log_odds({view_from(1, 0, {})}, kAhead, {}), 0.0);
