@@ -14,8 +14,6 @@ constexpr double kOtherSide = 0.5;  // Cosine of the least angle between sensors
 
 using Plan = Eigen::Vector2d;
 
-Plan on_floor(const Eigen::Vector3d& point) { return {point.x(), point.z()}; }
-
 bool has(const std::vector<Assigned>& bodies, const SensorId& sensor) {
   return std::ranges::find(bodies, sensor, &Assigned::sensor) != bodies.end();
 }

@@ -14,8 +14,6 @@ constexpr double kDeviations = 3.0;  // Standard deviations that extend a limit.
 // [m]; added to the stated errors: the cores of two views of one person differ by about this much.
 constexpr double kUnstated = 0.1;
 
-Eigen::Vector2d on_plan(const Eigen::Vector3d& place) { return {place.x(), place.z()}; }
-
 PlanError unstated() { return kUnstated * kUnstated * PlanError::Identity(); }
 
 }  // namespace
@@ -27,7 +25,7 @@ double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                            const PlanError& error, double limit) {
   if (error.isZero() || !(limit > 0)) return horizontal_distance(a, b);
-  const Eigen::Vector2d apart = on_plan(a) - on_plan(b);
+  const Eigen::Vector2d apart = on_floor(a) - on_floor(b);
   const double reach = kDeviations / limit;
   const PlanError stretched = PlanError::Identity() + reach * reach * error;
   return std::sqrt(std::max(0.0, apart.dot(stretched.inverse() * apart)));
@@ -51,7 +49,7 @@ PlanError stated_error(const Skeleton<WorldSpace>& body) {
 void MeanPlace::add(const Eigen::Vector3d& place, const PlanError& error) {
   const Eigen::Matrix2d weight = (error + unstated()).inverse();
   weight_ += weight;
-  weighted_ += weight * on_plan(place);
+  weighted_ += weight * on_floor(place);
   height_ += place.y();
   count_ += 1.0;
 }

@@ -11,6 +11,11 @@
 
 namespace chorus::associate {
 
+/// x and z of a place.
+[[nodiscard]] inline Eigen::Vector2d on_floor(const Eigen::Vector3d& place) {
+  return {place.x(), place.z()};
+}
+
 /// Covariance on the floor, of x and z [m^2].
 using PlanError = Eigen::Matrix2d;
 
