@@ -122,10 +122,14 @@ void Registrar::keep_earlier(const Registration& used) {
   if (!used.sensors.empty()) earlier_ = used;
 }
 
+Result<void> Registrar::unless_busy(const char* what) const {
+  if (!busy()) return {};
+  return fail(ErrorCode::Conflict, what,
+              "a registration session is running; wait for its end or cancel it");
+}
+
 Result<void> Registrar::undo() {
-  if (busy())
-    return fail(ErrorCode::Conflict, "registration",
-                "a registration session is running; wait for its end or cancel it");
+  if (auto idle = unless_busy("registration"); !idle) return pass(idle);
   if (!earlier_)
     return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
   Registration back = *earlier_;
@@ -154,9 +158,7 @@ bool Registrar::displace(const SensorId& sensor, const std::string& reason) {
 }
 
 Result<void> Registrar::move_origin(const Origin& origin) {
-  if (busy())
-    return fail(ErrorCode::Conflict, "origin",
-                "a registration session is running; wait for its end or cancel it");
+  if (auto idle = unless_busy("origin"); !idle) return pass(idle);
   auto next = with_origin(registration_, origin);
   if (!next) return pass(next);
   if (proposal_) {

@@ -110,6 +110,8 @@ class Registrar {
   };
 
   [[nodiscard]] bool busy() const { return !sessions_.empty() && running(sessions_.front()); }
+  /// Conflict while a session is running: `what` cannot be changed then.
+  [[nodiscard]] Result<void> unless_busy(const char* what) const;
   void begin(Duration target, bool automatic, Timestamp now);
   void start_by_itself(Timestamp now);
   void end_session(SessionState state);

@@ -32,9 +32,7 @@ void Registrar::drop_proposal(const std::string& reason) {
 }
 
 Result<void> Registrar::accept() {
-  if (busy())
-    return fail(ErrorCode::Conflict, "registration",
-                "a registration session is running; wait for its end or cancel it");
+  if (auto idle = unless_busy("registration"); !idle) return pass(idle);
   if (!proposal_)
     return fail(ErrorCode::NotFound, "registration", "no registration waits to be accepted");
   Registration next = proposal_->registration;

@@ -28,6 +28,14 @@ bool busy(const RegistrationProgress& progress) {
   return !progress.sessions.empty() && running(progress.sessions.front());
 }
 
+/// Conflict while a session is running: `what` cannot be changed then.
+Result<void> unless_busy(const RegistrationProgress& progress, const char* what) {
+  if (!busy(progress)) return {};
+  return fail(ErrorCode::Conflict, what,
+              "a registration session is running; wait for its end, or DELETE " +
+                  wire::session_path(progress.sessions.front().id));
+}
+
 }  // namespace
 
 Result<SessionRequest> parse_session_request(std::string_view body, SessionRequest fallback) {
@@ -142,10 +150,7 @@ Result<http::ActionResult> RegistrationResources::move_origin(const http::Reques
   const auto origin = parse_origin_request(request.body);
   if (!origin) return pass(origin);
   const std::scoped_lock lock(mutex_);
-  if (busy(progress_))
-    return fail(ErrorCode::Conflict, "origin",
-                "a registration session is running; wait for its end, or DELETE " +
-                    wire::session_path(progress_.sessions.front().id));
+  if (auto idle = unless_busy(progress_, "origin"); !idle) return pass(idle);
   auto next = core::with_origin(registration_, *origin);
   if (!next) return pass(next);
   registration_ = std::move(*next);
@@ -156,10 +161,7 @@ Result<http::ActionResult> RegistrationResources::move_origin(const http::Reques
 
 Result<http::ActionResult> RegistrationResources::undo() {
   const std::scoped_lock lock(mutex_);
-  if (busy(progress_))
-    return fail(ErrorCode::Conflict, "registration",
-                "a registration session is running; wait for its end, or DELETE " +
-                    wire::session_path(progress_.sessions.front().id));
+  if (auto idle = unless_busy(progress_, "registration"); !idle) return pass(idle);
   if (!progress_.earlier)
     return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
   const std::uint64_t version = registration_.version + 1;
@@ -174,10 +176,7 @@ Result<http::ActionResult> RegistrationResources::undo() {
 
 Result<http::ActionResult> RegistrationResources::accept() {
   const std::scoped_lock lock(mutex_);
-  if (busy(progress_))
-    return fail(ErrorCode::Conflict, "registration",
-                "a registration session is running; wait for its end, or DELETE " +
-                    wire::session_path(progress_.sessions.front().id));
+  if (auto idle = unless_busy(progress_, "registration"); !idle) return pass(idle);
   if (!progress_.proposal)
     return fail(ErrorCode::NotFound, "registration", "no registration waits to be accepted");
   const std::uint64_t version = registration_.version + 1;
