@@ -112,8 +112,8 @@ class Tracker(Rig):
         wait_for("the cell sees somebody", lambda: self.body_seen(cell))
         site = self.fusion({"cell": cell.url}, **{"registration.seconds": 8, "registration.min_spread_m": 0.0})
         wait_for("the cell is live", lambda: self.states(site)["cell"] == "live")
-        relayed = wait_for("the relayed frame", lambda: get_json(site.url + "sensors/cell/frame"))
-        self.assertEqual(relayed["space"], "WorldSpace")
+        space = wait_for("the relayed frame", lambda: get_json(site.url + "sensors/cell/frame")["space"])
+        self.assertEqual(space, "WorldSpace")
         wait_for("the site fuses the cell's body", lambda: self.body_seen(site))
         self.assertEqual(site.child.poll(), None)
 
