@@ -214,8 +214,7 @@ void Follower::take_frame(const http::ClientResponse& response, Resource asked) 
   if (answered_) {
     if (auto error = untimely_now(*answered_)) {
       answer.event = Unreadable{std::move(*error)};
-      const SensorFrame late = placed(*answered_);
-      ++(late.captured > late.received ? early_ : stale_);
+      note_untimely(placed(*answered_));
     }
   }
   if (auto* good = std::get_if<FrameAnswered>(&answer.event)) good->rest = rest;
@@ -262,6 +261,10 @@ std::optional<Error> Follower::untimely_now(const Arrival& arrival) const {
   return untimely(placed(arrival));
 }
 
+void Follower::note_untimely(const SensorFrame& frame) {
+  ++(frame.captured > frame.received ? early_ : stale_);
+}
+
 void Follower::deliver(Arrival arrival) {
   if (!in_doubt()) return hand_on(arrival);
   held_.push_back(std::move(arrival));
@@ -270,7 +273,8 @@ void Follower::deliver(Arrival arrival) {
 
 void Follower::hand_on_held() {
   for (const Arrival& arrival : std::exchange(held_, {})) {
-    if (!untimely(placed(arrival))) hand_on(arrival);
+    const SensorFrame here = placed(arrival);
+    untimely(here) ? note_untimely(here) : hand_on(arrival);
   }
 }
 

@@ -50,6 +50,8 @@ class Follower : public std::enable_shared_from_this<Follower> {
   void take_event(std::string_view text);
   [[nodiscard]] SensorFrame placed(const Arrival& arrival) const;
   [[nodiscard]] std::optional<Error> untimely_now(const Arrival& arrival) const;
+  /// Counts a frame that was refused because of its time.
+  void note_untimely(const SensorFrame& frame);
   [[nodiscard]] bool in_doubt() const { return clock_.doubtful() || fsm_.checking_clock(); }
   void deliver(Arrival arrival);
   void hand_on(const Arrival& arrival);

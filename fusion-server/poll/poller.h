@@ -52,8 +52,8 @@ struct PollReport {
   std::uint64_t frames = 0;
   std::uint64_t missed = 0;  ///< Frames missing from the sensor's numbering: neither delivered nor
                              ///< filled in later.
-  std::uint64_t early = 0;   ///< Requested frames refused because their time is ahead of ours.
-  std::uint64_t stale = 0;   ///< Requested frames refused because their time is far behind ours.
+  std::uint64_t early = 0;   ///< Frames refused because their time is ahead of ours.
+  std::uint64_t stale = 0;   ///< Frames refused because their time is far behind ours.
   std::uint64_t failures = 0;
 };
 
