@@ -105,7 +105,7 @@ bool Sorting::begins_or_follows(Line& line) const {
   return true;
 }
 
-/// The sensor's stream: begun by this file, or continued if this file is the next part of the same
+/// The sensor's stream: begun by this file, or continued if this file is another part of the same
 /// recording.  Conflict if it is neither.
 Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
   const auto [found, fresh] = streams_.try_emplace(sensor);

@@ -26,7 +26,8 @@ namespace chorus::core {
 class LeastAge {
  public:
   void add(Timestamp received, Duration age);
-  /// None until frames have come for three seconds without a longer pause, once.
+  /// None until, for the first time, frames have come for three seconds without a pause of more
+  /// than a second.
   [[nodiscard]] std::optional<Duration> value() const { return value_; }
 
  private:

@@ -30,8 +30,9 @@ std::vector<Twice> matched(const std::vector<ViewPulls>& now,
   return sensors;
 }
 
-/// From the mean over the present views to where the views that stay have moved the joint since an
-/// instant ago; zero if all of them stay, or none.
+/// The movement of the joint since an instant ago according to the views that stay, minus that of
+/// the mean over all views.  Added to the mean, it takes back the jump that the other views cause
+/// by coming, by going, or by becoming or ceasing to be a guess.  Zero if all views stay, or none.
 Eigen::Vector3d step_back(std::size_t joint, const std::vector<Twice>& sensors) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weights = 0.0;

@@ -155,7 +155,7 @@ class Replay {
   std::uint64_t answered_ = 0;
 };
 
-/// Reads until the walk is long enough, or the recordings end.
+/// Reads until the walk is long enough or needs too much memory, or the recordings end.
 Result<void> read_enough(RecordedFrames& frames, RecordedWalk& walk) {
   Timestamp instant = Timestamp::min();
   while (!walk.enough()) {

@@ -24,7 +24,8 @@ RequestGate::Verdict RequestGate::ask(const Asker& asker, SteadyTime now) {
   return Verdict::Connect;
 }
 
-/// The key of the address's source; adds the source if it is new.
+/// The key of the address's source, which is added if it is new; without room for it, the key of
+/// the source that all further addresses share.
 const std::string& RequestGate::name_of_source(const std::string& address, SteadyTime now) {
   if (const auto known = sources_.find(address); known != sources_.end()) return known->first;
   if (sources_.size() >= limits_.most_sources) tidy(now);

@@ -163,7 +163,8 @@ void Curve::begin_trials(const std::set<SensorId>& seeing, Timestamp instant) {
   }
 }
 
-/// Pushes that nobody had walked long enough to see are not counted.
+/// Ends the present trials.  They count only if somebody has moved long enough in view of the
+/// pushed sensor.
 void Curve::end_trials(Timestamp instant) {
   constexpr Duration kPause = std::chrono::seconds(3);
   if (moved_for_ >= kSoonEnough) {

@@ -95,7 +95,8 @@ void sweep(Report& report) {
   }
 }
 
-/// What each part of the filter contributes: `ours` has all parts, every other row leaves one out.
+/// What each part of the filter contributes: `ours` is the whole filter, every other row leaves one
+/// part out or shortens the window.
 void ablate(Report& report) {
   const auto methods = clock_ablations();
   for (const char* name : {"lan-ntp", "lan", "wifi", "device-390ppm", "ntp-step"}) {

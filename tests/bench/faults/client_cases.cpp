@@ -143,8 +143,8 @@ double rise_of(const std::vector<Memory>& samples) {
   return square > 0.0 ? product / square * (samples.back().time - samples.front().time) : 0.0;
 }
 
-/// Kills and restarts one sensor again and again for `length` [s]; returns the server's memory
-/// after warm-up.
+/// Kills and restarts one sensor again and again for `length` [s]; returns samples of the server's
+/// memory, taken after the warm-up.
 Result<std::vector<Memory>> restart_again_and_again(Cell& cell, double length) {
   std::vector<Memory> samples;
   const Timestamp begun = now();
