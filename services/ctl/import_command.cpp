@@ -44,7 +44,7 @@ struct ImportArguments {
   double rate_hz = 30.0;
 };
 
-/// The formats that come from cameras; they need the cameras' lenses (--intrinsics).
+/// The formats that come from cameras: only these take the cameras' lenses (--intrinsics).
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCameraFormats{
     {{"video", "what a runner finds in videos, one camera each, as rays"},
      {"openpose", "OpenPose's JSON, also that of RTMLib and Pose2Sim: a folder a camera, as rays"},

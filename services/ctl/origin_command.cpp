@@ -91,7 +91,8 @@ Result<Stance> watch(const std::string& server, double seconds) {
   return StanceWatch(*url, std::move(*trust)).run(seconds);
 }
 
-/// Where the master stands in the world: an origin there with its yaw is that of a fresh walk.
+/// Where the master stands in the world.  An origin at this place, with this yaw, gives the world
+/// that a fresh walk would give.
 Stance place_of(const nlohmann::json& sensor) {
   const Eigen::Quaterniond q(client::number_at(sensor, "qw"), client::number_at(sensor, "qx"),
                              client::number_at(sensor, "qy"), client::number_at(sensor, "qz"));

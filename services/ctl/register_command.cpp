@@ -189,7 +189,8 @@ bool proposed_by(const nlohmann::json& session, const nlohmann::json& registrati
   return waiting == client::number_at(session, "sessionId");
 }
 
-/// The sensors that took part and are refused or have no place, each with the reason.
+/// The sensors that are refused or have no place, each with the reason.  Of a proposal: those that
+/// the session could not place.
 std::map<std::string, std::string> left_out(const nlohmann::json& session,
                                             const nlohmann::json& registration, bool proposed) {
   const auto reason = [](const nlohmann::json& sensor) {

@@ -105,8 +105,8 @@ Result<void> hand_on_registration(const std::vector<record::CellLine>& lines,
   return write_text(file, **recorded);
 }
 
-/// Refuses ports that are taken before any sensor starts: each of them would name a key of its own
-/// configuration, which `chorus replay` does not have.
+/// Refuses ports that are taken, before any sensor starts: a sensor's own error would name a key of
+/// its configuration, which `chorus replay` does not have.
 Result<void> check_ports(int first, std::size_t count) {
   for (int port = first; port < first + static_cast<int>(count); ++port) {
     asio::io_context io{1};

@@ -29,7 +29,7 @@ std::string clock_source(const nlohmann::json& sensor) {
   return sensor.contains("clockOffsetMilliseconds") ? "host" : "-";
 }
 
-/// "s2: the clock of its host is not synchronised", for hosts that say so.
+/// A line for a sensor whose host says that its clock follows no other; otherwise empty.
 std::string host_clock_line(const std::string& name, const nlohmann::json& sensor) {
   const auto synchronised = sensor.find("hostSynchronised");
   if (synchronised == sensor.end() || *synchronised != false) return {};

@@ -66,7 +66,8 @@ Result<camera::CameraSettings> settings_for(const fs::path& video, const VideoIm
   return settings;
 }
 
-/// Looks at the beginning of every input, because the runner may take minutes for each.
+/// Looks at the beginning of every input before the work begins, because the runner may take
+/// minutes for each.
 Result<void> check_inputs(const std::vector<fs::path>& inputs, const VideoImport& how,
                           const importers::ImportOptions& options) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {

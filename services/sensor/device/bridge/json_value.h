@@ -23,8 +23,8 @@ struct At {
   std::string_view key = {};
   std::optional<std::size_t> index = {};
 
-  /// The result points to this At, so call this only on a named variable, not on a temporary.
-  /// `At{}` is the message itself.
+  /// The result points to this At, which must therefore be a named variable.  Only `At{}`, which is
+  /// the message itself, may be a temporary: nothing points to it.
   [[nodiscard]] At operator[](std::string_view inner) const { return {outer(), inner, {}}; }
   [[nodiscard]] At operator[](std::size_t inner) const { return {outer(), {}, inner}; }
   [[nodiscard]] std::string text() const;

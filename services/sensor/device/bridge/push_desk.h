@@ -119,7 +119,8 @@ class PushDesk {
   SteadyTime shut_until_{};
   std::uint64_t sequence_ = 0;
   std::optional<Timestamp> last_captured_;
-  /// Capture time of the previous frame, if that frame was refused because its time went back.
+  /// Capture time of the previous frame, if that frame was refused because its time did not
+  /// advance.
   std::optional<Timestamp> refused_captured_;
 };
 

@@ -17,7 +17,7 @@ struct CameraReport {
   std::string layout;
   Size picture;                 ///< Size of the source's pictures [px].
   Size sent;                    ///< Size in which the runner gets them.
-  std::uint64_t pictures = 0;   ///< Number of pictures from the source.
+  std::uint64_t pictures = 0;   ///< Number of pictures passed on to be looked at.
   std::uint64_t looked_at = 0;  ///< Number of pictures that the runner looked at.
   std::uint64_t connects = 0;   ///< How often the source was opened.
   std::uint64_t starts = 0;     ///< How often a runner has become ready.
