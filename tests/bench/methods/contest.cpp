@@ -267,7 +267,8 @@ Answers answers_of_best_sensor(const Stage& stage) {
   return best;
 }
 
-/// The newest result at each instant, compared with the truth at the time that the result states.
+/// At each instant the newest result near the person, if it is fresh, compared with the truth at
+/// the time that the result states.
 Answers answers_at_arrival(const Stage& stage) {
   const auto stated = baselines::arrival_kalman(stage.workshop.tracks, stage.registration);
   Answers answers;
@@ -296,7 +297,8 @@ Scored score(std::string method, const Answers& answers) {
   return scored;
 }
 
-/// Scores again, only over joints that every contender reports.
+/// Scores again, only over joints that every contender reports.  A contender that reports nothing
+/// in the whole draw does not count.
 void score_common(std::vector<Scored>& scores, std::vector<Answers>& all) {
   const auto answers_nothing = [](const Answers& answers) { return !(coverage(answers) > 0); };
   const std::size_t count = all.empty() ? 0 : all.front().size();

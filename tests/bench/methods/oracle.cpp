@@ -43,7 +43,7 @@ double correlation(JointId id, const Sighting& a, const Sighting& b, const Share
          (1.0 - shared.twice + shared.twice * std::cos(2.0 * apart));
 }
 
-/// The joint covariance matrix of the errors of all views of one joint, three rows per view.
+/// The covariance matrix of the errors of all views of one joint together, three rows per view.
 Eigen::MatrixXd errors_of(JointId id, const std::vector<Sighting>& all,
                           const SharedErrors& shared) {
   const auto count = static_cast<Eigen::Index>(all.size());

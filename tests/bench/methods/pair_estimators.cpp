@@ -51,7 +51,8 @@ struct Stamped {
 };
 using StampedTrail = std::vector<Stamped>;  ///< In order of time.
 
-/// The neck positions of one side while the other side saw a body, too.
+/// The neck positions of one side while the other side saw a body, too; at most kMaxPoints of them,
+/// evenly chosen.
 StampedTrail necks_of(const Trail& trail, const Trail& other,
                       const Eigen::Isometry3d& level_from_sensor, Duration max_gap) {
   StampedTrail all;

@@ -26,8 +26,8 @@ struct RegistrationMethod {
 /// Variants of our method, each with one part left out.
 [[nodiscard]] std::vector<RegistrationMethod> registration_ablations();
 
-/// One registration compared with the truth; errors are means over the placed sensors other than
-/// the master.
+/// One registration compared with the truth; errors are means over the sensors other than the
+/// master, and NaN if any of them was refused.
 struct Score {
   double position = 0.0;        ///< NaN where a sensor was refused [m]
   double position_worst = 0.0;  ///< As above [m]

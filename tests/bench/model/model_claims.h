@@ -32,10 +32,10 @@ struct LogClaim {
   double (*of)(const LogStatistics&);
 };
 
-/// Claims from two logs of walking people and one of a gesturing person (statistics only), about
-/// one person who walks in front of one sensor.
+/// Claims from the statistics of real logs: two of walking people and one of a gesturing person.
+/// They apply to one_sensor_scene(), in which one person walks.
 [[nodiscard]] std::span<const LogClaim> walking_claims();
-/// Claims from a third log, of a person at 2 m with one side turned away from the sensor.  They
+/// Claims from another log, of a person at 2 m with one side turned away from the sensor.  They
 /// apply to turned_scene().
 [[nodiscard]] std::span<const LogClaim> turned_claims();
 

@@ -16,8 +16,8 @@ struct TableOneBar {
   double otto = 0.0;                             ///< [mm]
 };
 
-/// Writes mannequin-yaw, -shoulders, -jitter, -circle and -errors as SVG into this folder; table1
-/// if there are bars.
+/// Writes mannequin-yaw, -shoulders, -jitter, -circle and -errors as SVG into this folder, and
+/// table1 if `table1` is not empty.
 [[nodiscard]] Result<void> draw_figures(const std::string& folder, std::uint64_t seed,
                                         const std::vector<TableOneBar>& table1);
 
