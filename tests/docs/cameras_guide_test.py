@@ -23,7 +23,7 @@ PAGE = (ROOT / "docs/guide/cameras.md").read_text(encoding="utf-8")
 BLOCKS = [block.splitlines() for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)]
 INSTALLATION, *USE = BLOCKS
 FUSED = next(block for block in USE if any(line.endswith("8080/frame") for line in block))
-MOST_COMMANDS = 6  # from a clone to one camera's landmarks, and to a fused body of two cameras, without looking at it
+MOST_COMMANDS = 6  # from a clone to one camera's landmarks; and to a fused body of two cameras, not counting the curl lines that show it
 PATIENCE_S = 120
 # The output to wait for, by how a line ends; the fusion server is at 8080.
 READY = {"/camera": '"state": "live"', "/capture/": "<title>Chorus camera</title>", "8080/frame": '"Skeleton"', "/frame": '"rayX"'}

@@ -45,8 +45,8 @@ def source_of(folders):
 
 
 def unexplained(text):
-    """Keys that have a value and no explanation: no comment precedes them after the last empty line or the opening brace of an unexplained
-    object."""
+    """Keys that have a value and no explanation. A comment explains the keys below it, down to the next empty line or closing brace, or the
+    key on whose line it ends."""
     explained = False
     found = []
     for line in text.splitlines():

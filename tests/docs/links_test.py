@@ -22,7 +22,7 @@ def anchors(text):
 
 
 def exists(path):
-    """A file, a folder, a `{a,b}` or `*` pattern, or a library name for its .h and .cpp."""
+    """True for a file or folder that is there, a `{a,b}` pattern if all that it names is there, a `*` pattern if it matches anything."""
     choices = re.fullmatch(r"(.*)\{(.*)\}(.*)", str(path))
     if choices:
         before, inside, after = choices.groups()

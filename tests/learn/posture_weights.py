@@ -7,9 +7,9 @@ Recordings that may be shipped, of people who face one sensor: Labanotation (MIT
 UI-PRMD (PDDL), Azure Kinect (MIT).  The front is known from the labels.  A logistic regression
 without constant on offsets along the front is fitted to (offsets, front) and, implicitly, to (-offsets, rear):
 reversing the direction changes the sign and nothing else, and offsets do not depend on the labels
-(docs/papers/sides.md). Every recording is weighted by the fraction that its collection has, whatever its length.
-Prints the weights, and for each collection the number of frames that weights learned from the other collections get
-right.
+(docs/papers/sides.md). SHARES gives each collection its weight, of which all its recordings get equal parts, whatever their length.
+Prints the weights, and for each collection the number of frames and the percentage of them that weights learned from the
+other collections get right.
 """
 
 import csv

@@ -20,8 +20,8 @@ PLACE = {"x": 1.0, "y": 1.5, "z": 0.0, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "erro
 
 
 class FusionStandIn:
-    """Answers according to proto/README.md. `old` is the registration in use before; a session ends after it was polled three times, and
-    `outcome` is its result."""
+    """Answers according to proto/README.md. `old` is the verdict on the registration in use before; `verdict`, `reasons` and `adopted` are
+    the result of a session, which ends after it was polled three times."""
 
     SESSION = "/registration/sessions/41"
 

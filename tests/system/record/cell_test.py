@@ -88,7 +88,7 @@ class Cell(Rig):
         return sorted(math.dist(live[joint], joints[joint]) for live, joints in pairs for joint in live if joint in joints)
 
     def fused_frames(self, file):
-        """Uses the recording's own probe, which is independent of the reader used for fusing."""
+        """The fused frames in a recording, read message by message by recording_probe, not as `chorus fuse` reads cells."""
         read = subprocess.run([BIN.parent / "tests/recording_probe", "read", file], capture_output=True, check=True)
         return [json.loads(m["text"]) for m in json.loads(read.stdout)["messages"] if m["topic"] == "/frame"]
 
