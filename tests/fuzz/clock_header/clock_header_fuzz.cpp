@@ -1,5 +1,5 @@
 // Reads any text as a Chorus-Clock header, and any four stamps as an exchange: the result is two
-// times or nothing, and an estimate that stays within its own bound, whatever the stamps are.
+// times or nothing, and an estimate whose uncertainty is never negative, whatever the stamps are.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Reads any bytes on DTrack's command channel: however they are split, they give the same
-// commands, and answers of limited size.
+// Reads any bytes on DTrack's command channel: however they are split, they give the same commands,
+// unless one is too long, and answers of limited size.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -71,7 +71,7 @@ class Client {
   }
 
  private:
-  /// poll(2) that is repeated when interrupted, except by the fuzzer's own alarm.
+  /// poll(2), repeated when a signal interrupts it, as the fuzzer's own alarm does.
   [[nodiscard]] int ready(short events, int patience_ms) const {
     pollfd waiting{socket_, events, 0};
     while (true) {

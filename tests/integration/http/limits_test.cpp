@@ -91,7 +91,8 @@ TEST(Limits, AnIdleConnectionGivesWay) {
   Clients idle;
   for (int i = 0; i < 8; ++i)
     EXPECT_EQ(ask_and_stay(idle, service.server.port(), kGet + "\r\n"), 200);
-  // Wait longer than the time between two checks of deadlines.
+  // Longer than the time between two checks of deadlines, so that the idle connections are older
+  // than the newcomers.
   std::this_thread::sleep_for(std::chrono::milliseconds(600));
   Clients newcomers;
   for (int i = 0; i < 3; ++i)

@@ -1,4 +1,5 @@
-// Checks over a real socket what linked data requires of HTTP.
+// The HTTP server over a real socket: what linked data requires of GET, HEAD and OPTIONS; clock
+// fields; problem documents; actions and their bodies; starting, stopping and counting.
 #include "common/http/server.h"
 
 #include <gmock/gmock.h>

@@ -87,7 +87,8 @@ TEST_F(HostileVrpn, AClientThatNeverReadsIsClosedAndCostsNobodyElse) {
   RawClient deaf(server->port(), 4096);
   deaf.say(vrpn_cookie());
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
-  // A client that subscribes to everything gets 55 kB a frame for six persons.
+  // A client that names no tracker gets all of them: 55 kB a frame for six persons, which soon
+  // fills the buffers between it and the server.
   EXPECT_TRUE(publish_until(
       [&] {
         (void)good.next(milliseconds(1));
@@ -109,8 +110,8 @@ TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
   for (int i = 0; i < 1000; ++i) flood += ping;
   deaf.say(pings);
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
-  // The client sends until the server stops reading, which happens soon, because the server limits
-  // the memory of its buffers.
+  // The client blocks as soon as the server stops reading, because of the answers that wait, and
+  // ends when the server closes the connection.
   std::thread saying([&] {
     while (deaf.say(flood)) {
     }
