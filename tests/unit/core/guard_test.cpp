@@ -85,7 +85,7 @@ TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
   const double usual = run(std::chrono::seconds(40));
   pushed_ = 1;
   push_ = 0.08;
-  run(milliseconds(200));  // the push itself shows
+  run(milliseconds(200));  // at the push the neck may jump
   EXPECT_LT(run(std::chrono::seconds(8)), usual + 0.005);
   const SensorId moved = sensor_id("s2");
   ASSERT_FALSE(core_.registration().sensors.contains(moved));

@@ -20,8 +20,8 @@ class ScriptedServer {
   using Texts = std::map<std::string, std::vector<std::string>>;
 
   /// `texts` maps each path to its answers, one per request; the last one serves all later
-  /// requests. A path without answers does not exist yet (503).  `refusal`: the error that POST
-  /// /registration is answered with.
+  /// requests. While a path's list is empty, it is not available yet (503).  `refusal`: the error
+  /// that POST /registration is answered with.
   explicit ScriptedServer(Texts texts, std::optional<Error> refusal = std::nullopt)
       : texts_(std::move(texts)), refusal_(std::move(refusal)) {
     auto router = std::make_shared<http::Router>();

@@ -119,7 +119,7 @@ class ConversationTest : public ::testing::Test {
   bool reading_ = false, writing_ = false, settling_ = false, waiting_ = false;
   bool closed_ = false, half_closed_ = false, upgraded_ = false;
   bool stalled_ = false;              ///< The client does not read.
-  bool publish_before_look_ = false;  ///< A publication comes between the last look and the wait.
+  bool publish_before_look_ = false;  ///< A publication comes between each wait and its look().
 };
 
 std::size_t times(std::string_view text, std::string_view part) {

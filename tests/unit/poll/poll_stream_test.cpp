@@ -152,7 +152,7 @@ TEST(PollFsmStream, AnOddFrameMakesTheClockUrgent) {
   }
   EXPECT_GE(checks, 3);  // as many as the filter needs before it accepts a step
   EXPECT_LT(now, milliseconds(100));
-  // A link with permanently odd times does not cause permanent clock requests.
+  // A sensor whose frames are all odd does not cause permanent clock requests.
   (void)fsm.resume(ClockAnswered{milliseconds(1)}, now, kFull);
   (void)fsm.resume(streamed(4, 950, true), now + milliseconds(10), kFull);
   EXPECT_FALSE(fsm.checking_clock());

@@ -1,4 +1,5 @@
-// Compares every stated covariance with a numeric derivative of the estimated pose itself.
+// Tests the covariances of chains, extrinsics and edges.  Most are compared with J C J^T, where J
+// is a numeric derivative (carried()).
 #include <functional>
 
 #include <gtest/gtest.h>

@@ -104,7 +104,7 @@ TEST(WorldFromMaster, PutsTheFloorAtZeroAndTheViewAlongZ) {
   const Eigen::Vector3d view = world.linear() * Eigen::Vector3d::UnitZ();
   EXPECT_NEAR(view.x(), 0.0, 1e-9);
   EXPECT_GT(view.z(), 0.9);
-  const Eigen::Vector3d down_view(0, 0, -1);  // at the ceiling: no view direction on the floor
+  const Eigen::Vector3d down_view(0, 0, -1);  // straight down: no direction on the floor
   EXPECT_TRUE(world_from_master({down_view, 2.5}).matrix().allFinite());
 }
 

@@ -73,7 +73,7 @@ TEST(RobustFit, PairsThatAreWrongInTheirOwnWaysHaveNoSay) {
   for (const Freedom freedom : {Freedom::Yaw, Freedom::Full}) {
     EXPECT_LT(off_with_outliers(0.0, freedom), mm(2));
     EXPECT_LT(off_with_outliers(0.4, freedom), mm(3));
-    EXPECT_LT(off_with_outliers(0.6, freedom), mm(25));  // the cutoff has been doubled until then
+    EXPECT_LT(off_with_outliers(0.6, freedom), mm(25));  // too few agree: the cutoff is doubled
   }
 }
 
