@@ -86,7 +86,8 @@ std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
   return fit->target_from_source;
 }
 
-/// Makes the place's chain and error start at our master, whatever the candidate's master was.
+/// Makes the place's chain and error start at our master instead of the candidate's, provided that
+/// our registration places the candidate's master.
 void lead_from_master(const Registration& current, Extrinsics& place) {
   if (place.chain.empty() || place.chain.front() == current.master) return;
   const auto known = current.sensors.find(place.chain.front());
@@ -114,7 +115,7 @@ std::optional<ClockOffset> our_clock(const Registration& current, const SensorId
 }
 
 /// What is added to the candidate's offsets to refer them to our common clock, taken from the held
-/// sensor whose own clock offset is known best.
+/// sensor whose own clock offset is known best; zero if none is known.
 ClockOffset between_clocks(const Registration& current, const Registration& candidate,
                            const std::set<SensorId>& added) {
   std::optional<ClockOffset> best;
