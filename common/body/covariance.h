@@ -14,7 +14,7 @@ namespace chorus {
 
 class Covariance {
  public:
-  /// In the order xx xy xz yy yz zz.
+  /// Terms of the upper triangle, in the order xx xy xz yy yz zz.
   static constexpr std::size_t kTerms = 6;
 
   Covariance() = default;  ///< Not known.

@@ -78,8 +78,8 @@ std::string_view accept_of(const RequestHead& head, const Router& router) {
   return asks_for_json(router, head.path) ? "application/json, */*;q=0.5" : head.accept;
 }
 
-/// The route for a path; of one that asks for JSON the route without ".json", or that of the
-/// container of this name.
+/// The route for a path.  For a path that asks for JSON it is the route of the path without ".json"
+/// or, if there is none, that of the container of this name ("sensors.json": "sensors/").
 Result<Router::Match> named(const Router& router, std::string_view path) {
   if (!asks_for_json(router, path)) return router.match(path);
   const std::string_view plain = path.substr(0, path.size() - kJsonSuffix.size());

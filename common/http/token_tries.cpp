@@ -10,7 +10,8 @@ namespace {
 constexpr std::chrono::seconds kPerTry{1};
 constexpr int kAtOnce = 10;
 constexpr std::size_t kMaxAddresses = 4096;
-// More than are checked at once, so that a guesser does not push out what others repeat too soon.
+// More than kAtOnce, so that the wrong tokens of a guesser do not soon push out those that other
+// programs at the same address repeat.
 constexpr std::size_t kMarksKept = 16;
 const std::string kShared = "others";
 

@@ -1,6 +1,5 @@
 // Helpers for JSON formats: read files up to a size limit, and check numbers.  Private to this
 // folder's .cpp files.
-//
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ Shares shares_between(const JointResource& a, const JointResource& b, double s) 
   return tally.shares();
 }
 
-/// Two neighbours of an instant, `after` and `before` it [s].
+/// How long an instant is after the frame before it, and before the frame after it [s].
 struct Apart {
   double after;
   double before;

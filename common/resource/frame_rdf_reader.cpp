@@ -148,7 +148,7 @@ class Collector {
   }
 
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
-  /// All that was taken; errors are those of lists.
+  /// All facts that were taken; Malformed if the shares of a joint are not a list of numbers.
   [[nodiscard]] Result<Facts> finish() && {
     for (const auto& [at, list] : share_lists_) {
       facts_[at].shares = numbers_of(list);
@@ -183,7 +183,8 @@ class Collector {
     return true;
   }
 
-  /// Nothing for what is no list, or holds something else.
+  /// The numbers of the list whose first cell is `list`; none if it is no list, or if a value in it
+  /// is no number.
   [[nodiscard]] std::optional<std::vector<double>> numbers_of(const std::string& list) const {
     std::vector<double> numbers;
     for (const std::string* at = &list; *at != nil_;) {
@@ -215,7 +216,7 @@ class Collector {
     }
   }
 
-  /// The same, of what a subject has once.
+  /// Like store(), for the properties that a subject has only once.
   static std::string_view store_value(SubjectFacts& facts, const Row& row, const TermView& object) {
     switch (row.property) {
       case Property::Number:

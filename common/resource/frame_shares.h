@@ -17,7 +17,7 @@
 namespace chorus::resource {
 
 inline constexpr int kShareDecimals = 2;
-/// By how much the sum of a list may differ from 1, for each of its shares.
+/// By how much the sum of a list may differ from 1, times the number of its shares.
 inline constexpr double kShareTolerance = 0.01;
 
 /// Most bytes that one share of a list and what surrounds it take.
@@ -31,7 +31,7 @@ class ShareList {
   /// `sensors`: the frame's, whose indices are those of the contributors' bits.
   explicit ShareList(const std::vector<std::string>& sensors);
 
-  /// Fills in the list that is written for a joint and returns it; empty: none is.
+  /// The list that is written for a joint, a part of `values`; empty if no list is written.
   [[nodiscard]] std::span<const double> of(const Shares& shares, std::uint64_t contributors,
                                            Values& values) const;
   /// The shares that a joint's list stands for, which may be left out; nothing when it has not one

@@ -67,7 +67,7 @@ class History {
   [[nodiscard]] const std::optional<Habit>& habit() const noexcept { return habit_; }
   /// Median time from one capture to the next, of the recent frames; none until there are enough.
   [[nodiscard]] const std::optional<Duration>& period() const noexcept { return period_; }
-  /// True if the sensor sees directions only: its newest frame with bodies has ray bodies only.
+  /// True if the sensor sees directions only: the last frame with bodies had ray bodies only.
   [[nodiscard]] bool rays_only() const noexcept { return rays_only_; }
 
  private:

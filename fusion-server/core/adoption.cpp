@@ -86,13 +86,21 @@ std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
   return fit->target_from_source;
 }
 
-/// Makes the place's chain and error start at our master, whatever the candidate's master was.
+/// Makes the place's chain and error start at our master instead of the candidate's: they lead
+/// there from the first sensor of the chain that our registration places.  Its error may count
+/// twice.
 void lead_from_master(const Registration& current, Extrinsics& place) {
   if (place.chain.empty() || place.chain.front() == current.master) return;
-  const auto known = current.sensors.find(place.chain.front());
-  if (known == current.sensors.end()) return;
+  // The last sensor is the one to be placed; what we knew of it no longer holds.
+  const auto end =
+      std::next(place.chain.begin(), std::max<std::ptrdiff_t>(1, std::ssize(place.chain) - 1));
+  const auto held = std::find_if(place.chain.begin(), end, [&](const SensorId& sensor) {
+    return current.sensors.contains(sensor);
+  });
+  if (held == end) return;
+  const auto known = current.sensors.find(*held);
   std::vector<SensorId> chain = known->second.chain;
-  chain.insert(chain.end(), std::next(place.chain.begin()), place.chain.end());
+  chain.insert(chain.end(), std::next(held), place.chain.end());
   place.chain = std::move(chain);
   place.next_chain.clear();  // it leads from the candidate's master
   place.error += known->second.error;
@@ -114,7 +122,7 @@ std::optional<ClockOffset> our_clock(const Registration& current, const SensorId
 }
 
 /// What is added to the candidate's offsets to refer them to our common clock, taken from the held
-/// sensor whose own clock offset is known best.
+/// sensor whose own clock offset is known best; zero if none is known.
 ClockOffset between_clocks(const Registration& current, const Registration& candidate,
                            const std::set<SensorId>& added) {
   std::optional<ClockOffset> best;

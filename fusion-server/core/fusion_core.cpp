@@ -52,8 +52,12 @@ void FusionCore::reconfigure(CoreConfig config) {
   config_ = std::move(config);
   if (!same_output) schedule_.reconfigure(config_.output);
   registrar_.reconfigure(registrar_config(config_));
-  std::erase_if(histories_,
-                [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
+  const auto gone = [&](const auto& entry) { return !config_.sensors.contains(entry.first); };
+  std::erase_if(histories_, gone);
+  std::erase_if(refused_, gone);
+  std::erase_if(frozen_, gone);
+  std::erase_if(displaced_at_, gone);
+  shares_.keep(config_.sensors);
   guard_.keep(config_.sensors);
   clocks_.keep(config_.sensors);
   awaited_by_ = 0;

@@ -58,6 +58,10 @@ void Shares::settled(const Parts& parts) {
   for (const auto& [sensor, part] : parts) blend(shares_[sensor].afterwards, part);
 }
 
+void Shares::keep(const std::set<SensorId>& sensors) {
+  std::erase_if(shares_, [&](const auto& entry) { return !sensors.contains(entry.first); });
+}
+
 Share Shares::of(const SensorId& sensor) const {
   const auto it = shares_.find(sensor);
   return it == shares_.end() ? Share{} : it->second;

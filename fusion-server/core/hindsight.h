@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "fusion-server/core/tick_schedule.h"
@@ -54,6 +55,7 @@ class Shares {
   /// Takes the final contributions of an instant, when no later frame will improve it.
   void settled(const Parts& parts);
   [[nodiscard]] Share of(const SensorId& sensor) const;
+  void keep(const std::set<SensorId>& sensors);  ///< Forgets all other sensors.
 
  private:
   std::map<SensorId, Share> shares_;

@@ -105,7 +105,7 @@ void Registrar::show_progress(SessionStatus& session) const {
 }
 
 void Registrar::forget() {
-  if (before_) registration_ = *before_;  // a session's own result is not worth going back to
+  (void)take_back();  // a session's own result is not worth going back to
   end_session(SessionState::Cancelled);
   if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
   drop_proposal("given up: the registration it was compared with was forgotten");

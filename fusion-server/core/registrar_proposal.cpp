@@ -13,7 +13,8 @@ bool Registrar::asks_first(const SessionStatus& session) const {
 }
 
 Outcome Registrar::propose(Registration next, const Registration& candidate, Timestamp now) {
-  const bool withdrawn = take_back();  // it began by itself, and became a client's
+  // A session that began by itself may have adopted something before a client took it over.
+  const bool withdrawn = take_back();
   drop_proposal("replaced by another proposal");
   auto changes = place_changes(registration_, next);
   proposal_ = Proposal{sessions_.front().id, std::move(next), std::move(changes)};
@@ -23,7 +24,7 @@ Outcome Registrar::propose(Registration next, const Registration& candidate, Tim
   return withdrawn ? Outcome::Withdrawn : Outcome::Nothing;
 }
 
-/// The session that has proposed it, if it is still known, says why it is not in use.
+/// Forgets the proposal, and adds `reason` to the session that made it, if that is still listed.
 void Registrar::drop_proposal(const std::string& reason) {
   if (!proposal_) return;
   const auto own = std::ranges::find(sessions_, proposal_->session, &SessionStatus::id);

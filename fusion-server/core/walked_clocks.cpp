@@ -24,9 +24,10 @@ Duration followed(const ClockOffset& clock, const std::optional<Duration>& least
   return clock.added + (*least_age - *clock.least_age);
 }
 
-/// Whether the host's own estimate, of this standard deviation, is better than with the offset.  An
-/// estimate that has become better since the walk has moved by what it has become better by, which
-/// the offset knows nothing of.
+/// Whether the host's own estimate, which has this standard deviation, is better alone than with
+/// the offset added.  The offset corrects the estimate as it was during the walk.  One that has
+/// improved since then has moved, by about the root of the lost variance, which the offset does not
+/// contain.
 bool outdone(const ClockOffset& clock, double clock_sigma) {
   if (!exchanges_time(clock_sigma) || !exchanges_time(seconds(clock.stated))) return false;
   const double own = clock_sigma * clock_sigma;
@@ -67,8 +68,9 @@ void LeastAge::add(Timestamp received, Duration age) {
   if (since_ <= lately) value_ = entries_.front().age;
 }
 
-/// Once the host's own estimate is better than the offset it stays so for this registration: that
-/// it gets worse again makes the offset no better, and frames must not move to and fro.
+/// Whether the offset is added to this frame.  Once the host's own estimate has been better, the
+/// offset stays off for this registration: it does not improve when the estimate gets worse again,
+/// and frames must not move to and fro.
 bool WalkedClocks::holds(State& state, const ClockOffset& clock, const SensorFrame& frame,
                          const Registration& registration) {
   if (state.outdone_by == registration.version) return false;

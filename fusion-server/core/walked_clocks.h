@@ -17,17 +17,16 @@
 namespace chorus::core {
 
 /// The least of a sensor's recent ages, from capture by its own stamps to receipt.  A frame that is
-/// younger than all before it by more than jitter counts only if the next two are, too.  A clock
-/// that was set back is believed after three seconds, if stamps went back or if it may have
-/// happened in a pause: a link that has become slower delays frames, and their stamps go on.  That
-/// an old delay has ended is believed only after the whole window.  After a pause the value stays
-/// as it was until frames have come for three seconds, because the first ones may have been held
-/// back.
+/// younger than all before it by more than jitter counts only if the next two are, too.  All ages
+/// grow if the clock was set back, but also if the link has become slower.  A clock that was set
+/// back is believed after three seconds, but only if stamps went back, or if there was a pause in
+/// which they may have.  Otherwise the value grows only after 40 s, when the frames of lesser age
+/// have left the window.  After a pause it stays as it was until frames have come for three
+/// seconds, because the first ones may have been held back.
 class LeastAge {
  public:
   void add(Timestamp received, Duration age);
-  /// None until, for the first time, frames have come for three seconds without a pause of more
-  /// than a second.
+  /// None until frames have come for three seconds once, with no pause of more than a second.
   [[nodiscard]] std::optional<Duration> value() const { return value_; }
 
  private:
@@ -45,7 +44,7 @@ class LeastAge {
   int younger_ = 0;  ///< Frames in a row that are younger than all before.
   Timestamp newest_stamp_;
   int back_ = 0;         ///< Frames in a row whose stamps are before the newest one.
-  Timestamp went_back_;  ///< Received when stamps had gone back.
+  Timestamp went_back_;  ///< Receipt of the last frame that showed that stamps went back.
 };
 
 /// What is added to one sensor's capture times.

@@ -1,5 +1,5 @@
-// Which sensors tell front from rear, and what their labels then say about the held sides
-// (docs/papers/sides.md, Labels).
+// Which sensors tell front from rear, and what their labels then say about the held sides, which
+// are those that a person is currently assumed to have (labels.h; docs/papers/sides.md, Labels).
 //
 // A tracker that takes everybody for facing it shows a person and the mirror image the same labels,
 // so that its labels say nothing about the sides.  A network that finds joints in pictures names

@@ -29,8 +29,8 @@ struct BodyModel {
   /// Time constant with which a joint follows after a view of it has begun, ended, or turned into a
   /// guess or out of one (handover.h); 0: it follows at once.
   Duration handover = std::chrono::milliseconds(70);
-  /// For the weights of the views, the pose error (pose_error.h) of a tracked joint is multiplied
-  /// by `pose`, that of an inferred joint by `inferred`, too.
+  /// For the weights of the views, the pose error (pose_error.h) of every joint is multiplied by
+  /// `pose`, and that of an inferred joint also by `inferred`.
   double pose = 0.5;
   double inferred = 3.0;
   /// Huber's threshold, in standard deviations that include this pose error.

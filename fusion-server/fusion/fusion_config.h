@@ -47,8 +47,8 @@ struct FusionConfig {
   /// joint's last position limits its depth when only one ray shows it.
   Duration kalman_coast = std::chrono::milliseconds(300);
 
-  /// PointsAndRays, BodyFilter: a joint that is left less certain than this by rays alone is left
-  /// out [m].
+  /// PointsAndRays, BodyFilter: if rays alone leave a joint's position less certain than this [m],
+  /// it counts as open.
   double max_sigma = 0.15;
   BodyModel body;  ///< Parameters of BodyFilter.
 

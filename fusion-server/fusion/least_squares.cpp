@@ -175,8 +175,8 @@ bool contradictory(const Terms& terms, const Eigen::Vector3d& point) {
 }
 
 /// Factor by which the typical squared residual exceeds the stated variance, at least 1. It is
-/// computed from the median of the residuals, so that outliers do not matter; with fewer than
-/// kManyViews it is 1.
+/// computed from the median of the residuals, so that outliers do not matter, and drawn towards 1
+/// by a prior; with fewer than kManyViews it is 1.
 double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
   std::vector<double> ratios;  // residual over its usual value, squared
   double constraints = 0.0;

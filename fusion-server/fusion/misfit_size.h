@@ -23,7 +23,7 @@ class MisfitSize {
   [[nodiscard]] BodyModel found(BodyModel model) const;
 
  private:
-  /// A mean square whose start value counts for `kPrior`.
+  /// A mean square; its start value counts as much as a second of evidence.
   struct Square {
     double weight = 0.0;  ///< [s]
     double value = 0.0;

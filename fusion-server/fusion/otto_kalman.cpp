@@ -34,7 +34,7 @@ class OttoKalman final : public Estimator {
       const double sigma = config_.kalman_sigma;
       filters_[joint].update(instant, s.joint.position, sigma * sigma / s.weight);
     }
-    FusedJoint fused = weighted_mean(views);  // all but the position, whose weights are the same
+    FusedJoint fused = weighted_mean(views);  // the position is replaced by the filter's below
     if (!views.empty()) seen_[joint] = instant;
     const bool coasting = seen_[joint] && instant - *seen_[joint] <= config_.kalman_coast;
     const auto position = filters_[joint].at(instant);

@@ -45,6 +45,8 @@ FusedBody predicted(const FusedBody& body, Duration ahead) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     if (!whole[j].placed) continue;
     FusedJoint joint{body.skeleton.joints[j], 0.0, body.contributors[j]};
+    joint.shares = body.shares[j];
+    joint.age = body.age[j] + seconds(ahead);
     joint.joint.position = whole[j].position;
     state_covariance(joint, moved_on[j].covariance);
     put(later, static_cast<JointId>(j), joint);

@@ -57,8 +57,9 @@ class TrackerState {
  public:
   explicit TrackerState(std::size_t slots) : slots_(slots) {}
 
-  /// The next frame.  People without a slot, or in a slot too high, are left out.  If the instant
-  /// is that of the last snapshot or earlier, velocities from snapshot to snapshot are zero.
+  /// The next frame.  People without a slot, or in a slot too high, are left out.  Velocities from
+  /// snapshot to snapshot are zero unless the instant is later than that of the last snapshot, by
+  /// at most 250 ms.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:

@@ -30,13 +30,13 @@ constexpr std::size_t kBiasTerms = 1'000'000;
 constexpr double kRidge = 1e-6;  // keeps the equations solvable where nothing is measured
 // Sigma with which the master's yaw and its position on the floor are held [rad], [m].
 constexpr double kGauge = 1e-5;
-constexpr double kFarthest = 0.5;    // [m] that an adjustment may move a sensor, by along_ratio
+constexpr double kFarthest = 0.5;    // [m] times along_ratio: limit for moving a sensor, see near()
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependentAsSeen = 1.2;  // [1/s] rate of independent instants, as seen
-constexpr double kIndependent = 6.0;        // and once whitened
-// A walk is so many times as long as the memory taken out of it; else what is new is mostly noise.
+constexpr double kIndependentAsSeen = 1.2;  // [1/s] independent instants per second, as seen
+constexpr double kIndependent = 6.0;        // [1/s] the same for points that are whitened fully
+// whiten() takes out at most the walk's length / this; with more, what is new is mostly noise.
 constexpr double kMemoriesInWalk = 15.0;
 // Weight of the expected factor, in degrees of freedom.
 constexpr double kPriorFreedom = 3.0;

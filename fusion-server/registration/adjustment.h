@@ -36,7 +36,8 @@ struct Adjusted {
 };
 
 /// Starts from `places`.  None if nothing was seen together, if the result fits the walk and the
-/// floors worse than `places` do, if it moves a sensor by more than 1 m, or if it was stopped.
+/// floors worse than `places` do, if it moves a sensor by 0.5 m * max(2, along_ratio) or more, or
+/// if it was stopped.
 [[nodiscard]] std::optional<Adjusted> adjust_together(const Places& places, const Walkers& walkers,
                                                       const RegistrationConfig& config);
 

@@ -1,8 +1,8 @@
 // Cameras that guess the depth of a person from the person's size.
 //
-// They know a joint's direction to centimetres and its distance to decimetres, and their frames say
-// so: the stated covariances are long along the line of sight, by a share of the distance.  A walk
-// that only such cameras saw is registered by directions, almost as by rays.
+// They know a joint's place to centimetres across the line of sight and to decimetres along it.
+// Their frames say so: the stated error along the line of sight is a fraction of the distance.  A
+// walk that only such cameras saw is registered by directions, almost as by rays.
 #pragma once
 
 #include "fusion-server/registration/registration.h"

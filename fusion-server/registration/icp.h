@@ -20,8 +20,9 @@ struct IcpFit {
   std::size_t accepted = 0;
 };
 
-/// Point-to-point refinement from a good start; points farther than `reach` from all target points
-/// are ignored. None when there are too few points or it does not converge.
+/// Point-to-point refinement from a good start. Points farther than `reach` from all target points
+/// do not influence the transform, but count in its rms. None when there are too few points or it
+/// does not converge.
 [[nodiscard]] std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target,
                                                   const Eigen::Isometry3d& start, double reach);
 

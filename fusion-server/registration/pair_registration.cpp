@@ -62,7 +62,7 @@ Result<void> enough(const Pairing& pairing, const std::string& both,
   return fail(ErrorCode::Unavailable, both, why);
 }
 
-/// Drops whole instants at regular intervals, never single joints.
+/// At most about kMaxPairs pairs: if there are more, every n-th instant is kept, with all joints.
 std::vector<Pair> thinned(const Pairing& pairing) {
   const std::size_t keep_every = (pairing.pairs.size() + kMaxPairs - 1) / kMaxPairs;
   if (keep_every <= 1) return pairing.pairs;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRefiningIterations = 15;
 constexpr double kRefineSettled = 1e-7;  // [rad], [m]
-// Limits rho: a constant error does not mean that there are no samples.
+// Upper limit of rho: at 1, as for a constant error, no independent pair would be left.
 constexpr double kMaxCorrelated = 0.98;
 constexpr double kTiny = 1e-12;
 constexpr double kAxes = 3.0;

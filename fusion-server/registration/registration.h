@@ -45,7 +45,8 @@ struct RegistrationConfig {
   JointChoice joints = JointChoice::Core;
   bool use_floor = true;  ///< Pitch, roll and height from the floor plane where there is one.
   /// Ratio of the errors along and across a sensor's line of sight: 1.5-2 for a depth sensor, 5-10
-  /// for a single camera that infers depth from the person's size.
+  /// for a single camera that infers depth from the person's size.  If all sensors are such cameras
+  /// and this is the default, 20 is used instead (guessed_depth.h).
   double along_ratio = 2.0;
   Duration max_gap = std::chrono::milliseconds(60);  ///< Widest bracket for a correspondence.
   double min_distance = 0.5;                         ///< [m]
@@ -61,9 +62,9 @@ struct RegistrationConfig {
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
   double good_position = 0.05;
   double max_position = 0.10;  ///< With a larger radius the sensor is refused [m].
-  /// Standard deviation of the coefficients of the bias of views (view_bias.h) [m].  Between what
-  /// pairs and rings say (2.5 mm) and what rows of sensors do (3.5 mm): likelihood of the errors of
-  /// simulated walks of profiles A and B, seeds 101-120.
+  /// Standard deviation of the coefficients of the bias of views (view_bias.h) [m].  Fitted to the
+  /// errors of simulated walks (profiles A and B, seeds 101-120), by likelihood: 2.5 mm is best for
+  /// sensors in pairs and rings, 3.5 mm for sensors in rows; this is in between.
   double view_bias = mm(3.0);
   /// Lengths for sensors that guess depth from a person's size (common_scale.h); where distances
   /// are known, the stature is not used.

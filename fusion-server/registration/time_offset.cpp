@@ -157,7 +157,8 @@ Error cannot_tell(const SensorId& target, const SensorId& source) {
                       both)};
 }
 
-/// Names the pairs whose place depends on the part of their offset that the walk leaves open.
+/// Adds to `clocks.open` each pair whose place varies by more than kMaxSpread over the offsets that
+/// the walk does not exclude.
 void mark_open(const Network& network, const RegistrationConfig& config, const PairSearch& search,
                WalkClocks& clocks) {
   std::vector<double> spreads(network.pairs.size(), 0.0);

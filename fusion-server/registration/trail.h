@@ -39,10 +39,10 @@ struct Trail {
   std::vector<TrailFrame> frames;  ///< Strictly increasing in time.
 };
 
-/// Uses frames with exactly one body, and only tracked joints.  Bodies that stay within 50 mm for
-/// as long as their id is seen, a second or more, do not count: sensors take furniture for people.
-/// Frames with several other bodies would first need association across sensors; `sole_body` is the
-/// place for that.
+/// Uses frames with exactly one body, and only tracked joints.  Bodies that are seen for a second
+/// or more, with the neck always within 30 mm, do not count: sensors take furniture for people.
+/// Frames with several other bodies would first need association across sensors; the place for that
+/// is sole_body() in trail.cpp.
 [[nodiscard]] Trail trail_of(const WalkTrack& walk, JointChoice choice);
 
 /// The middle of the walk as this sensor saw it: mean of the first slot [m].

@@ -45,8 +45,8 @@ struct WalkPoint {
                                const std::vector<double>& weights);
 
 /// Counts what is new in each point since the point of its slot before it:
-/// m_k - exp(-lag / memory) m_(k-1) of the sensors that saw both.  docs/papers/registration.md,
-/// Section 8.
+/// m_k - exp(-lag / memory) m_(k-1) of the sensors that saw both.  If fewer than two sensors did,
+/// the point is counted as seen.  docs/papers/registration.md, Section 8.
 void whiten(std::vector<WalkPoint>& points, double memory);
 
 /// The horizontal direction in which each point moves, computed from its places 0.3 s before and

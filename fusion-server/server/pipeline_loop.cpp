@@ -130,8 +130,9 @@ void PipelineLoop::start_session(const StartSession& wish) {
   obeyed_ = wish.ticket;
   const Timestamp now = options_.clock->now();
   const auto progress = core_.progress(now);
-  // The session that ran when the client asked may have ended; then that session counts as the
-  // requested one.
+  // The client was told the id `wish.session`: that of an automatic session that was running, which
+  // is to become the client's, or of a new one.  If that automatic session has ended meanwhile, no
+  // other one is started.
   const bool over =
       wish.session < progress.next_session &&
       !(running(progress.sessions.front()) && progress.sessions.front().id == wish.session);

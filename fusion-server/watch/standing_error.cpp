@@ -19,7 +19,8 @@ Parameters first_sigmas() {
   return sigmas;
 }
 
-/// Standard deviations of the change per block: some centimetres in a working day.
+/// Standard deviations of the change from one block to the next (half a second of walking): some
+/// centimetres in a working day.
 Parameters steps() {
   constexpr double kYaw = deg(0.004);
   constexpr double kPlace = 0.00015;

@@ -90,9 +90,7 @@ void Watch::close(Watched& sensor) {
   sensor.recent.push_back(block_of(sensor.open, sensor.began));
   sensor.open.clear();
   if (sensor.recent.size() > kWindow) {
-    const bool suspicious = sensor.shift.sigmas >= config_.least_sigmas &&
-                            sensor.shift.middle.norm() >= config_.least_shift;
-    if (!suspicious) sensor.usual.learn(sensor.recent.front());
+    if (!is_moved(sensor)) sensor.usual.learn(sensor.recent.front());
     sensor.recent.pop_front();
   }
   judge(sensor);
@@ -107,12 +105,15 @@ void Watch::judge(Watched& sensor) const {
   sensor.drift = sigmas >= config_.least_sigmas ? off.norm() : 0.0;
 }
 
+bool Watch::is_moved(const Watched& sensor) const {
+  return sensor.shift.sigmas >= config_.least_sigmas &&
+         sensor.shift.middle.norm() >= config_.least_shift;
+}
+
 /// The sensor's shift or drift [m]; zero unless the sensor counts as moved or drifted.
 double Watch::size_of(const Watched& sensor) const {
   if (sensor.recent.empty()) return 0.0;
-  const double shift = sensor.shift.middle.norm();
-  const bool moved = sensor.shift.sigmas >= config_.least_sigmas && shift >= config_.least_shift;
-  if (moved) return shift;
+  if (is_moved(sensor)) return sensor.shift.middle.norm();
   return sensor.drift >= config_.least_drift ? sensor.drift : 0.0;
 }
 
@@ -132,7 +133,7 @@ std::optional<Finding> Watch::finding() const {
     worst = &sensor;
   }
   if (worst == nullptr) return std::nullopt;
-  found.drifted = worst->shift.middle.norm() < found.shift;
+  found.drifted = !is_moved(*worst);
   found.since = found.drifted ? last_ : worst->shift.since;
   const auto& others = found.drifted ? worst->recent.back().others : worst->shift.others;
   if (others.size() == 1) {

@@ -61,6 +61,7 @@ class Watch {
   void add(Residual residual, Timestamp instant);
   void close(Watched& sensor);
   void judge(Watched& sensor) const;
+  [[nodiscard]] bool is_moved(const Watched& sensor) const;
   [[nodiscard]] double size_of(const Watched& sensor) const;
 
   WatchConfig config_;

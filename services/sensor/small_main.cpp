@@ -8,7 +8,7 @@
 
 namespace chorus::camera {
 
-/// Replaces the function of the camera's library, so that neither this library nor its dependencies
+/// Replaces the function of the camera library, so that neither that library nor its dependencies
 /// are linked.
 Result<std::unique_ptr<FrameSource>> make_camera(ConfigReader& /*section*/,
                                                  const sensor_service::DeviceContext& /*context*/) {

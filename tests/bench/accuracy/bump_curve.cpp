@@ -122,7 +122,7 @@ class Curve {
   CurveLog log_;
 };
 
-/// Sensors that see somebody move whom another sensor sees, too, without anybody in between.
+/// Sensors that see somebody move whom another sensor sees, too, both without anybody in the way.
 std::set<SensorId> Curve::seeing_somebody_move(const std::vector<Person>& people,
                                                Timestamp instant) {
   constexpr double kSmoothing = 0.5;  // [s]

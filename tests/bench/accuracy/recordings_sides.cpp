@@ -52,7 +52,7 @@ struct Shares {
   Share exchanged;    ///< Bodies whose labels by the sensor are swapped.
 };
 
-/// The sensor's body nearest to a fused one.
+/// The sensor's body nearest to a fused one; null if none is within 0.3 m.
 const BodyFrame* nearest(const SensorFrame& frame, const Body& fused) {
   const BodyFrame* best = nullptr;
   double least = 0.3;  // [m]

@@ -118,6 +118,16 @@ TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
   EXPECT_EQ(wider->sensors.at(named("s4")).chain.front(), current.master);
 }
 
+TEST(Extending, AChainFromAForeignMasterLeadsFromTheFirstSensorThatWePlace) {
+  const Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
+  Registration candidate = adopted_ring(Verdict::Good, {5, 1, 2, 3, 4}, elsewhere());
+  candidate.sensors[named("s4")].chain = {named("s5"), named("s3"), named("s4")};
+  const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
+  ASSERT_TRUE(wider) << wider.error().message;
+  EXPECT_EQ(wider->sensors.at(named("s4")).chain,
+            (std::vector{named("s1"), named("s3"), named("s4")}));
+}
+
 TEST(Extending, OneHeldSensorIsEnough) {
   const auto wider =
       adopted(adopted_ring(Verdict::Good, {2}), adopted_ring(Verdict::Good, {2, 4}, elsewhere()),

@@ -336,6 +336,22 @@ TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
   EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + std::chrono::seconds(4)), "");
 }
 
+TEST(FusionCore, ASensorThatWasTakenOutComesBackWithoutItsPast) {
+  FusionCore core(config(), ring());
+  (void)run(core, Duration{0}, milliseconds(500));
+  SensorFrame back = sight(0, milliseconds(300));
+  back.sequence = ~std::uint64_t{0};
+  core.take(back);
+  ASSERT_NE(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  ASSERT_GT(core.share(sensor_id("s1")).in_time, 0.0);
+  CoreConfig fewer = config();
+  fewer.sensors.erase(sensor_id("s1"));
+  core.reconfigure(fewer);
+  core.reconfigure(config());
+  EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.share(sensor_id("s1")).in_time, 0.0);
+}
+
 TEST(FusionCore, BodiesThatNobodyHasAreLeftOutByName) {
   FusionCore core(config(), ring());
   for (int i = 0; i < 60; ++i) {

@@ -168,6 +168,15 @@ TEST_F(Sessions, ForgettingCancelsAndTheVersionGoesOn) {
   EXPECT_EQ(registrar().registration().version, 4u);
 }
 
+TEST_F(Sessions, NoVersionIsUsedTwiceWhenASessionsOwnResultIsForgotten) {
+  begin_with(ring(3, Verdict::Provisional));
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
+  ASSERT_EQ(registrar().solved({7, SolveKind::Provisional, ring()}, now_), Outcome::Adopted);
+  const std::uint64_t seen = registrar().registration().version;
+  registrar().forget();
+  EXPECT_GT(registrar().registration().version, seen);
+}
+
 TEST_F(Sessions, ASensorAddedLaterIsPlacedAndTheOthersStayGoodAllTheWay) {
   begin_with(ring(2));
   const Registration before = registrar().registration();

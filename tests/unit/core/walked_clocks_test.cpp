@@ -98,7 +98,8 @@ TEST(WalkedClocks, AnEstimateThatHasImprovedHasMovedAwayFromTheWalk) {
   };
   EXPECT_EQ(take(0.020), kOff);
   EXPECT_EQ(take(0.016), Duration{0});
-  // It is still worse than the walk's 4 ms, but has moved by sqrt(20^2 - 8^2) ms since the walk.
+  // 8 ms is still worse than the walk's 4 ms.  But an estimate that has improved from 20 to 8 ms
+  // has moved by about sqrt(20^2 - 8^2) ms, which the walk's offset does not contain.
   EXPECT_EQ(take(0.008), -kOff);
   for (const double worse : {0.009, 0.016, 0.020})
     EXPECT_EQ(take(worse), Duration{0}) << "to and fro would move frames to and fro";

@@ -38,7 +38,8 @@ TEST(Telling, MakesEveryViewEvidence) {
   EXPECT_NEAR(sight_log_odds(-4.0, known, kTellingPrior),
               -sight_log_odds(4.0, known, kTellingPrior), 1e-9);
   EXPECT_NEAR(sight_log_odds(0.0, known, kTellingPrior), 0.0, 1e-9);
-  // No label is surer than a sensor that is mistaken 3 % of the time: log(0.97 / 0.03) = 3.5.
+  // Never more than the log odds that a sensor that tells front from rear labels correctly:
+  // log(0.97 / 0.03) = 3.5.
   EXPECT_LT(sight_log_odds(4.0, known, kTellingPrior), 3.5);
 }
 

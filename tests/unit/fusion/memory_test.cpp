@@ -34,7 +34,7 @@ class Seen {
   Memory memory_;
 };
 
-/// The neck at x, in a view whose body faces its sensor or stands sideways.
+/// The neck at x, in a view whose body is turned away from its sensor by `facing` [rad].
 SensorView facing_view(int number, double x, double facing) {
   SensorView view = neck_view(number, {x, 1, 0}, 0.5);
   view.facing = facing;

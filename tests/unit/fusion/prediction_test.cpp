@@ -72,5 +72,19 @@ TEST(BodyPrediction, WithoutVelocitiesThePoseStaysAndIsLessSureFromMomentToMomen
   EXPECT_FALSE(later.skeleton[Head].seen());
 }
 
+TEST(BodyPrediction, SharesStayAndAgesGrowByTheTimeAhead) {
+  FusedBody body = forearm();
+  const std::size_t wrist = index_of(WristLeft);
+  ShareTally tally;
+  tally.add(0b10, 3.0);
+  tally.add(0b01, 1.0);
+  body.shares[wrist] = tally.shares();
+  body.age[wrist] = 0.2;
+  const FusedBody later = predicted(body, milliseconds(50));
+  EXPECT_EQ(later.shares[wrist].of(1), 0.75);
+  EXPECT_NEAR(later.age[wrist], 0.25, 1e-9);
+  EXPECT_EQ(later.age[index_of(Head)], body.age[index_of(Head)]) << "nobody predicts it";
+}
+
 }  // namespace
 }  // namespace chorus::fusion

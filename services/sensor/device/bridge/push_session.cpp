@@ -107,7 +107,8 @@ Result<Heard> PushSession::on(const ClockAnswer& answer) {
   return Heard::Clock;
 }
 
-/// What has to be added to a capture time to convert it to our clock.
+/// What has to be added to a capture time to convert it to our clock; an error, with advice, if the
+/// frame is then in the future or too old.
 Result<Duration> PushSession::shift_of(Timestamp captured) const {
   const Timestamp now = desk_->now();
   const auto estimate = clock_.at(now);
