@@ -19,8 +19,8 @@ namespace chorus::testing {
   return address;
 }
 
-/// A port that is free at present for TCP and UDP, and that this process has not been given
-/// before; 0 if there is none.
+/// A port that is free at present for TCP and UDP, and that this process has not been given before
+/// (until all have been tried once); 0 if there is none.
 [[nodiscard]] inline std::uint16_t free_port() {
   constexpr int kFirst = 10'000;
   constexpr int kCount = 6'000;

@@ -8,7 +8,7 @@ next_tried = FIRST + os.getpid() * 64 % (LAST - FIRST)  # different processes st
 
 
 def free_ports(count):
-    """The first of `count` neighbouring ports where nobody listens; never the same ones twice."""
+    """The first of `count` neighbouring ports where nobody listens; others at every call, until all have been tried."""
     global next_tried
     for _ in range((LAST - FIRST) // count):
         first = next_tried if next_tried + count <= LAST else FIRST

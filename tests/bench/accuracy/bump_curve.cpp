@@ -116,7 +116,7 @@ class Curve {
   SensorId sensor_ = SensorId::parse("s1").value();
   Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();
   double sign_ = 1.0;
-  double moved_for_ = 0.0;  ///< Somebody has moved in view of `sensor_` since the push [s].
+  double moved_for_ = 0.0;  ///< How long somebody moved in view of `sensor_` since the push [s].
   std::optional<Timestamp> begun_;
   Timestamp pushed_at_;
   CurveLog log_;

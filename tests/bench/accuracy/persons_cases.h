@@ -25,7 +25,7 @@ struct PersonsCase {
   bool sides = false;  ///< True: sides_wrong_in() is measured, too.
 };
 
-/// The case that is measured in quick runs and used for sweeps.
+/// The case for which the share of draws without a change of id is checked.
 inline constexpr const char* kCrossingTwo = "crossing-2";
 
 [[nodiscard]] std::vector<PersonsCase> persons_cases();

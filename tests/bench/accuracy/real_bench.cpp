@@ -82,7 +82,7 @@ struct FusedScore {
   double missing_percent = 0.0;  ///< True joints that are not reported, in all frames.
 };
 
-/// The rigid motion that brings most joints onto the truth; views with left and right swapped
+/// The rigid motion that brings most joints onto the truth; those far off, such as swapped ones,
 /// hardly count.
 Eigen::Isometry3d best_motion(const JointPairs& pairs) {
   constexpr int kRounds = 20;

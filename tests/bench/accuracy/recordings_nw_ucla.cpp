@@ -46,8 +46,8 @@ bool same_numbers(const FrameRecording& a, const FrameRecording& b) {
   return true;
 }
 
-/// Registers two takes without clocks: tries all start shifts up to a second and keeps the best
-/// fit.
+/// Registers two views of a take without clocks: tries start shifts of up to 30 frames (a second)
+/// in steps of two frames and keeps the best fit.
 std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& target,
                                                        const FrameRecording& source) {
   registration::RegistrationConfig config;

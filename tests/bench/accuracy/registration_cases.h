@@ -20,7 +20,8 @@ struct RegistrationCase {
 };
 
 /// All cases of one profile.  The untimed ICP, whose result does not depend on clocks and which
-/// takes most of the time, runs only on pairs and 30 s rings.
+/// takes most of the time, runs only on pairs, on the undisturbed 30 s ring of profiles that do not
+/// render images, and with profile A on the ring with other walks.
 [[nodiscard]] std::vector<RegistrationCase> registration_cases(const std::string& profile);
 
 /// Scores by method, "ours" first.

@@ -106,7 +106,8 @@ void ablate(Report& report) {
   }
 }
 
-/// Fused errors of one draw [mm]: stamps corrected, stamps as given, and perfect clocks.
+/// Fused errors of one draw [mm]: stamps corrected, stamps as given, and (`exact`) hosts with only
+/// the small clock errors of the profile, as NTP leaves them.
 struct FusedErrors {
   double corrected = 0.0;
   double uncorrected = 0.0;

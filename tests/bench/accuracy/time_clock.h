@@ -30,7 +30,7 @@ struct NamedClock {
 struct ClockCase {
   std::string name;
   std::string target;       ///< The requirement, as text.
-  double ceiling_ms = 0.0;  ///< Condition on p95; 0: none.
+  double ceiling_ms = 0.0;  ///< Condition on the median over draws of p95.
   Network network;
   double offset = 0.0;  ///< Drawn uniformly from +- this [s]
   double drift = 0.0;   ///< Drawn from +- this [s/s]

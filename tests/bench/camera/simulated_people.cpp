@@ -26,7 +26,7 @@ constexpr double kFocal = 1005.0;  // [px]
 constexpr double kHalfWidth = 640.0;
 constexpr double kHalfHeight = 360.0;
 constexpr std::size_t kCameras = 5;
-// A neck this close to the line of sight to another one hides it [m].
+// A neck this close, sideways, to the line of sight to another one hides it [m].
 constexpr double kHidden = 0.30;
 
 struct Errors {

@@ -47,7 +47,7 @@ struct CellPlan {
   bool placed = true;
   /// The extrinsics are in the server's state folder, not in registration.file.
   bool stored = false;
-  bool start_all = true;              ///< False: no sensor is started yet.
+  bool start_all = true;              ///< False: neither a sensor nor the server is started yet.
   std::string address = "127.0.0.1";  ///< Where chorus-fusion listens.
 };
 

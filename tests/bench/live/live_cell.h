@@ -71,7 +71,7 @@ struct ClientAnswers {
   std::uint64_t long_polls = 0;
   std::uint64_t events = 0;
   std::uint64_t messages = 0;  ///< WebSocket messages.
-  std::uint64_t lost = 0;      ///< Connections closed by the server.
+  std::uint64_t lost = 0;      ///< Connections not made, and HTTP connections lost.
 };
 
 /// Runs all clients on one thread with one epoll set.

@@ -49,7 +49,7 @@ struct Rig {
 /// One frame as a client received it.
 struct Seen {
   std::int64_t sequence = 0;
-  Timestamp captured;  ///< As stamped by the sensor host's clock.
+  Timestamp captured;  ///< As stamped: by the sensor host, or by the server if fused.
   Timestamp received;  ///< By our clock.
   std::string turtle;
 };

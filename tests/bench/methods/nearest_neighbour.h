@@ -12,7 +12,8 @@ namespace chorus::bench::baselines {
 class NearestNeighbour {
  public:
   /// The people at this instant who were seen at three instants or more.  A person unseen for a
-  /// second is forgotten; a body farther than 0.6 m from everybody is a new person.
+  /// second is forgotten; a body is a new person if nobody within 0.6 m is free of other bodies of
+  /// its sensor.
   [[nodiscard]] std::vector<Person> group(const std::vector<SensorView>& views, Timestamp instant);
 
  private:

@@ -2,7 +2,7 @@
 //
 // A subcommand is one function `Result<void> run_NAME(Report&)` in NAME_bench.cpp, listed in
 // CMakeLists.txt.  It gets the seed and the permitted length from the report, and adds rows; it
-// prints nothing itself.
+// prints nothing itself, except the names of its cases if `list()`.
 #pragma once
 
 #include <cstdint>
@@ -76,7 +76,7 @@ class Report {
 
   void print(std::ostream& out) const;
   /// {"name", "seed", "profile", "git", "quick", "rows": [...], "notes": [...]}; rows over draws
-  /// also have "spread", "beside" and "won_percent".
+  /// also have "spread", and those with a baseline over the same draws "beside" and "won_percent".
   [[nodiscard]] std::string json() const;
 
  private:

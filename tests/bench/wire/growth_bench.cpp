@@ -11,7 +11,7 @@ namespace {
 using Steady = std::chrono::steady_clock;
 
 constexpr double kRate = 30.0;       // [Hz]
-constexpr double kMinShare = 0.99;   // fraction of frames that every reader gets
+constexpr double kMinShare = 0.99;   // fraction of frames that readers get on average
 constexpr double kMaxRatio = 1.3;    // the claim: cost of a WebSocket over that of an event stream
 constexpr double kMaxOfACore = 0.2;  // the claim: 64 sensors, one person
 constexpr int kReaders = 300;
@@ -28,7 +28,7 @@ double cores_used(const LiveCell& cell, double run_seconds) {
 
 struct Reading {
   double cores = 0.0;  ///< Cores used by the server.
-  double hz = 0.0;     ///< Frames per second that each reader received.
+  double hz = 0.0;     ///< Frames per second that a reader received, on average.
   std::uint64_t lost = 0;
 };
 

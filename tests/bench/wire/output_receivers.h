@@ -57,7 +57,7 @@ struct OutputRow {
   Result<OpenedOutput> (*open)();
 };
 
-/// Every output that has connections.
+/// Every output that sends over the network.
 [[nodiscard]] const std::vector<OutputRow>& output_rows();
 
 /// The cheapest possible output: it uses the same hand-over and thread, and sends `count`

@@ -144,7 +144,7 @@ double late_of(const std::vector<double>& latencies) {
                                            [](double latency) { return kMs * latency > kLateMs; }));
 }
 
-/// The worst figure of each kind among all outputs.
+/// The worst figures among all outputs, and the late frames of all.
 struct Worst {
   double p99 = 0.0;
   double output_hz = kRate;

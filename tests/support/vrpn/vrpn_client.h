@@ -1,7 +1,8 @@
 // A VRPN client for tests, written from the protocol's description and sharing no code with our
 // server: it accepts what VRPN's own client accepts and refuses what that one refuses.
 //
-// POSIX sockets, loopback only; no call blocks longer than the caller allows.
+// POSIX sockets, loopback only; no call but request(), which tries for 5 s, waits longer than the
+// caller allows.
 #pragma once
 
 #include <poll.h>
