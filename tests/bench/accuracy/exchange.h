@@ -35,8 +35,8 @@ struct Request {
 [[nodiscard]] ClockExchange exchange_of(const Link& link, const Request& request);
 
 /// The tracks as the fusion server sees them: every stamp is corrected by the exchanges up to the
-/// one that brings its frame. Only one request is under way at a time: a long poll is repeated when
-/// its answer has arrived.
+/// one that brings its frame.  Only one request is under way at a time: a long poll is repeated
+/// when its answer has arrived.
 [[nodiscard]] std::vector<registration::WalkTrack> with_corrected_clocks(const Workshop& workshop,
                                                                          const Network& network);
 

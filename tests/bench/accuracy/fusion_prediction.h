@@ -23,7 +23,7 @@ struct PredictionCase {
 
 /// Predictions: mean joint error 50 and 100 ms after each instant, of the filter's prediction
 /// ("ours"), of the pose as it was ("hold") and of velocities from instant to instant ("steps");
-/// the error after 0.5 and 1 s in which nobody sees the person; nees of ours. Silence: in the
+/// the error after 0.5 and 1 s in which nobody sees the person; nees of ours.  Silence: in the
 /// second after a sensor has fallen silent, the largest difference between a joint's change from
 /// one instant to the next and the true change (step_mm; "living": the same had the sensor gone
 /// on), or the change had the sensor gone on (caused_mm).

@@ -20,7 +20,7 @@ class ScriptedServer {
   using Texts = std::map<std::string, std::vector<std::string>>;
 
   /// `texts` maps each path to its answers, one per request; the last one serves all later
-  /// requests. While a path's list is empty, it is not available yet (503).  `refusal`: the error
+  /// requests.  While a path's list is empty, it is not available yet (503).  `refusal`: the error
   /// that POST /registration is answered with.
   explicit ScriptedServer(Texts texts, std::optional<Error> refusal = std::nullopt)
       : texts_(std::move(texts)), refusal_(std::move(refusal)) {
