@@ -30,7 +30,7 @@ ROWS = [
 ]
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 
-# Values that rooms of the fusion server pass to each other; each header is a row of its own.
+# Values that rooms of the fusion server pass to each other; each header is a room of its own.
 VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/status.h", "fusion-server/sink.h"}
 
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}

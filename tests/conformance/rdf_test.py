@@ -1,4 +1,4 @@
-"""Readers by others read our Turtle: rapper, serdi and rdflib; every format contains the same graph."""
+"""Readers by others read our Turtle: rapper, serdi and rdflib; N-Triples contain the same graph."""
 
 import shutil
 import subprocess

@@ -90,7 +90,7 @@ class Golden(unittest.TestCase):
                 self.assert_near(got, expected, 1e-5, what)
                 compared += 1
             self.assertGreaterEqual(compared, 15)
-        # Untracked parts are placed at their parent and rotate with it: a shoulder at 0.3 of the way to its joint.
+        # Untracked parts are placed at their parent and rotate with it; here the joint ShoulderLeft is not tracked.
         left = found[0].segments
         self.assertEqual(left["LeftUpperArm"].turned, left["LeftShoulder"].turned)
         self.assertEqual(left["LeftShoulder"].turned, left["T12"].turned)

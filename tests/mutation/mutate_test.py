@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests the rules of tests/mutate.py on a file of ten lines; nothing is built."""
+"""Tests the rules of tests/mutate.py on a short file; nothing is built."""
 
 import itertools
 import json

@@ -98,7 +98,7 @@ def mutants_of(file, text, rule):
 
 
 def drawn(texts, seed):
-    """Endless mutants: the rules take turns, and each draws without replacement.
+    """All mutants in drawn order: the rules take turns, and each draws without replacement.
 
     texts: {file: text}.  The same texts and seed give the same mutants.
     """

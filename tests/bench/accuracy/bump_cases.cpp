@@ -68,7 +68,8 @@ double detected_after(const RoomLog& log, const Push& push) {
   return kNoRatio;
 }
 
-/// Number of false alarms: all before the push, and after it those that name only another sensor.
+/// Number of false alarms: all before the push, and after it those that name one other sensor
+/// alone.
 std::size_t wrong_alarms(const RoomLog& log, const Push& push) {
   return static_cast<std::size_t>(
       std::ranges::count_if(log.alarms, [&](const RoomLog::Alarm& alarm) {

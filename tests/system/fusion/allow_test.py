@@ -1,4 +1,4 @@
-"""VRPN, NatNet and DTrack's command channel answer this host and the listed addresses, and no others."""
+"""VRPN, NatNet and DTrack's command channel answer loopback and the listed addresses, and no others."""
 
 import re
 import socket

@@ -59,7 +59,7 @@ def wait_for(what, condition, patience=PATIENCE):
 
 
 class Process:
-    """A program with its log in memory; killed when the test ends."""
+    """A program with its log in a temporary file; killed when the test ends."""
 
     def __init__(self, name, *arguments):
         self.log = tempfile.NamedTemporaryFile("w+", suffix=f".{name}.log")

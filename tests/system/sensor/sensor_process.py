@@ -40,7 +40,7 @@ class Answer:
 
 
 class Sensor:
-    """A running chorus-sensor; `log` collects its lines up to `sensor serving`."""
+    """A running chorus-sensor; it is made when the log line `sensor serving` has come."""
 
     def __init__(self, *options, before=(), **popen):
         command = [*before, SENSOR, "--port", "0", "--log-format", "json", *options]
