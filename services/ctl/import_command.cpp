@@ -115,9 +115,13 @@ Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set
   return write_text(file.string(), text);
 }
 
-bool made_by_a_recorder(const fs::path& file) {
+/// True unless the file is known to be an import: one that cannot be read may be a recording whose
+/// head is damaged, and can perhaps be salvaged.
+bool may_be_recorded(const fs::path& file) {
+  std::error_code unknown;
+  if (!fs::exists(file, unknown)) return false;
   const auto recording = record::RecordingStream::open(file);
-  if (!recording) return false;
+  if (!recording) return true;
   const auto& metadata = recording->metadata();
   const auto found = metadata.find(std::string(record::kMetadataName));
   return found != metadata.end() && found->second.contains("recording");
@@ -127,10 +131,10 @@ bool made_by_a_recorder(const fs::path& file) {
 Result<void> spare_recordings(const fs::path& folder, const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
     const fs::path file = folder / (recording.sensor.str() + ".mcap");
-    if (made_by_a_recorder(file))
+    if (may_be_recorded(file))
       return fail(ErrorCode::Conflict, file.string(),
-                  "was recorded, not imported, and is never overwritten. Name another --out or "
-                  "--sensor.");
+                  "was recorded, not imported, or cannot be read, and is never overwritten. Name "
+                  "another --out or --sensor.");
   }
   return {};
 }

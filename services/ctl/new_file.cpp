@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <string_view>
 
 namespace chorus::ctl {
 namespace {
@@ -25,9 +26,18 @@ mode_t mode_for(Readers readers) {
   return 0600;
 }
 
-Result<void> cannot(const std::string& file, const std::string& option = {}) {
+Result<void> cannot(const std::string& file, int why, const std::string& option = {}) {
   return fail(ErrorCode::Io, file,
-              std::string("cannot be written: ") + std::strerror(errno) + option);
+              std::string("cannot be written: ") + std::strerror(why) + option);
+}
+
+bool write_all(int file, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(file, text.data(), text.size());
+    if (written < 0 && errno != EINTR) return false;
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
 }
 
 /// Changes the file's group to that of the services, if possible.
@@ -61,15 +71,15 @@ Result<void> write_file(const std::string& file, const std::string& text, Reader
     return fail(ErrorCode::InvalidArgument, file,
                 "exists and is not overwritten: edit it, move it away, or give --out FILE");
   }
-  if (made < 0) return cannot(file, " (as root, or with --out FILE)");
-  const bool handed =
-      (readers != Readers::Services || hand_over(made)) && give_mode(made, mode_for(readers));
-  const bool written = ::write(made, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  if (made < 0) return cannot(file, errno, " (as root, or with --out FILE)");
+  const bool written = (readers != Readers::Services || hand_over(made)) &&
+                       give_mode(made, mode_for(readers)) && write_all(made, text);
+  int why = errno;  // close() may change it
   ::close(made);
-  if (handed && written && (fresh == file || ::rename(fresh.c_str(), file.c_str()) == 0)) return {};
-  const auto failure = cannot(file);
+  if (written && (fresh == file || ::rename(fresh.c_str(), file.c_str()) == 0)) return {};
+  if (written) why = errno;
   ::unlink(fresh.c_str());
-  return failure;
+  return cannot(file, why);
 }
 
 Result<void> make_folder(const std::string& named, Readers readers) {
@@ -84,11 +94,13 @@ Result<void> make_folder(const std::string& named, Readers readers) {
   const bool shared = readers == Readers::Services;
   constexpr mode_t kShared = 0751;  // everybody may read the ca.crt in it, by its name
   const mode_t mode = shared ? kShared : 0700;
-  if (::mkdir(folder.c_str(), mode) != 0) return cannot(folder, " (as root, or with --out FOLDER)");
+  if (::mkdir(folder.c_str(), mode) != 0)
+    return cannot(folder, errno, " (as root, or with --out FOLDER)");
   const int made = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool handed = made >= 0 && (!shared || hand_over(made)) && give_mode(made, mode);
+  const int why = errno;  // close() may change it
   if (made >= 0) ::close(made);
-  return handed ? Result<void>{} : cannot(folder);
+  return handed ? Result<void>{} : cannot(folder, why);
 }
 
 }  // namespace chorus::ctl

@@ -152,7 +152,7 @@ Result<nlohmann::json> follow(const ServiceClient& server, const std::string& pa
     }
     const double elapsed = client::number_at(*session, "elapsedSeconds");
     const double target = client::number_at(*session, "targetSeconds");
-    if (elapsed > last_elapsed) last_step = std::chrono::steady_clock::now();
+    if (elapsed > last_elapsed || state == "solving") last_step = std::chrono::steady_clock::now();
     last_elapsed = elapsed;
     progress.show(elapsed / (target > 0.0 ? target : 1.0),
                   state == "solving" ? state : remark_of(*session));

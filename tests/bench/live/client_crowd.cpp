@@ -5,10 +5,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <charconv>
 #include <cstring>
+#include <limits>
 
 #include "tests/bench/live/live_cell.h"
 #include "tests/support/free_port.h"
@@ -72,6 +74,7 @@ struct ClientCrowd::Impl {
     Reads reads = Reads::LongPolls;
     bool open = false;  ///< The WebSocket's handshake is done.
     std::string received;
+    std::atomic<std::uint64_t> frames = 0;
   };
 
   void watch(Client& client, int socket) const {
@@ -130,7 +133,9 @@ void ClientCrowd::Impl::on_readable(Client& client) {
   client.vrpn->read();
   for (const auto& message : client.vrpn->decoder.messages) {
     const auto pose = pose_of(message);
-    if (pose && pose->sensor == 0) ++vrpn_frames;
+    if (!pose || pose->sensor != 0) continue;
+    ++vrpn_frames;
+    ++client.frames;
   }
   client.vrpn->decoder.messages.clear();
 }
@@ -161,6 +166,7 @@ void ClientCrowd::Impl::take_events(Client& client) {
   while ((end = client.received.find("\n\n")) != std::string::npos) {
     client.received.erase(0, end + 2);
     ++events;
+    ++client.frames;
   }
 }
 
@@ -175,6 +181,7 @@ void ClientCrowd::Impl::take_messages(Client& client) {
     if (client.received.size() < length) return;
     client.received.erase(0, length);
     ++messages;
+    ++client.frames;
   }
 }
 
@@ -190,6 +197,7 @@ void ClientCrowd::Impl::take_answer(Client& client) {
   std::string request(kLongPoll.substr(0, kLongPoll.size() - kBlankLine));
   request += "If-None-Match: " + std::string(tag.substr(0, tag.find('\r'))) + "\r\n\r\n";
   ++long_polls;
+  ++client.frames;
   client.received.clear();
   (void)::send(client.socket, request.data(), request.size(), MSG_NOSIGNAL);
 }
@@ -214,7 +222,17 @@ ClientCrowd::~ClientCrowd() {
 }
 
 ClientAnswers ClientCrowd::answers() const {
-  return {impl_->vrpn_frames, impl_->long_polls, impl_->events, impl_->messages, impl_->lost};
+  ClientAnswers out{impl_->vrpn_frames, impl_->long_polls, impl_->events,
+                    impl_->messages,    impl_->lost,       {}};
+  for (const auto& client : impl_->clients) out.of_each.push_back(client->frames);
+  return out;
+}
+
+std::uint64_t fewest(const ClientAnswers& before, const ClientAnswers& after) {
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (std::size_t i = 0; i < after.of_each.size(); ++i)
+    least = std::min(least, after.of_each[i] - before.of_each[i]);
+  return least;
 }
 
 }  // namespace chorus::bench

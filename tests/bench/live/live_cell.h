@@ -70,9 +70,13 @@ struct ClientAnswers {
   std::uint64_t vrpn_frames = 0;
   std::uint64_t long_polls = 0;
   std::uint64_t events = 0;
-  std::uint64_t messages = 0;  ///< WebSocket messages.
-  std::uint64_t lost = 0;      ///< Connections not made, and HTTP connections lost.
+  std::uint64_t messages = 0;          ///< WebSocket messages.
+  std::uint64_t lost = 0;              ///< Connections not made, and HTTP connections lost.
+  std::vector<std::uint64_t> of_each;  ///< Frames by client, in the order in which they connected.
 };
+
+/// The frames that the client with the fewest received between the two.
+[[nodiscard]] std::uint64_t fewest(const ClientAnswers& before, const ClientAnswers& after);
 
 /// Runs all clients on one thread with one epoll set.
 class ClientCrowd {

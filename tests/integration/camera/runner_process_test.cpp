@@ -92,6 +92,14 @@ TEST(RunnerProcess, AFloodWithoutALineIsRefused) {
   EXPECT_EQ(line.error().code, ErrorCode::TooLarge);
 }
 
+TEST(RunnerProcess, ALineThatIsTooLongIsRefusedAlsoIfItsEndCameWithIt) {
+  const auto process = shell("head -c 300000 /dev/zero | tr '\\0' x; echo; sleep 10");
+  std::this_thread::sleep_for(500ms);
+  const auto line = process->read_line(10s, kNever);
+  ASSERT_FALSE(line);
+  EXPECT_EQ(line.error().code, ErrorCode::TooLarge);
+}
+
 TEST(RunnerProcess, AProgramThatIsNotThereIsNamed) {
   const auto process = RunnerProcess::start({"no-such-runner"});
   ASSERT_FALSE(process);

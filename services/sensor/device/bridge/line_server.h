@@ -14,7 +14,9 @@ namespace chorus::bridge {
 struct LineServerOptions {
   std::string path;
   http::Opener open;
-  std::size_t max_line_bytes = 256 * 1024;  ///< A longer line disconnects its client.
+  /// Who sends more than this without an end of line is disconnected.  The length of whole messages
+  /// is for the dialogue to judge.
+  std::size_t max_line_bytes = 256 * 1024;
 };
 
 class LineServer {

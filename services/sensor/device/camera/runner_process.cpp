@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -205,14 +206,15 @@ Result<std::string> RunnerProcess::read_line(Duration within, const std::stop_to
   const auto until = std::chrono::steady_clock::now() + within;
   while (true) {
     const bool more = take_output();
-    if (const std::size_t end = heard_.find('\n'); end != std::string::npos) {
+    const std::size_t end = heard_.find('\n');
+    if (std::min(end, heard_.size()) > kMaxLine)
+      return fail(ErrorCode::TooLarge, name_, "a line of the runner has at most 256 kB");
+    if (end != std::string::npos) {
       std::string line = heard_.substr(0, end);
       heard_.erase(0, end + 1);
       return line;
     }
     if (!more) return tl::unexpected<Error>(obituary());
-    if (heard_.size() > kMaxLine)
-      return fail(ErrorCode::TooLarge, name_, "a line of the runner has at most 256 kB");
     if (auto ok = wait_a_moment(Want::Read, until, stop); !ok) return pass(ok);
   }
 }
