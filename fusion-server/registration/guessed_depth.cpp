@@ -1,15 +1,13 @@
 #include "fusion-server/registration/guessed_depth.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/base/units.h"
+#include "common/body/guessed_depth.h"
 
 namespace chorus::registration {
 namespace {
 
-constexpr double kGuessedShare = 0.04;      // of the distance; depth sensors state less than 2 %
-constexpr double kGuessedRatio = 3.0;       // along to across; of depth sensors at most 2
 constexpr std::size_t kEnoughVotes = 2000;  // joints; the frames of one sensor are alike
 
 // From the two real takes of docs/benchmarks/registration.md, which name what they do not show.
@@ -20,17 +18,6 @@ constexpr double kCameraRms = 0.5;        // [m]
 constexpr double kCameraSpeed = 10.0;     // [m/s]
 constexpr double kCameraDistance = 12.0;  // [m] pictures show people as far as that
 constexpr double kCameraPosition = 2.0;   // [m] 95 %, of a whole room
-
-bool guessed(const Joint& joint) {
-  const double range = joint.position.norm();
-  if (!joint.covariance.known() || !(range > 0.0)) return false;
-  const Eigen::Vector3d ray = joint.position / range;
-  const Eigen::Matrix3d error = joint.covariance.matrix();
-  const double along = ray.dot(error * ray);
-  const double across = 0.5 * (error.trace() - along);
-  return along >= std::pow(kGuessedShare * range, 2) &&
-         along >= kGuessedRatio * kGuessedRatio * across;
-}
 
 bool saw_somebody(const WalkTrack& track) {
   return std::ranges::any_of(track.frames,
@@ -47,7 +34,7 @@ bool guesses_depth(const WalkTrack& track) {
       for (const Joint& joint : body.skeleton.joints) {
         if (!joint.seen()) continue;
         ++votes;
-        guesses += guessed(joint) ? 1 : 0;
+        guesses += has_guessed_depth(joint, Eigen::Vector3d::Zero()) ? 1 : 0;
       }
     }
     if (votes >= kEnoughVotes) break;

@@ -9,8 +9,7 @@
 
 namespace chorus::registration {
 
-/// True if most of the sensor's joints state an error along the line of sight of at least 4 % of
-/// their distance and three times the error across it.
+/// True if most of the sensor's joints have a guessed depth (common/body/guessed_depth.h).
 [[nodiscard]] bool guesses_depth(const WalkTrack& track);
 
 /// The configuration for this walk.  It differs from `config` only if all sensors that saw somebody

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/body/guessed_depth.h"
 #include "common/geometry/rotation.h"
 
 namespace chorus::watch {
@@ -38,12 +39,18 @@ using Points = std::array<std::optional<Vector3d>, kPoints.size()>;
 
 bool shown(const Joint& joint) { return joint.seen() && joint.state == JointState::Tracked; }
 
+/// Guessed depths are wrong by decimetres for minutes, and differently for each pose.
+bool measured(const Joint& joint, const SensorView& view) {
+  return shown(joint) && !has_guessed_depth(joint, view.eye);
+}
+
 Points points_of(const SensorView& view) {
   Points points;
   for (std::size_t i = 0; i < kPoints.size(); ++i) {
     const Joint& first = view.skeleton[kPoints[i].first];
     const Joint& second = view.skeleton[kPoints[i].second];
-    if (shown(first) && shown(second)) points[i] = 0.5 * (first.position + second.position);
+    if (measured(first, view) && measured(second, view))
+      points[i] = 0.5 * (first.position + second.position);
   }
   return points;
 }

@@ -31,8 +31,8 @@ struct Residual {
 [[nodiscard]] Person seen_clearly(const Person& person, const std::vector<Eigen::Vector3d>& others);
 
 /// One residual for each sensor that sees the trunk of this person together with another sensor.
-/// Empty if the person's front is unknown. Uses points that swapping left and right does not
-/// affect; rays are left out.
+/// Empty if the person's front is unknown.  Uses points that swapping left and right does not
+/// affect; rays are left out, and so are joints whose depth was guessed.
 [[nodiscard]] std::vector<Residual> residuals_of(const Person& person);
 
 }  // namespace chorus::watch

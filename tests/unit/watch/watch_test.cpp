@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -81,12 +82,26 @@ class Room : public ::testing::Test {
     const double front = heading - std::atan2(-away.x(), -away.z());
     const Vector3d off = slow_[at] + bias_ * std::cos(front) * away;
     for (Joint& joint : view.skeleton.joints) joint.position = moved_[at] * joint.position + off;
+    if (guessing_.contains(sensor)) guess(view);
     return view;
   }
 
+  /// Makes the view one of a camera that guesses depth, and says so: it errs by 0.5 m, some seconds
+  /// one way and some the other.
+  void guess(SensorView& view) const {
+    const double off = 0.5 * std::sin(0.2 * seconds_of(now_ - kStart));
+    for (Joint& joint : view.skeleton.joints) {
+      const Vector3d ray = (joint.position - view.eye).normalized();
+      joint.position += off * ray;
+      joint.covariance = Covariance(
+          Eigen::Matrix3d(1e-4 * Eigen::Matrix3d::Identity() + 0.09 * ray * ray.transpose()));
+    }
+  }
+
   int sensors_ = 0;
-  double bias_ = 0.02;  ///< [m]
-  double way_ = 0.0;    ///< Walked so far [m].
+  std::set<int> guessing_;  ///< The cameras that guess depth.
+  double bias_ = 0.02;      ///< [m]
+  double way_ = 0.0;        ///< Walked so far [m].
   std::vector<Isometry3d> moved_;
   std::vector<Vector3d> slow_;
   std::mt19937 random_{7};
@@ -126,6 +141,22 @@ TEST_F(Room, ASensorThatWasTurnedIsNamedWithinSeconds) {
   ASSERT_TRUE(after);
   EXPECT_LT(*after, 5.0);
   EXPECT_EQ(watch_.finding()->sensor, name(1));
+}
+
+TEST_F(Room, CamerasThatGuessDepthAreNotWatched) {
+  furnish(4);
+  guessing_ = {0, 1, 2, 3};
+  EXPECT_EQ(walk(std::chrono::seconds(120)), std::nullopt);
+  EXPECT_FALSE(watch_.shift_of(name(0)));
+}
+
+TEST_F(Room, CamerasThatGuessDepthDoNotHideAPushNorMakeOneUp) {
+  furnish(5);
+  guessing_ = {0, 3};
+  ASSERT_EQ(walk(std::chrono::seconds(120)), std::nullopt);
+  push(2, {0.06, 0.0, -0.06});
+  ASSERT_TRUE(walk(std::chrono::seconds(20)));
+  EXPECT_EQ(watch_.finding()->sensor, name(2));
 }
 
 TEST_F(Room, OfTwoSensorsItIsNotToldWhichWasMoved) {
