@@ -48,18 +48,18 @@ Result<std::vector<ServerEvent>> EventReader::take(std::string_view bytes) {
       return fail(ErrorCode::TooLarge, "event stream",
                   "an event is larger than " + std::to_string(most_) + " bytes");
     }
-    line_.append(part);
+    if (!line_.empty() || end == bytes.size()) line_.append(part);
     if (end == bytes.size()) break;
     after_return_ = bytes[end] == '\r';
     here = end + 1;
-    end_line(events);
+    end_line(line_.empty() ? part : line_, events);
+    line_.clear();
   }
   return events;
 }
 
-void EventReader::end_line(std::vector<ServerEvent>& out) {
+void EventReader::end_line(std::string_view line, std::vector<ServerEvent>& out) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  std::string_view line = line_;
   if (std::exchange(at_begin_, false) && line.starts_with(kByteOrderMark))
     line.remove_prefix(kByteOrderMark.size());
   const std::size_t colon = line.find(':');
@@ -70,16 +70,18 @@ void EventReader::end_line(std::vector<ServerEvent>& out) {
   if (line.empty()) {
     end_event(out);
   } else if (field == "data") {
+    if (data_.empty()) data_.reserve(usual_);
     if (std::exchange(any_data_, true)) data_ += '\n';
     data_.append(value);
   } else if (field == "id" && value.find('\0') == std::string_view::npos) {
     id_ = value;
   }
-  line_.clear();
 }
 
 void EventReader::end_event(std::vector<ServerEvent>& out) {
-  if (std::exchange(any_data_, false)) out.push_back({id_, std::move(data_)});
+  if (!std::exchange(any_data_, false)) return;
+  usual_ = data_.size();
+  out.push_back({id_, std::move(data_)});
   data_.clear();
 }
 

@@ -26,12 +26,13 @@ class EventReader {
   [[nodiscard]] Result<std::vector<ServerEvent>> take(std::string_view bytes);
 
  private:
-  void end_line(std::vector<ServerEvent>& out);
+  void end_line(std::string_view line, std::vector<ServerEvent>& out);
   void end_event(std::vector<ServerEvent>& out);
 
   std::size_t most_;
-  std::string line_;
+  std::string line_;  ///< The beginning of a line whose end has not come.
   std::string data_;
+  std::size_t usual_ = 0;  ///< Bytes of the last event's data; the next has as many, or nearly.
   std::string id_;
   bool any_data_ = false;
   /// The last byte was a carriage return; if a line feed follows, both end one line.

@@ -54,7 +54,7 @@ class ArvidaFrame {
     for (const BodyResource& body : frame_.bodies) {
       pen_.need(kJointText + names_.size());
       pen_.put(before);
-      put_body_name(body);
+      pen_.put(body_name(body));
       pen_.put(">");
       before = ", <";
     }
@@ -66,7 +66,8 @@ class ArvidaFrame {
   void put_body(const BodyResource& body) {
     pen_.need(kJointText + kJointCount * (64 + names_.size()));
     pen_.put("\n<");
-    put_body_name(body);
+    body_name_ = body_name(body);
+    pen_.put(body_name_);
     pen_.put("> a skel:Skeleton ;\n  ch:bodyId ");
     pen_.put_integer(body.id);
     if (body.slot) {
@@ -75,16 +76,16 @@ class ArvidaFrame {
     }
     if (body.sides_confidence) {
       pen_.put(" ;\n  ch:sidesConfidence ");
-      pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
+      pen_.put_decimal<kConfidenceDecimals>(writable_confidence(*body.sides_confidence));
     }
     if (body.carried_for) {
       pen_.put(" ;\n  ch:carriedFor ");
-      pen_.put_decimal(writable_time(*body.carried_for), kTimeDecimals);
+      pen_.put_decimal<kTimeDecimals>(writable_time(*body.carried_for));
     }
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);
-      put_joint_name(body, joint);
+      put_joint_name(joint);
       pen_.put(">");
       before = ", <";
     }
@@ -96,20 +97,20 @@ class ArvidaFrame {
     const WritableJoint joint = writable(body.joints[index]);
     pen_.need(kJointText + 5 * (names_.size() + 64));
     pen_.put("\n<");
-    put_joint_name(body, name);
+    put_joint_name(name);
     put("> a skel:Joint, spatial:SpatialRelationship, core:Output, core:Pull ;\n",
         "  ch:jointName \"", name, "\" ;\n  ch:state ch:", name_of(joint.state),
         " ;\n  spatial:sourceCoordinateSystem <", names_,
         "frame#space> ;\n  spatial:targetCoordinateSystem <");
-    put_joint_name(body, name);
+    put_joint_name(name);
     pen_.put("-space> ;\n  spatial:spatialRelationship <");
-    put_joint_name(body, name);
+    put_joint_name(name);
     pen_.put(">");
     put_timestamp(body.captured);
     if (joint.state != JointState::NotTracked && !joint.ray) put_translation(joint.position);
     if (joint.has_orientation) put_rotation(joint.orientation);
     pen_.put(" .\n\n<");
-    put_joint_name(body, name);
+    put_joint_name(name);
     pen_.put("-space> a maths:RightHandedCartesianCoordinateSystem3D .\n");
   }
 
@@ -126,9 +127,9 @@ class ArvidaFrame {
     pen_.put(
         " ;\n  spatial:translation [ a spatial:Translation3D ; vom:quantityKind vom:Length ; "
         "vom:quantityValue [ a maths:Vector3D");
-    put_number(" ; maths:x \"", p.x(), kPositionDecimals);
-    put_number(" ; maths:y \"", p.y(), kPositionDecimals);
-    put_number(" ; maths:z \"", p.z(), kPositionDecimals);
+    put_number<kPositionDecimals>(" ; maths:x \"", p.x());
+    put_number<kPositionDecimals>(" ; maths:y \"", p.y());
+    put_number<kPositionDecimals>(" ; maths:z \"", p.z());
     pen_.put(" ; vom:unit vom:meter ] ]");
   }
 
@@ -136,27 +137,25 @@ class ArvidaFrame {
     pen_.put(
         " ;\n  spatial:rotation [ a spatial:Rotation3D ; vom:quantityKind vom:Angle ; "
         "vom:quantityValue [ a maths:Quaternion, maths:Vector4D");
-    put_number(" ; maths:x \"", q.x(), kQuaternionDecimals);
-    put_number(" ; maths:y \"", q.y(), kQuaternionDecimals);
-    put_number(" ; maths:z \"", q.z(), kQuaternionDecimals);
-    put_number(" ; maths:w \"", q.w(), kQuaternionDecimals);
+    put_number<kQuaternionDecimals>(" ; maths:x \"", q.x());
+    put_number<kQuaternionDecimals>(" ; maths:y \"", q.y());
+    put_number<kQuaternionDecimals>(" ; maths:z \"", q.z());
+    put_number<kQuaternionDecimals>(" ; maths:w \"", q.w());
     pen_.put(" ] ]");
   }
 
-  void put_number(std::string_view before, double value, int decimals) {
+  template <int kDecimals, class Text>
+  void put_number(const Text& before, double value) {
     pen_.put(before);
-    pen_.put_decimal(value, decimals);
+    pen_.put_decimal<kDecimals>(value);
     pen_.put(kDouble);
   }
 
-  void put_body_name(const BodyResource& body) {
-    put(names_, "skeletons/");
-    pen_.put_integer(body.id);
+  [[nodiscard]] std::string body_name(const BodyResource& body) const {
+    return names_ + "skeletons/" + std::to_string(body.id);
   }
-  void put_joint_name(const BodyResource& body, std::string_view joint) {
-    put_body_name(body);
-    put("#", joint);
-  }
+  /// Of the body that was begun last.
+  void put_joint_name(std::string_view joint) { put(body_name_, "#", joint); }
 
   template <class... Text>
   void put(const Text&... text) {
@@ -165,6 +164,7 @@ class ArvidaFrame {
 
   const FrameResource& frame_;
   const std::string names_;
+  std::string body_name_;  ///< Of the body that was begun last.
   TimeText time_;
   Pen pen_;
 };

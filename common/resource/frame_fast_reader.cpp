@@ -3,6 +3,7 @@
 //
 // Nothing is refused here: at the first unexpected byte, or at a value that is not clearly valid,
 // the result is nullopt.  Then the parser reads the document from the start and reports mistakes.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "common/body/bones.h"
 #include "common/resource/frame_facts.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/joint_texts.h"
 #include "common/resource/template_text.h"
 
 namespace chorus::resource {
@@ -69,15 +71,17 @@ class Template : TemplateText {
   bool body_links() {
     if (text(" .\n")) return true;
     if (!text(" ;\n  ch:body ")) return false;
+    std::array<std::uint64_t, kMaxBodies> ids;
+    std::size_t count = 0;
     do {
       std::uint64_t id = 0;
       if (!text("<") || !text(scoped_) || !text("#") || !integer(id) || !text(">")) return false;
-      for (const BodyResource& other : frame_.bodies) {
-        if (other.id == id) return false;
-      }
-      if (frame_.bodies.size() == kMaxBodies) return false;
-      frame_.bodies.emplace_back().id = id;
+      const auto end = ids.begin() + static_cast<std::ptrdiff_t>(count);
+      if (count == kMaxBodies || std::find(ids.begin(), end, id) != end) return false;
+      ids[count++] = id;
     } while (text(", "));
+    frame_.bodies.resize(count);  // All at once: bodies are large, and moving them costs.
+    for (std::size_t i = 0; i < count; ++i) frame_.bodies[i].id = ids[i];
     return text(" .\n");
   }
 
@@ -94,17 +98,11 @@ class Template : TemplateText {
     if (text(" ;\n  ch:carriedFor ") && !duration(body.carried_for)) return false;
     if (!captured(body.captured) || !text(" ;\n  ch:joint ")) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      if (!text(i == 0 ? "<" : ", <") || !text(iri) || !text("-") || !text(kJointNames[i]) ||
-          !text(">")) {
-        return false;
-      }
+      if (!text(i == 0 ? "<" : ", <") || !text(iri) || !text(kTurtleLinks[i])) return false;
     }
     if (!text(" .\n")) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      if (!text("\n<") || !text(iri) || !text("-") || !text(kJointNames[i])) return false;
-      if (!text("> a ch:Joint ;\n  ch:jointName \"") || !text(kJointNames[i]) ||
-          !text("\" ;\n  ch:"))
-        return false;
+      if (!text("\n<") || !text(iri) || !text(kTurtleHeads[i]) || !text("  ch:")) return false;
       if (!joint(body.joints[i]) || !text(" .\n")) return false;
     }
     return true;
@@ -120,7 +118,7 @@ class Template : TemplateText {
     if (joint.state == JointState::Inferred && !text("Inferred")) return false;
     if (text(" ;\n  ch:variance ")) {
       double variance = 0.0;
-      if (!decimal(variance) || variance < 0.0) return false;
+      if (!decimal<kVarianceDecimals>(variance) || variance < 0.0) return false;
       joint.variance = variance;
     }
     if (text(" ;\n  ch:cxx ") && !covariance(joint.covariance)) return false;
@@ -141,16 +139,18 @@ class Template : TemplateText {
 
   bool point(JointResource& joint) {
     auto& p = joint.position;
-    return text("x ") && decimal(p.x()) && text(" ; ch:y ") && decimal(p.y()) && text(" ; ch:z ") &&
-           decimal(p.z());
+    return text("x ") && decimal<kPositionDecimals>(p.x()) && text(" ; ch:y ") &&
+           decimal<kPositionDecimals>(p.y()) && text(" ; ch:z ") &&
+           decimal<kPositionDecimals>(p.z());
   }
 
   /// Starts after "ray".
   bool ray(JointResource& joint) {
     auto& p = joint.position;
     joint.measurement = Measurement::Ray;
-    return text("X ") && decimal(p.x()) && text(" ; ch:rayY ") && decimal(p.y()) &&
-           text(" ; ch:rayZ ") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
+    return text("X ") && decimal<kRayDecimals>(p.x()) && text(" ; ch:rayY ") &&
+           decimal<kRayDecimals>(p.y()) && text(" ; ch:rayZ ") && decimal<kRayDecimals>(p.z()) &&
+           std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
   /// Starts after the name of the covariance's first term.
@@ -158,18 +158,20 @@ class Template : TemplateText {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {
       if (i > 0 && (!text(" ; ch:") || !text(kCovarianceNames[i]) || !text(" "))) return false;
-      if (!decimal(upper[i])) return false;
+      if (!decimal<kVarianceDecimals>(upper[i])) return false;
     }
     out = Covariance(upper);
     return out.plausible();
   }
 
   bool orientation(Eigen::Quaterniond& q) {
-    if (!decimal(q.x()) || !text(" ; ch:qy ") || !decimal(q.y()) || !text(" ; ch:qz ") ||
-        !decimal(q.z()) || !text(" ; ch:qw ") || !decimal(q.w()) || !text(" ;\n  ch:")) {
+    if (!decimal<kQuaternionDecimals>(q.x()) || !text(" ; ch:qy ") ||
+        !decimal<kQuaternionDecimals>(q.y()) || !text(" ; ch:qz ") ||
+        !decimal<kQuaternionDecimals>(q.z()) || !text(" ; ch:qw ") ||
+        !decimal<kQuaternionDecimals>(q.w()) || !text(" ;\n  ch:")) {
       return false;
     }
-    return std::abs(q.norm() - 1.0) <= kUnitTolerance;
+    return nearly_unit(q) || std::abs(q.norm() - 1.0) <= kUnitTolerance;
   }
 
   std::string_view names_;

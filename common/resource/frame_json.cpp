@@ -7,6 +7,7 @@
 #include "common/resource/fixed_point.h"
 #include "common/resource/frame_parts.h"
 #include "common/resource/frame_shares.h"
+#include "common/resource/joint_texts.h"
 #include "common/sensor/limits.h"
 
 namespace chorus::resource {
@@ -18,6 +19,7 @@ class JsonFrame {
       : frame_(frame),
         linked_(linked),
         names_(place.up() + place.names),
+        frame_name_(names_ + (linked ? "frames/" + std::to_string(frame.sequence) : "frame")),
         context_(linked ? "\"@context\":\"" + place.up() + "context.jsonld\"," : ""),
         sensors_(quoted_names(frame)),
         share_list_(frame.sensors),
@@ -31,7 +33,7 @@ class JsonFrame {
     pen_.put("{");
     pen_.put(context_);
     pen_.put("\"@id\":\"");
-    put_frame_name();
+    pen_.put(frame_name_);
     pen_.put("\",\"@type\":\"Frame\"");
     put_sequence();
     put_times(frame_.captured);
@@ -64,7 +66,7 @@ class JsonFrame {
     put_sequence();
     put_origin();
     pen_.put(",\"frame\":\"");
-    put_frame_name();
+    pen_.put(frame_name_);
     pen_.put("\"");
     put_joints(body);
     pen_.need(kJointBytes);
@@ -77,7 +79,8 @@ class JsonFrame {
   /// type.
   void put_body_head(const BodyResource& body, bool living) {
     pen_.put("\"@id\":\"");
-    put_body_name(body);
+    body_name_ = body_name(body);
+    pen_.put(body_name_);
     pen_.put("\",\"@type\":\"Skeleton\"");
     if (linked_) {
       pen_.put(living ? ",\"of\":{\"@id\":\"" : ",\"of\":\"");
@@ -92,11 +95,11 @@ class JsonFrame {
     }
     if (body.sides_confidence) {
       pen_.put(",\"sidesConfidence\":");
-      put_value(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
+      put_value<kConfidenceDecimals>(writable_confidence(*body.sides_confidence));
     }
     if (body.carried_for) {
       pen_.put(",\"carriedFor\":");
-      put_value(writable_time(*body.carried_for), kTimeDecimals);
+      put_value<kTimeDecimals>(writable_time(*body.carried_for));
     }
     put_times(body.captured);
   }
@@ -141,42 +144,31 @@ class JsonFrame {
     pen_.put("]");
   }
 
-  /// In JSON-LD the IRIs of bodies and joints contain their frame's, so that documents can be
-  /// merged.
-  void put_frame_name() {
-    pen_.put(names_);
-    if (!linked_) return pen_.put("frame");
-    pen_.put("frames/");
-    pen_.put_integer(frame_.sequence);
-  }
-
   void put_living_name(const BodyResource& body) {
     pen_.put(names_);
     pen_.put("skeletons/");
     pen_.put_integer(body.id);
   }
 
-  void put_body_name(const BodyResource& body) {
-    if (!linked_) return put_living_name(body);
-    put_frame_name();
-    pen_.put("#");
-    pen_.put_integer(body.id);
+  /// In JSON-LD the IRIs of bodies and joints contain their frame's, so that documents can be
+  /// merged.
+  [[nodiscard]] std::string body_name(const BodyResource& body) const {
+    const std::string id = std::to_string(body.id);
+    return linked_ ? frame_name_ + "#" + id : names_ + "skeletons/" + id;
   }
 
   void put_joints(const BodyResource& body) {
-    std::string_view before = ",\"joints\":{\"";
+    const JointTexts& types = linked_ ? kLinkedTypes : kPlainTypes;
+    std::string_view before = ",\"joints\":{";
     for (std::size_t i = 0; i < kJointCount; ++i) {
       pen_.need(kJointBytes + names_.size() + sensor_bytes_);
       pen_.put(before);
-      pen_.put(kJointNames[i]);
-      pen_.put("\":{\"@id\":\"");
-      put_body_name(body);
-      pen_.put(linked_ ? "-" : "#");
-      pen_.put(kJointNames[i]);
-      pen_.put("\",\"@type\":\"Joint\",");
+      pen_.put(kJsonOpenings[i]);
+      pen_.put(body_name_);
+      pen_.put(types[i]);
       put_joint(writable(body.joints[i]), body.joints[i]);
       pen_.put("}");
-      before = ",\"";
+      before = ",";
     }
     pen_.put("}");
   }
@@ -184,12 +176,12 @@ class JsonFrame {
   void put_joint(const WritableJoint& joint, const JointResource& origin) {
     if (joint.state != JointState::NotTracked) put_measured(joint);
     if (joint.has_orientation) {
-      put_number("\"qx\":", joint.orientation.x(), kQuaternionDecimals);
-      put_number("\"qy\":", joint.orientation.y(), kQuaternionDecimals);
-      put_number("\"qz\":", joint.orientation.z(), kQuaternionDecimals);
-      put_number("\"qw\":", joint.orientation.w(), kQuaternionDecimals);
+      put_number<kQuaternionDecimals>("\"qx\":", joint.orientation.x());
+      put_number<kQuaternionDecimals>("\"qy\":", joint.orientation.y());
+      put_number<kQuaternionDecimals>("\"qz\":", joint.orientation.z());
+      put_number<kQuaternionDecimals>("\"qw\":", joint.orientation.w());
     }
-    if (joint.variance) put_number("\"variance\":", *joint.variance, kVarianceDecimals);
+    if (joint.variance) put_number<kVarianceDecimals>("\"variance\":", *joint.variance);
     if (joint.covariance.known()) put_covariance(joint.covariance);
     pen_.put("\"state\":\"");
     pen_.put(name_of(joint.state));
@@ -208,45 +200,55 @@ class JsonFrame {
     const auto list = share_list_.of(joint.shares, joint.contributors, values);
     for (const double share : list) {
       pen_.put(before);
-      put_value(share, kShareDecimals);
+      put_value<kShareDecimals>(share);
       before = ",";
     }
     if (!list.empty()) pen_.put("]");
     if (!joint.age) return;
     pen_.put(",\"age\":");
-    put_value(writable_time(*joint.age), kTimeDecimals);
+    put_value<kTimeDecimals>(writable_time(*joint.age));
   }
 
   void put_measured(const WritableJoint& joint) {
-    const int decimals = joint.ray ? kRayDecimals : kPositionDecimals;
-    put_number(joint.ray ? "\"rayX\":" : "\"x\":", joint.position.x(), decimals);
-    put_number(joint.ray ? "\"rayY\":" : "\"y\":", joint.position.y(), decimals);
-    put_number(joint.ray ? "\"rayZ\":" : "\"z\":", joint.position.z(), decimals);
-  }
-
-  void put_covariance(const Covariance& covariance) {
-    for (std::size_t i = 0; i < kCovarianceNames.size(); ++i) {
-      pen_.put("\"");
-      pen_.put(kCovarianceNames[i]);
-      put_number("\":", covariance.term(i), kVarianceDecimals);
+    if (joint.ray) {
+      put_number<kRayDecimals>("\"rayX\":", joint.position.x());
+      put_number<kRayDecimals>("\"rayY\":", joint.position.y());
+      put_number<kRayDecimals>("\"rayZ\":", joint.position.z());
+    } else {
+      put_number<kPositionDecimals>("\"x\":", joint.position.x());
+      put_number<kPositionDecimals>("\"y\":", joint.position.y());
+      put_number<kPositionDecimals>("\"z\":", joint.position.z());
     }
   }
 
-  void put_number(std::string_view key, double value, int decimals) {
+  void put_covariance(const Covariance& covariance) {
+    put_number<kVarianceDecimals>("\"cxx\":", covariance.term(0));
+    put_number<kVarianceDecimals>("\"cxy\":", covariance.term(1));
+    put_number<kVarianceDecimals>("\"cxz\":", covariance.term(2));
+    put_number<kVarianceDecimals>("\"cyy\":", covariance.term(3));
+    put_number<kVarianceDecimals>("\"cyz\":", covariance.term(4));
+    put_number<kVarianceDecimals>("\"czz\":", covariance.term(5));
+  }
+
+  template <int kDecimals, class Text>
+  void put_number(const Text& key, double value) {
     pen_.put(key);
-    put_value(value, decimals);
+    put_value<kDecimals>(value);
     pen_.put(",");
   }
 
-  void put_value(double value, int decimals) {
-    pen_.put(linked_ ? "\"" : "");
-    pen_.put_decimal(value, decimals);
-    pen_.put(linked_ ? "\"" : "");
+  template <int kDecimals>
+  void put_value(double value) {
+    if (linked_) pen_.put("\"");
+    pen_.put_decimal<kDecimals>(value);
+    if (linked_) pen_.put("\"");
   }
 
   const FrameResource& frame_;
   const bool linked_;
   const std::string names_;
+  const std::string frame_name_;
+  std::string body_name_;  ///< Of the body that is being written.
   const std::string context_;
   const std::vector<std::string> sensors_;
   const ShareList share_list_;

@@ -7,6 +7,7 @@
 #include "common/body/bones.h"
 #include "common/resource/frame_facts.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/joint_texts.h"
 #include "common/resource/template_text.h"
 
 namespace chorus::resource {
@@ -50,7 +51,11 @@ class JsonTemplate : TemplateText {
     if (!text(",\"bodies\":[")) return false;
     if (text("]")) return true;
     do {
+      const std::size_t before = rest().size();
       if (frame_.bodies.size() == kMaxBodies || !body(frame_.bodies.emplace_back())) return false;
+      // Bodies are large, and moving them costs; most take as many bytes as the first.
+      if (frame_.bodies.size() == 1)
+        frame_.bodies.reserve(std::min(kMaxBodies, 2 + rest().size() / (before - rest().size())));
     } while (text(","));
     return text("]");
   }
@@ -69,17 +74,16 @@ class JsonTemplate : TemplateText {
     const auto twin = std::ranges::find(frame_.bodies, id, &BodyResource::id);
     if (&*twin != &body || !captured(body.captured)) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      if (!text(i == 0 ? ",\"joints\":{\"" : ",\"") || !text(kJointNames[i]) ||
-          !text("\":{\"@id\":\"") || !text(iri) || !text("#") || !text(kJointNames[i]) ||
-          !text("\",\"")) {
+      if (!text(i == 0 ? ",\"joints\":{" : ",") || !text(kJsonOpenings[i]) || !text(iri))
         return false;
-      }
-      // Recordings of earlier versions lack the type.
-      if (text("@type\":") && !text("\"Joint\",\"")) return false;
-      if (!joint(body.joints[i])) return false;
+      if (!text(kPlainTypes[i]) && !untyped(i)) return false;
+      if (!text("\"") || !joint(body.joints[i])) return false;
     }
     return text("}}");
   }
+
+  /// Recordings of earlier versions lack the type.
+  bool untyped(std::size_t i) { return text("#") && text(kJointNames[i]) && text("\","); }
 
   /// Reads an id; ids that a double cannot represent exactly are in quotes.
   bool id_number(std::uint64_t& id) {
@@ -94,7 +98,7 @@ class JsonTemplate : TemplateText {
     if (text("qx\":") && !orientation(joint.orientation)) return false;
     if (text("variance\":")) {
       double variance = 0.0;
-      if (!decimal(variance) || variance < 0.0 || !text(",\"")) return false;
+      if (!decimal<kVarianceDecimals>(variance) || variance < 0.0 || !text(",\"")) return false;
       joint.variance = variance;
     }
     if (text("cxx\":") && !covariance(joint.covariance)) return false;
@@ -118,16 +122,18 @@ class JsonTemplate : TemplateText {
 
   bool point(JointResource& joint) {
     auto& p = joint.position;
-    return text("x\":") && decimal(p.x()) && text(",\"y\":") && decimal(p.y()) && text(",\"z\":") &&
-           decimal(p.z());
+    return text("x\":") && decimal<kPositionDecimals>(p.x()) && text(",\"y\":") &&
+           decimal<kPositionDecimals>(p.y()) && text(",\"z\":") &&
+           decimal<kPositionDecimals>(p.z());
   }
 
   /// Starts after "ray".
   bool ray(JointResource& joint) {
     auto& p = joint.position;
     joint.measurement = Measurement::Ray;
-    return text("X\":") && decimal(p.x()) && text(",\"rayY\":") && decimal(p.y()) &&
-           text(",\"rayZ\":") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
+    return text("X\":") && decimal<kRayDecimals>(p.x()) && text(",\"rayY\":") &&
+           decimal<kRayDecimals>(p.y()) && text(",\"rayZ\":") && decimal<kRayDecimals>(p.z()) &&
+           std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
   /// Starts after the name of the covariance's first term; stops after the opening quote of the
@@ -136,7 +142,7 @@ class JsonTemplate : TemplateText {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {
       if (i > 0 && (!text(kCovarianceNames[i]) || !text("\":"))) return false;
-      if (!decimal(upper[i]) || !text(",\"")) return false;
+      if (!decimal<kVarianceDecimals>(upper[i]) || !text(",\"")) return false;
     }
     out = Covariance(upper);
     return out.plausible();
@@ -147,11 +153,13 @@ class JsonTemplate : TemplateText {
   }
 
   bool orientation(Eigen::Quaterniond& q) {
-    if (!decimal(q.x()) || !text(",\"qy\":") || !decimal(q.y()) || !text(",\"qz\":") ||
-        !decimal(q.z()) || !text(",\"qw\":") || !decimal(q.w()) || !text(",\"")) {
+    if (!decimal<kQuaternionDecimals>(q.x()) || !text(",\"qy\":") ||
+        !decimal<kQuaternionDecimals>(q.y()) || !text(",\"qz\":") ||
+        !decimal<kQuaternionDecimals>(q.z()) || !text(",\"qw\":") ||
+        !decimal<kQuaternionDecimals>(q.w()) || !text(",\"")) {
       return false;
     }
-    return std::abs(q.norm() - 1.0) <= kUnitTolerance;
+    return nearly_unit(q) || std::abs(q.norm() - 1.0) <= kUnitTolerance;
   }
 
   std::string_view names_;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/resource/fixed_point.h"
@@ -52,10 +53,18 @@ struct WritableJoint {
 /// The names of all sensors, in quotes.
 [[nodiscard]] std::vector<std::string> quoted_names(const FrameResource& frame);
 
-/// Appends to a string without checks: callers reserve the room with need() first.
+/// Appends to a text without checks: callers reserve the room with need() first.
+///
+/// The memory is the thread's and serves for the next text, too: getting some 100 kB from the
+/// system for each took longer than filling them.  What take() returns is as large as it has to be.
 class Pen {
  public:
-  explicit Pen(std::size_t expected) : text_(expected, '\0'), at_(text_.data()) {}
+  explicit Pen(std::size_t expected) : text_(std::exchange(spare(), {})), at_(text_.data()) {
+    need(expected);
+  }
+  ~Pen() { spare() = std::move(text_); }
+  Pen(const Pen&) = delete;
+  Pen& operator=(const Pen&) = delete;
 
   void need(std::size_t bytes) {
     const auto used = static_cast<std::size_t>(at_ - text_.data());
@@ -68,19 +77,33 @@ class Pen {
     std::memcpy(at_, text.data(), text.size());
     at_ += text.size();
   }
-  void put_decimal(double value, int decimals) { at_ = write_fixed(at_, value, decimals); }
+  template <std::size_t kSize>
+  void put(const char (&text)[kSize]) {
+    std::memcpy(at_, text, kSize - 1);
+    at_ += kSize - 1;
+  }
+  template <int kDecimals>
+  void put_decimal(double value) {
+    at_ = write_fixed<kDecimals>(at_, value);
+  }
   template <class Integer>
   void put_integer(Integer value) {
     constexpr int kLongest = 20;  // The digits and the sign of 64 bits.
     at_ = std::to_chars(at_, at_ + kLongest, value).ptr;
   }
   [[nodiscard]] std::string take() {
-    text_.resize(static_cast<std::size_t>(at_ - text_.data()));
-    return std::move(text_);
+    const std::string text(text_.data(), at_);
+    at_ = text_.data();
+    return text;
   }
 
  private:
-  std::string text_;
+  static std::vector<char>& spare() {
+    thread_local std::vector<char> bytes;
+    return bytes;
+  }
+
+  std::vector<char> text_;
   char* at_;
 };
 

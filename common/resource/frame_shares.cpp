@@ -12,6 +12,15 @@ bool is_whole(double sum, std::size_t count) {
   return std::abs(sum - 1.0) <= kShareTolerance * static_cast<double>(count);
 }
 
+/// What the product of two decimals may be off by.
+constexpr double kRounding = 1e-9;
+
+Shares all_of(std::uint64_t sensor) {
+  Shares::Hundredths hundredths{};
+  hundredths[static_cast<std::size_t>(std::countr_zero(sensor))] = Shares::kHundredths;
+  return Shares(hundredths);
+}
+
 }  // namespace
 
 ShareList::ShareList(const std::vector<std::string>& sensors)
@@ -38,21 +47,34 @@ std::span<const double> ShareList::of(const Shares& shares, std::uint64_t contri
 std::optional<Shares> ShareList::read(std::optional<std::span<const double>> list,
                                       std::uint64_t contributors) const {
   const auto count = static_cast<std::size_t>(std::popcount(contributors));
-  ShareTally tally;
-  if (!list) {
-    if (count == 1) tally.add(contributors, 1.0);
-    return tally.shares();
-  }
+  if (!list) return count == 1 ? all_of(contributors) : Shares();
   if (list->size() != count) return std::nullopt;
+  Shares::Hundredths hundredths{};
+  unsigned whole = 0;
+  bool exact = true;
   double sum = 0.0;
   auto share = list->begin();
   for (const std::size_t i : order_) {
     if ((contributors >> i & 1U) == 0) continue;
     if (!(*share >= 0.0 && *share <= 1.0)) return std::nullopt;
     sum += *share;
-    tally.add(std::uint64_t{1} << i, *share++);
+    const double scaled = *share++ * Shares::kHundredths;
+    hundredths[i] = static_cast<std::uint8_t>(scaled + 0.5);
+    whole += hundredths[i];
+    exact = exact && std::abs(scaled - hundredths[i]) < kRounding;
   }
+  if (exact && whole == Shares::kHundredths) return Shares(hundredths);
   if (!is_whole(sum, count)) return std::nullopt;
+  return in_proportion(*list, contributors);
+}
+
+/// Of another writer, with other decimals, or rounded so that they do not quite make 1.
+Shares ShareList::in_proportion(std::span<const double> list, std::uint64_t contributors) const {
+  ShareTally tally;
+  auto share = list.begin();
+  for (const std::size_t i : order_) {
+    if ((contributors >> i & 1U) != 0) tally.add(std::uint64_t{1} << i, *share++);
+  }
   return tally.shares();
 }
 

@@ -40,6 +40,9 @@ class ShareList {
                                            std::uint64_t contributors) const;
 
  private:
+  [[nodiscard]] Shares in_proportion(std::span<const double> list,
+                                     std::uint64_t contributors) const;
+
   std::vector<std::size_t> order_;  ///< Indices of the sensors, by id.
 };
 

@@ -5,6 +5,7 @@
 #include "common/body/bones.h"
 #include "common/resource/frame_parts.h"
 #include "common/resource/frame_shares.h"
+#include "common/resource/joint_texts.h"
 #include "common/resource/terms.h"
 #include "common/sensor/limits.h"
 
@@ -20,6 +21,7 @@ class TurtleFrame {
   TurtleFrame(const FrameResource& frame, const Place& place, std::size_t bodies)
       : frame_(frame),
         names_(place.up() + place.names),
+        frame_name_(names_ + "frames/" + std::to_string(frame.sequence)),
         sensors_(quoted_names(frame)),
         share_list_(frame.sensors),
         pen_(1024 + bodies * kBodyBytes) {
@@ -39,7 +41,7 @@ class TurtleFrame {
     pen_.put(" .\n");
     for (const BodyResource& body : frame_.bodies) {
       begin_body(body);
-      put_joint_links(body);
+      put_joint_links();
       put_joints(body);
     }
     return pen_.take();
@@ -51,9 +53,9 @@ class TurtleFrame {
     put_sequence();
     put_origin();
     pen_.put(" ;\n  ch:frame <");
-    put_frame_name();
+    pen_.put(frame_name_);
     pen_.put(">");
-    put_joint_links(body);
+    put_joint_links();
     put_joints(body);
     return pen_.take();
   }
@@ -63,7 +65,7 @@ class TurtleFrame {
     pen_.need(kJointBytes + names_.size() + sensor_bytes_ + frame_.source.size() * 6);
     pen_.put(kPrefixes);
     pen_.put("\n<");
-    put_frame_name();
+    pen_.put(frame_name_);
     pen_.put("> a ch:Frame");
     begun_ = true;
   }
@@ -84,7 +86,8 @@ class TurtleFrame {
     if (!begun_) pen_.put(kPrefixes);
     begun_ = true;
     pen_.put("\n<");
-    put_body_name(body);
+    body_name_ = body_name(body);
+    pen_.put(body_name_);
     pen_.put("> a ch:Skeleton ;\n  ch:of <");
     put_living_name(body);
     pen_.put("> ;\n  ch:bodyId ");
@@ -95,11 +98,11 @@ class TurtleFrame {
     }
     if (body.sides_confidence) {
       pen_.put(" ;\n  ch:sidesConfidence ");
-      pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
+      pen_.put_decimal<kConfidenceDecimals>(writable_confidence(*body.sides_confidence));
     }
     if (body.carried_for) {
       pen_.put(" ;\n  ch:carriedFor ");
-      pen_.put_decimal(writable_time(*body.carried_for), kTimeDecimals);
+      pen_.put_decimal<kTimeDecimals>(writable_time(*body.carried_for));
     }
     put_times(body.captured);
   }
@@ -133,23 +136,15 @@ class TurtleFrame {
     }
   }
 
-  void put_frame_name() {
-    pen_.put(names_);
-    pen_.put("frames/");
-    pen_.put_integer(frame_.sequence);
-  }
-
   void put_living_name(const BodyResource& body) {
     pen_.put(names_);
     pen_.put("skeletons/");
     pen_.put_integer(body.id);
   }
 
-  /// Writes the IRI of a body at this instant; its `ch:of` points to the body itself.
-  void put_body_name(const BodyResource& body) {
-    put_frame_name();
-    pen_.put("#");
-    pen_.put_integer(body.id);
+  /// The IRI of a body at this instant; its `ch:of` points to the body itself.
+  [[nodiscard]] std::string body_name(const BodyResource& body) const {
+    return frame_name_ + "#" + std::to_string(body.id);
   }
 
   void put_body_links() {
@@ -157,25 +152,20 @@ class TurtleFrame {
     for (const BodyResource& body : frame_.bodies) {
       pen_.need(kJointBytes + names_.size());
       pen_.put(before);
-      put_body_name(body);
+      pen_.put(body_name(body));
       pen_.put(">");
       before = ", <";
     }
   }
 
-  void put_joint_name(const BodyResource& body, std::string_view joint) {
-    put_body_name(body);
-    pen_.put("-");
-    pen_.put(joint);
-  }
-
-  void put_joint_links(const BodyResource& body) {
-    pen_.need(kJointCount * (96 + names_.size()));
+  /// Of the body that was begun last.
+  void put_joint_links() {
+    pen_.need(kJointCount * (96 + body_name_.size()));
     std::string_view before = " ;\n  ch:joint <";
-    for (const std::string_view joint : kJointNames) {
+    for (const JointText& link : kTurtleLinks) {
       pen_.put(before);
-      put_joint_name(body, joint);
-      pen_.put(">");
+      pen_.put(body_name_);
+      pen_.put(link);
       before = ", <";
     }
     pen_.put(" .\n");
@@ -185,10 +175,8 @@ class TurtleFrame {
     for (std::size_t i = 0; i < kJointCount; ++i) {
       pen_.need(kJointBytes + names_.size() + sensor_bytes_);
       pen_.put("\n<");
-      put_joint_name(body, kJointNames[i]);
-      pen_.put("> a ch:Joint ;\n  ch:jointName \"");
-      pen_.put(kJointNames[i]);
-      pen_.put("\" ;\n");
+      pen_.put(body_name_);
+      pen_.put(kTurtleHeads[i]);
       put_joint(writable(body.joints[i]), body.joints[i]);
       pen_.put(" .\n");
     }
@@ -197,15 +185,15 @@ class TurtleFrame {
   void put_joint(const WritableJoint& joint, const JointResource& origin) {
     if (joint.state != JointState::NotTracked) put_measured(joint);
     if (joint.has_orientation) {
-      put_number("  ch:qx ", joint.orientation.x(), kQuaternionDecimals);
-      put_number(" ; ch:qy ", joint.orientation.y(), kQuaternionDecimals);
-      put_number(" ; ch:qz ", joint.orientation.z(), kQuaternionDecimals);
-      put_number(" ; ch:qw ", joint.orientation.w(), kQuaternionDecimals);
+      put_number<kQuaternionDecimals>("  ch:qx ", joint.orientation.x());
+      put_number<kQuaternionDecimals>(" ; ch:qy ", joint.orientation.y());
+      put_number<kQuaternionDecimals>(" ; ch:qz ", joint.orientation.z());
+      put_number<kQuaternionDecimals>(" ; ch:qw ", joint.orientation.w());
       pen_.put(" ;\n");
     }
     pen_.put("  ch:state ch:");
     pen_.put(name_of(joint.state));
-    if (joint.variance) put_number(" ;\n  ch:variance ", *joint.variance, kVarianceDecimals);
+    if (joint.variance) put_number<kVarianceDecimals>(" ;\n  ch:variance ", *joint.variance);
     if (joint.covariance.known()) put_covariance(joint.covariance);
     if (joint.state != JointState::NotTracked) put_origin_of(origin);
   }
@@ -223,38 +211,45 @@ class TurtleFrame {
     std::string_view before = " ;\n  ch:shares (";
     const auto list = share_list_.of(joint.shares, joint.contributors, values);
     for (const double share : list) {
-      put_number(before, share, kShareDecimals);
+      put_number<kShareDecimals>(before, share);
       before = " ";
     }
     if (!list.empty()) pen_.put(")");
-    if (joint.age) put_number(" ;\n  ch:age ", writable_time(*joint.age), kTimeDecimals);
+    if (joint.age) put_number<kTimeDecimals>(" ;\n  ch:age ", writable_time(*joint.age));
   }
 
   void put_measured(const WritableJoint& joint) {
-    const int decimals = joint.ray ? kRayDecimals : kPositionDecimals;
-    put_number(joint.ray ? "  ch:rayX " : "  ch:x ", joint.position.x(), decimals);
-    put_number(joint.ray ? " ; ch:rayY " : " ; ch:y ", joint.position.y(), decimals);
-    put_number(joint.ray ? " ; ch:rayZ " : " ; ch:z ", joint.position.z(), decimals);
+    if (joint.ray) {
+      put_number<kRayDecimals>("  ch:rayX ", joint.position.x());
+      put_number<kRayDecimals>(" ; ch:rayY ", joint.position.y());
+      put_number<kRayDecimals>(" ; ch:rayZ ", joint.position.z());
+    } else {
+      put_number<kPositionDecimals>("  ch:x ", joint.position.x());
+      put_number<kPositionDecimals>(" ; ch:y ", joint.position.y());
+      put_number<kPositionDecimals>(" ; ch:z ", joint.position.z());
+    }
     pen_.put(" ;\n");
   }
 
   void put_covariance(const Covariance& covariance) {
-    std::string_view before = " ;\n  ch:";
-    for (std::size_t i = 0; i < kCovarianceNames.size(); ++i) {
-      pen_.put(before);
-      pen_.put(kCovarianceNames[i]);
-      put_number(" ", covariance.term(i), kVarianceDecimals);
-      before = " ; ch:";
-    }
+    put_number<kVarianceDecimals>(" ;\n  ch:cxx ", covariance.term(0));
+    put_number<kVarianceDecimals>(" ; ch:cxy ", covariance.term(1));
+    put_number<kVarianceDecimals>(" ; ch:cxz ", covariance.term(2));
+    put_number<kVarianceDecimals>(" ; ch:cyy ", covariance.term(3));
+    put_number<kVarianceDecimals>(" ; ch:cyz ", covariance.term(4));
+    put_number<kVarianceDecimals>(" ; ch:czz ", covariance.term(5));
   }
 
-  void put_number(std::string_view before, double value, int decimals) {
+  template <int kDecimals, class Text>
+  void put_number(const Text& before, double value) {
     pen_.put(before);
-    pen_.put_decimal(value, decimals);
+    pen_.put_decimal<kDecimals>(value);
   }
 
   const FrameResource& frame_;
   const std::string names_;
+  const std::string frame_name_;
+  std::string body_name_;  ///< Of the body that was begun last.
   const std::vector<std::string> sensors_;
   const ShareList share_list_;
   std::size_t sensor_bytes_ = 0;

@@ -33,7 +33,7 @@ bool TemplateText::shares(std::string_view comma, std::string_view close, const 
   ShareList::Values values;
   std::size_t count = 0;
   do {
-    if (count == values.size() || !decimal(values[count++])) return false;
+    if (count == values.size() || !decimal<kShareDecimals>(values[count++])) return false;
   } while (text(comma));
   const auto read = list.read(std::span<const double>(values).first(count), joint.contributors);
   if (!read || !text(close)) return false;
@@ -128,13 +128,17 @@ bool TemplateText::subset(const std::vector<std::string>& names, std::string_vie
   const auto closes = [this](const std::string& name) {
     return rest().starts_with(name) && rest().substr(name.size()).starts_with('"');
   };
+  std::size_t i = 0;  // The search goes on behind the last name, because they are in order.
   do {
-    std::size_t i = 0;
     if (!text("\"")) return false;
-    while (i < names.size() && !closes(names[i])) ++i;
-    if (i == names.size()) return false;
+    std::size_t left = names.size();
+    for (; left > 0; --left, ++i) {
+      if (i == names.size()) i = 0;
+      if (closes(names[i])) break;
+    }
+    if (left == 0) return false;
     at_ += names[i].size() + 1;
-    bits |= std::uint64_t{1} << i;
+    bits |= std::uint64_t{1} << i++;
   } while (text(comma));
   return true;
 }

@@ -13,11 +13,19 @@
 #include <string_view>
 #include <vector>
 
+#include "common/resource/fixed_point.h"
 #include "common/resource/frame_resource.h"
 #include "common/resource/frame_shares.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::resource {
+
+/// True for quaternions whose length is about 1, as is that of nearly all.  Term by term: norm()
+/// loads two terms at once, and waits until they are stored.
+inline bool nearly_unit(const Eigen::Quaterniond& q) {
+  const double squared = q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w();
+  return squared > 0.9 && squared < 1.1;
+}
 
 class TemplateText {
  public:
@@ -34,6 +42,16 @@ class TemplateText {
     if (static_cast<std::size_t>(end_ - at_) < expected.size()) return false;
     if (std::memcmp(at_, expected.data(), expected.size()) != 0) return false;
     at_ += expected.size();
+    return true;
+  }
+
+  /// The same for a literal, whose size is known when compiling.
+  template <std::size_t kSize>
+  bool text(const char (&expected)[kSize]) {
+    constexpr std::size_t kBytes = kSize - 1;
+    if (static_cast<std::size_t>(end_ - at_) < kBytes) return false;
+    if (std::memcmp(at_, expected, kBytes) != 0) return false;
+    at_ += kBytes;
     return true;
   }
 
@@ -62,6 +80,15 @@ class TemplateText {
 
   /// A decimal such as "-1.2345", at most kMaxCoordinate in size; `out` gets the nearest double.
   bool decimal(double& out);
+
+  /// The same, fastest for a value below ten with `kDecimals` decimals: nearly all are.
+  template <int kDecimals>
+  bool decimal(double& out) {
+    const char* const next = read_short_fixed<kDecimals>(at_, end_, out);
+    if (next == nullptr) return decimal(out);
+    at_ = next;
+    return true;
+  }
 
   /// A name of [A-Za-z0-9_-] in quotes, such as an id.
   bool name(std::string_view& out);

@@ -19,23 +19,22 @@ void ShareTally::add(std::uint64_t sensor, double weight) {
 }
 
 Shares ShareTally::shares() const {
-  Shares out;
   double total = 0.0;
   for (std::uint64_t left = sensors_; left != 0; left &= left - 1)
     total += weights_[index_of_lowest(left)];
-  if (!(total > 0.0)) return out;
-  out.known_ = true;
+  if (!(total > 0.0)) return {};
+  Shares::Hundredths hundredths{};
   // Rounding the running sum, not each share, keeps the sum exact.
   double sum = 0.0;
   long before = 0;
   for (std::uint64_t left = sensors_; left != 0; left &= left - 1) {
     const std::size_t i = index_of_lowest(left);
     sum += weights_[i];
-    const long now = std::lround(Shares::kWhole * (sum / total));
-    out.hundredths_[i] = static_cast<std::uint8_t>(now - before);
+    const long now = std::lround(Shares::kHundredths * (sum / total));
+    hundredths[i] = static_cast<std::uint8_t>(now - before);
     before = now;
   }
-  return out;
+  return Shares(hundredths);
 }
 
 }  // namespace chorus

@@ -20,13 +20,17 @@ class Shares {
   /// In [0, 1]; zero for every sensor if the shares are not known.
   [[nodiscard]] double of(std::size_t sensor) const { return hundredths_[sensor] / kWhole; }
 
+  /// Per sensor, in hundredths that sum to kHundredths.
+  static constexpr unsigned kHundredths = 100;
+  using Hundredths = std::array<std::uint8_t, kMaxSensors>;
+  explicit Shares(const Hundredths& hundredths) : hundredths_(hundredths), known_(true) {}
+
   bool operator==(const Shares&) const = default;
 
  private:
-  friend class ShareTally;
-  static constexpr double kWhole = 100.0;
+  static constexpr double kWhole = kHundredths;
 
-  std::array<std::uint8_t, kMaxSensors> hundredths_{};
+  Hundredths hundredths_{};
   bool known_ = false;
 };
 

@@ -79,7 +79,8 @@ resource::Node sensor_node(const SensorStatus& sensor, std::string id) {
 }
 
 SensorResources::SensorResources(service::Serving serving, const std::vector<SensorId>& sensors)
-    : serving_(std::move(serving)), list_(std::make_shared<http::LiveDocument>()) {
+    : serving_(std::make_shared<const service::Serving>(std::move(serving))),
+      list_(std::make_shared<http::LiveDocument>()) {
   for (const SensorId& sensor : sensors) frames_[sensor] = std::make_shared<http::LiveDocument>();
 }
 
@@ -98,10 +99,10 @@ void SensorResources::publish(const std::vector<SensorStatus>& sensors) {
   {
     const std::scoped_lock lock(mutex_);
     sensors_ = sensors;
-    options.version = serving_.run + "-" + std::to_string(++version_);
+    options.version = serving_->run + "-" + std::to_string(++version_);
   }
   list_->publish(resource::document_of(std::move(node), std::move(options),
-                                       serving_.place("sensors/"), resource::Kind::Container));
+                                       serving_->place("sensors/"), resource::Kind::Container));
 }
 
 std::shared_ptr<http::LiveDocument> SensorResources::live_of(const SensorId& sensor) {
@@ -112,12 +113,14 @@ std::shared_ptr<http::LiveDocument> SensorResources::live_of(const SensorId& sen
 }
 
 void SensorResources::relay(const SensorId& sensor, resource::FramePtr frame) {
-  const auto live = live_of(sensor);
-  const std::string folder = "sensors/" + sensor.str() + "/";
-  auto options = resource::latest_options(*frame, serving_.run);
-  options.content_location.clear();
-  live->publish(resource::frame_document(std::move(frame), serving_.place(folder + "frame", folder),
-                                         std::move(options)));
+  // The document may outlive this object, and is rarely asked for.
+  live_of(sensor)->publish_lazily([serving = serving_, sensor, frame = std::move(frame)] {
+    const std::string folder = "sensors/" + sensor.str() + "/";
+    auto options = resource::latest_options(*frame, serving->run);
+    options.content_location.clear();
+    return resource::frame_document(frame, serving->place(folder + "frame", folder),
+                                    std::move(options));
+  });
 }
 
 Result<http::DocumentPtr> SensorResources::one(const std::string& id) const {
@@ -128,9 +131,9 @@ Result<http::DocumentPtr> SensorResources::one(const std::string& id) const {
   if (it == sensors_.end()) {
     return fail(ErrorCode::NotFound, "sensors/" + id, "no sensor of this id is polled");
   }
-  options.version = serving_.run + "-" + std::to_string(version_);
+  options.version = serving_->run + "-" + std::to_string(version_);
   return resource::document_of(sensor_node(*it, ""), std::move(options),
-                               serving_.place("sensors/" + id));
+                               serving_->place("sensors/" + id));
 }
 
 Result<http::DocumentPtr> SensorResources::frame_of(const std::string& id) const {
@@ -159,11 +162,11 @@ Result<http::DocumentPtr> SensorResources::floor_of(const std::string& id) const
     return fail(ErrorCode::NotFound, path, "no sensor of this id has told where its floor is");
   const FloorPlane& floor = it->second;
   http::DocumentOptions options;
-  options.version = serving_.run;
+  options.version = serving_->run;
   for (const double v : {floor.normal.x(), floor.normal.y(), floor.normal.z(), floor.offset})
     options.version += "-" + log::number_text(v);
   return resource::document_of(resource::floor_plane_node(floor, resource::SpaceKind::Sensor),
-                               std::move(options), serving_.place(path));
+                               std::move(options), serving_->place(path));
 }
 
 void SensorResources::add_routes(http::Router& router) {

@@ -40,7 +40,7 @@ class SensorResources {
   [[nodiscard]] Result<http::DocumentPtr> frame_of(const std::string& id) const;
   [[nodiscard]] Result<http::DocumentPtr> floor_of(const std::string& id) const;
 
-  service::Serving serving_;
+  std::shared_ptr<const service::Serving> serving_;
   std::shared_ptr<http::LiveDocument> list_;
   mutable std::mutex mutex_;
   std::vector<SensorStatus> sensors_;

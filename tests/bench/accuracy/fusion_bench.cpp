@@ -234,6 +234,7 @@ bool run_chosen(Report& report) {
 void list_cases() {
   for (const FusionCase& each : all_cases()) std::cout << each.name << '\n';
   for (const PredictionCase& each : prediction_cases()) std::cout << each.name << '\n';
+  for (const std::string& name : cost_cases()) std::cout << name << '\n';
 }
 
 void explain(Report& report) {
@@ -268,6 +269,7 @@ Result<void> run_fusion(Report& report) {
     list_cases();
     return {};
   }
+  if (std::ranges::count(cost_cases(), report.only()) > 0) return measure_cost(report);
   if (report.only().empty()) measure_gauss(report);
   if (!run_chosen(report)) {
     return fail(ErrorCode::InvalidArgument, "--only",

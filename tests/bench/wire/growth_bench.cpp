@@ -1,5 +1,7 @@
 // chorus-bench growth: measures what many clients and many sensors cost the fusion server.
 #include <chrono>
+#include <iostream>
+#include <string>
 #include <thread>
 
 #include "tests/bench/live/live_cell.h"
@@ -93,12 +95,30 @@ Result<void> sensors_64(Report& report, double run_seconds) {
   return {};
 }
 
+struct GrowthCase {
+  const char* name;
+  Result<void> (*run)(Report& report, double run_seconds);
+};
+constexpr GrowthCase kGrowthCases[] = {{"readers-300", readers_300}, {"sensors-64", sensors_64}};
+
 }  // namespace
 
 Result<void> run_growth(Report& report) {
+  if (report.list()) {
+    for (const GrowthCase& each : kGrowthCases) std::cout << each.name << '\n';
+    return {};
+  }
   const double run_seconds = report.quick() ? 3.0 : 20.0;
-  if (auto done = readers_300(report, run_seconds); !done) return done;
-  if (auto done = sensors_64(report, run_seconds); !done) return done;
+  bool any = false;
+  for (const GrowthCase& each : kGrowthCases) {
+    if (!report.only().empty() && report.only() != each.name) continue;
+    any = true;
+    if (auto done = each.run(report, run_seconds); !done) return done;
+  }
+  if (!any) {
+    return fail(ErrorCode::InvalidArgument, "--only",
+                "there is no case \"" + report.only() + "\"; --list shows all");
+  }
   report.note(
       "fusion_cores: user and system time of chorus-fusion.  readers_cores: what it uses more than "
       "without readers.  Six people before three sensors; 64 sensors before one person.  Sensors "

@@ -13,6 +13,28 @@ TEST(LiveDocument, IsNullUntilTheFirstPublish) {
   EXPECT_EQ(live.current(), first);
 }
 
+TEST(LiveDocument, MakesADocumentOnceWhenItIsAskedFor) {
+  LiveDocument live;
+  int made = 0;
+  live.publish_lazily([&] { return ++made, make_document("text/plain", "1", {}); });
+  EXPECT_EQ(made, 0);
+  const auto first = live.current();
+  EXPECT_NE(first, nullptr);
+  EXPECT_EQ(live.current(), first);
+  EXPECT_EQ(made, 1);
+}
+
+TEST(LiveDocument, TheLastPublishedCounts) {
+  LiveDocument live;
+  const auto ready = make_document("text/plain", "ready", {});
+  const auto lazy = make_document("text/plain", "lazy", {});
+  live.publish_lazily([&] { return lazy; });
+  live.publish(ready);
+  EXPECT_EQ(live.current(), ready);
+  live.publish_lazily([&] { return lazy; });
+  EXPECT_EQ(live.current(), lazy);
+}
+
 TEST(LiveDocument, TellsEverySubscriberAfterTheChange) {
   LiveDocument live;
   std::vector<DocumentPtr> seen;

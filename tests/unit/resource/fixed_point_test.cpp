@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <random>
+#include <string>
 
 namespace chorus::resource {
 namespace {
@@ -48,6 +50,39 @@ TEST(FixedPoint, WhatItWritesReadsBackWithinHalfAUnit) {
     const double value = any(random);
     EXPECT_NEAR(*read_decimal(*fixed(value, 5)), value, 0.5e-5 + 1e-12);
   }
+}
+
+/// Reads four decimals from `text`, behind which a document goes on.
+std::optional<double> short_fixed(const std::string& text) {
+  const std::string document = text + " ;\n  ch:y 1.0";
+  double value = 0.0;
+  const char* const end = document.data() + document.size();
+  const char* const next = read_short_fixed<4>(document.data(), end, value);
+  if (next == nullptr) return std::nullopt;
+  EXPECT_EQ(next, document.data() + text.size()) << text;
+  return value;
+}
+
+TEST(ReadShortFixed, GivesTheDoubleThatParsingGives) {
+  for (int units = -99'999; units <= 99'999; units += 7) {
+    const std::string text = *fixed(units / 1e4, 4);
+    EXPECT_EQ(short_fixed(text), read_decimal(text)) << text;
+  }
+  EXPECT_TRUE(std::signbit(*short_fixed("-0.0000")));
+}
+
+TEST(ReadShortFixed, LeavesEveryOtherSpellingToTheParser) {
+  for (const char* const text :
+       {"12.3456", "1.23456", "1.234", ".1234", "1,2345", "1.23:5", "1.2/45", "+1.2345", "--1.2345",
+        "1.\xB1\xB2\xB3\xB4", "x.1234", "/.1234"})
+    EXPECT_EQ(short_fixed(text), std::nullopt) << text;
+}
+
+TEST(ReadShortFixed, ReadsNothingBehindTheText) {
+  const std::string text = "1.23456789 ;\n";
+  double value = 0.0;
+  EXPECT_EQ(read_short_fixed<8>(text.data(), text.data() + 12, value), text.data() + 10);
+  EXPECT_EQ(read_short_fixed<8>(text.data(), text.data() + 11, value), nullptr);
 }
 
 TEST(ParseNumber, TakesTheWholeTextOrNothing) {

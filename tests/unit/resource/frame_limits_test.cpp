@@ -85,7 +85,7 @@ TEST(Pen, GrowsAsItIsAskedTo) {
     pen.put("x=");
     pen.put_integer(i);
     pen.put("");
-    pen.put_decimal(-0.5, 4);
+    pen.put_decimal<4>(-0.5);
   }
   const std::string text = pen.take();
   EXPECT_TRUE(text.starts_with("x=0-0.5000x=1-0.5000"));
