@@ -17,6 +17,9 @@ struct BodyModel {
   double turn = deg(20);
   double turn_from = deg(40);
   double turn_full = deg(90);
+  /// A view whose body is found turned is wrong in other ways too: for each radian beyond a slight
+  /// turn its points have this much more standard deviation [m / rad].
+  double turn_doubt = 0.16;
   /// Standard deviation of a bone's length [m], and the time over which the length is learned.
   double bone = 0.003;
   Duration bone_memory = std::chrono::seconds(60);

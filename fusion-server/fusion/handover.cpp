@@ -43,8 +43,11 @@ Eigen::Vector3d step_back(std::size_t joint, const std::vector<Twice>& sensors) 
     if (now.state != before.state) {
       changed = true;
     } else {
-      sum += now.weight * (now.off - before.off);
-      weights += now.weight;
+      // A view that was an outlier, or is one now, has a small weight at one of both instants.  Its
+      // way between them is not the joint's.
+      const double weight = std::min(now.weight, before.weight);
+      sum += weight * (now.off - before.off);
+      weights += weight;
     }
   }
   if (!changed || !(weights > 0)) return Eigen::Vector3d::Zero();

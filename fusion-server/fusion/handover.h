@@ -4,7 +4,8 @@
 // At such an instant only the views that stay tell how the joint has moved; how far the mean moved
 // beyond that becomes an offset of the joint, which fades:                docs/papers/body.md (15)
 //   o <- (o + sum w (d - d') / sum w) e^(-dt / tau)
-// over the views that stay, d and d' being a view's distance from the mean now and an instant ago.
+// over the views that stay, d and d' being a view's distance from the mean now and an instant ago,
+// w the smaller of its weights then and now.
 #pragma once
 
 #include <array>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/least_squares.h"
 
@@ -11,7 +12,9 @@ namespace {
 
 constexpr int kRounds = 3;
 constexpr int kFirstWeighings = 5;  // re-weightings of a joint's views, starting from their mean
-constexpr int kWeighings = 2;       // the same, starting from the body held by its bones
+// [rad]; noise alone has a view turned by so much.
+constexpr double kSlightTurn = deg(5);
+constexpr int kWeighings = 2;  // the same, starting from the body held by its bones
 
 Eigen::Matrix3d round_covariance(double variance) { return variance * Eigen::Matrix3d::Identity(); }
 
@@ -173,6 +176,20 @@ void SightedBody::mend(const PlacedBody& body, const BodyModel& model) {
     for (JointView& view : sights_[j].views) {
       if (view.joint.seen()) view.joint.position = places[view.view][j];
     }
+    if (sights_[j].round) doubt(sights_[j], model);
+  }
+}
+
+/// Adds to the variances of turned views, in place of what was added in the previous round.
+void SightedBody::doubt(Sights& sights, const BodyModel& model) const {
+  for (std::size_t v = 0; v < sights.views.size(); ++v) {
+    const double turn = std::abs(misfits_[sights.views[v].view].turn);
+    const double sigma = model.turn_doubt * std::max(0.0, turn - kSlightTurn);
+    Weighing& weighing = sights.weighings[v];
+    const double more = sigma * sigma - weighing.doubt;
+    weighing.variance += more;
+    weighing.stated += more;
+    weighing.doubt += more;
   }
 }
 

@@ -60,6 +60,7 @@ class SightedBody {
     double stated = 0.0;                             ///< Variance per axis, with the whole pose
                                                      ///< error [m^2].
     Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< The bias that was subtracted [m].
+    double doubt = 0.0;  ///< The part of both variances that is due to the view's turn [m^2].
     double trust = 1.0;
     double pull = 0.0;  ///< In proportion to the view's share in the position.
   };
@@ -79,6 +80,7 @@ class SightedBody {
   [[nodiscard]] PlacedJoint robust_mean(Sights& sights, const PlacedJoint* start) const;
   [[nodiscard]] PlacedJoint robust_squares(Sights& sights, const PlacedJoint& expected) const;
   void mend(const PlacedBody& body, const BodyModel& model);
+  void doubt(Sights& sights, const BodyModel& model) const;
 
   const FusionConfig& config_;
   const Person& person_;

@@ -135,6 +135,7 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read_deg("turn_deg", out.turn, 0.0, 90.0);
   reader.read_deg("turn_from_deg", out.turn_from, 0.0, 90.0);
   reader.read_deg("turn_full_deg", out.turn_full, 0.0, 90.0);
+  reader.read("turn_doubt_m_per_rad", out.turn_doubt, 0.0, 10.0);
   reader.read("bone_m", out.bone, 0.0, 1.0);
   reader.read_s("bone_memory_s", out.bone_memory, std::chrono::seconds(1),
                 std::chrono::seconds(3600));

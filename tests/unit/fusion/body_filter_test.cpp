@@ -115,6 +115,22 @@ TEST(BodyFilter, AViewFromTheSideMayHaveTheBodyTurned) {
   EXPECT_LT(error(deg(20)), 0.5 * error(0.0));
 }
 
+TEST(BodyFilter, ATurnedViewIsDoubtedInAllItsJoints) {
+  const auto exact = standing();
+  auto wrong = turned(exact, deg(25));
+  wrong[Head].position.z() += 0.03;
+  const auto head = [&](const Skeleton<WorldSpace>& seen, double doubt) {
+    Room room;
+    room.config.body.turn_doubt = doubt;
+    const FusedBody body = room.at(0, {view_of(1, exact), view_of(2, seen), view_of(3, exact)});
+    return (body.skeleton[Head].position - exact[Head].position).norm();
+  };
+  EXPECT_LT(head(wrong, 0.16), 0.7 * head(wrong, 0.0));
+  auto upright = exact;
+  upright[Head].position.z() += 0.03;
+  EXPECT_NEAR(head(upright, 0.16), head(upright, 0.0), 1e-4);
+}
+
 TEST(BodyFilter, BonesHoldAJointAtTheLengthThatWasLearned) {
   const auto exact = standing();
   const auto length_after = [&](double bone) {

@@ -75,6 +75,13 @@ TEST(Handover, ViewsThatStayMoveTheJointAtOnce) {
   EXPECT_NEAR(placed_after(handover, {{1, 0.5}, {2, 0.7}}, kBetween), 0.6, 1e-12);
 }
 
+TEST(Handover, AnOutlierThatReturnsAsAViewBeginsMovesNobody) {
+  Handover handover;
+  const PlacedSight outlier{2, 1.5, 0.01};
+  EXPECT_NEAR(placed_after(handover, {{1, 0.0}, outlier}), 0.015, 0.001);
+  EXPECT_NEAR(placed_after(handover, {{1, 0.0}, {2, 0.0}, {3, 0.06}}), 0.0, 0.01);
+}
+
 TEST(Handover, AJointThatNobodySawBeforeIsWhereItsViewsHaveIt) {
   Handover handover;
   handover.take({}, 0.0, kHandoverTime);
