@@ -6,6 +6,8 @@
 #   deploy/make-packages.sh --no-deps      only our packages, without those that they depend on
 #   deploy/make-packages.sh --tree DIR     from what this build tree already has, such as build/dev; builds nothing
 #   deploy/make-packages.sh --version V    the packages' version (default: of the project and the commit)
+#   deploy/make-packages.sh --arch arm64   chorus-sensor and chorus-common for arm64, compiled on amd64 in a Debian root (as root),
+#                                          into var/packages-arm64
 #
 # On the host: copy the folder there, then sudo DIR/install.sh chorus-sensor (or chorus-fusion, chorus-tools).
 set -euo pipefail
@@ -15,12 +17,15 @@ usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 step() { printf '\n== %s\n' "$*"; }
 fail() { printf '\nmake-packages: %s\n' "$*" >&2; exit 1; }
 
-out=var/packages deps=yes tree='' version=''
+own_arch=$(dpkg --print-architecture)
+readonly own_arch
+arch=$own_arch out='' deps=yes tree='' version=''
 while (( $# > 0 )); do
   case $1 in
     --out) out=${2:?--out needs a folder}; shift ;;
     --version) version=${2:?--version needs one}; shift ;;
     --no-deps) deps='' ;;
+    --arch) arch=${2:?--arch needs arm64}; shift ;;
     --tree) tree=${2:?--tree needs a build folder}; shift ;;
     -h|--help) usage; exit 0 ;;
     *) usage >&2; fail "unknown option $1" ;;
@@ -51,9 +56,15 @@ download_dependencies() {
   local scratch; scratch=$(mktemp -d)
   mkdir -p "$scratch/archives/partial"
   : > "$scratch/status"
-  apt-get -qq -y --no-install-recommends --download-only -o Debug::NoLocking=true -o APT::Sandbox::User=root \
-    -o "Dir::State::Status=$scratch/status" -o "Dir::Cache::Archives=$scratch/archives" \
-    -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= install "$@"
+  local apt=(apt-get -qq -y --no-install-recommends -o Debug::NoLocking=true -o APT::Sandbox::User=root
+    -o "Dir::State::Status=$scratch/status" -o "Dir::Cache::Archives=$scratch/archives"
+    -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache=)
+  if [[ $arch != "$own_arch" ]]; then  # with lists of its own, because the system's are of other architectures
+    mkdir -p "$scratch/lists/partial"
+    apt+=(-o "APT::Architecture=$arch" -o "APT::Architectures=$arch" -o "Dir::State::Lists=$scratch/lists")
+    "${apt[@]}" update
+  fi
+  "${apt[@]}" --download-only install "$@"
   local deb priority
   for deb in "$scratch"/archives/*.deb; do
     priority=$(dpkg-deb -f "$deb" Priority)
@@ -63,22 +74,30 @@ download_dependencies() {
   rm -rf "$scratch"
 }
 
+preset=package programs=(chorus-sensor chorus-sensor-small chorus-fusion chorus chorus-host)
+inside=()  # goes before what must run where the compiler is
+if [[ $arch != "$own_arch" ]]; then
+  [[ $arch == arm64 ]] || fail "packages can be made for $own_arch and, cross-compiled, for arm64"
+  preset=package-arm64 programs=(chorus-sensor-small chorus-host)
+  inside=(deploy/package/cross-root.sh)
+fi
+[[ -n "$out" ]] || { out=var/packages; [[ $arch == "$own_arch" ]] || out+=-$arch; }
 [[ -n "$version" ]] || version=$(own_version)
 command -v dpkg-scanpackages >/dev/null || fail "dpkg-scanpackages is missing: apt install dpkg-dev"
-page_files
+[[ $arch != "$own_arch" ]] || page_files
 if [[ -z "$tree" ]]; then
-  tree=build/package
-  step "build of $version"
+  tree=build/$preset
+  step "build of $version for $arch"
   launcher=()
   export CCACHE_SLOPPINESS=pch_defines,time_macros
-  command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  cmake --preset package "${launcher[@]}" -DCMAKE_SKIP_RPATH=ON --log-level=WARNING >/dev/null
-  cmake --build "$tree" -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-sensor-small chorus-fusion chorus chorus-host pages
+  "${inside[@]}" which ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  "${inside[@]}" cmake --preset "$preset" "${launcher[@]}" -DCMAKE_SKIP_RPATH=ON --log-level=WARNING >/dev/null
+  "${inside[@]}" cmake --build "$tree" -j "$(deploy/build-jobs.sh)" --target "${programs[@]}" pages
 fi
 
 step "packages"
 rm -rf "$tree/packages"
-(cd "$tree" && cpack --config CPackConfig.cmake -D CPACK_PACKAGE_VERSION="$version" >cpack.log 2>&1) || { tail -20 "$tree/cpack.log" >&2; fail "cpack failed"; }
+"${inside[@]}" cpack --config "$tree/CPackConfig.cmake" -D CPACK_PACKAGE_VERSION="$version" >"$tree/cpack.log" 2>&1 || { tail -20 "$tree/cpack.log" >&2; fail "cpack failed"; }
 rm -rf "$out"
 mkdir -p "$out/debug"
 out=$(realpath "$out")  # absolute, because apt takes a path without a leading / for the name of a package
@@ -90,7 +109,7 @@ if [[ -n "$deps" ]]; then
 fi
 
 . /etc/os-release
-echo "$ID-$VERSION_ID-$(dpkg --print-architecture)" > "$out/SYSTEM"
+echo "$ID-$VERSION_ID-$arch" > "$out/SYSTEM"
 cp deploy/package/install.sh "$out/"
 (cd "$out" && dpkg-scanpackages --multiversion . /dev/null > Packages 2>/dev/null)
 ls "$out" | grep -c '\.deb$' | sed "s|\$| packages in $out: $(du -sh "$out" | cut -f1)|"

@@ -80,9 +80,21 @@ read -r fusion_host fusion_address < <(printf '%s\n' "${hosts[@]}" | awk '$1 == 
 
 reach() { on "$1" true </dev/null || fail "$1 does not let us in: try ssh $1 true, and copy your key there (ssh-copy-id)"; }
 
+# Prints the folder of packages for a host: that of the inventory, or the one beside it for the host's architecture.
+packages_for() {  # SSH
+  local arch made_for folder
+  arch=$(on "$1" "dpkg --print-architecture" </dev/null)
+  made_for=$(cat "$packages/SYSTEM")
+  folder=$packages
+  [[ $made_for == *-"$arch" ]] || folder+=-$arch
+  [[ -x "$folder/install.sh" ]] || fail "$1 is $arch, and there are no packages in $folder: deploy/make-packages.sh --arch $arch makes them"
+  echo "$folder"
+}
+
 install_on() {  # SSH PACKAGE...
-  local host=$1; shift
-  tar -C "$packages" -cf - --exclude=./debug . | on "$host" "rm -rf $there && mkdir -p $there && tar -C $there -xf -"
+  local host=$1 folder; shift
+  folder=$(packages_for "$host")
+  tar -C "$folder" -cf - --exclude=./debug . | on "$host" "rm -rf $there && mkdir -p $there && tar -C $there -xf -"
   on "$host" "$there/install.sh $*" </dev/null
 }
 
@@ -160,6 +172,7 @@ lay_out() {
   for entry in "${hosts[@]}"; do
     read -r role host address id device <<<"$entry"
     reach "$host"
+    packages_for "$host" >/dev/null
   done
   step "authority $fusion_host"
   lay_out_authority "$fusion_host" "$fusion_address"

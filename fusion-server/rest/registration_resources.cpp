@@ -10,6 +10,7 @@
 #include "common/base/units.h"
 #include "common/http/status.h"
 #include "fusion-server/wire/registration_nodes.h"
+#include "fusion-server/wire/session_limits.h"
 
 namespace chorus::rest {
 namespace {
@@ -48,9 +49,9 @@ Result<SessionRequest> parse_session_request(std::string_view body, SessionReque
   for (const auto& [key, value] : json->items()) {
     if (key == "seconds") {
       const double wanted = value.is_number() ? value.get<double>() : std::nan("");
-      if (!(wanted >= kMinSession && wanted <= kMaxSession)) {
-        return wrong("\"seconds\" is a number from " + log::number_text(kMinSession) + " to " +
-                     log::number_text(kMaxSession));
+      if (!(wanted >= wire::kMinSession && wanted <= wire::kMaxSession)) {
+        return wrong("\"seconds\" is a number from " + log::number_text(wire::kMinSession) +
+                     " to " + log::number_text(wire::kMaxSession));
       }
       fallback.target = from_seconds(wanted);
     } else if (key == "adopt") {

@@ -15,10 +15,6 @@
 
 namespace chorus::rest {
 
-/// Limits of a session's length [s]: shorter walks cannot be solved, longer ones waste memory.
-inline constexpr double kMinSession = 8.0;
-inline constexpr double kMaxSession = 300.0;
-
 /// What a client asks for when it starts a session.
 struct SessionRequest {
   Duration target = std::chrono::seconds(30);

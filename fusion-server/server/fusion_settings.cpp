@@ -7,8 +7,8 @@
 #include "common/base/config_reader.h"
 #include "common/sensor/limits.h"
 #include "common/service/http_config.h"
-#include "fusion-server/rest/registration_resources.h"
 #include "fusion-server/server/facing_settings.h"
+#include "fusion-server/wire/session_limits.h"
 
 namespace chorus::server {
 namespace {
@@ -238,7 +238,7 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
   auto& [live, at_start] = out;
   reader.read("auto", live.session.automatic);
   double target = chorus::seconds(live.session.target);
-  reader.read("seconds", target, rest::kMinSession, rest::kMaxSession);
+  reader.read("seconds", target, wire::kMinSession, wire::kMaxSession);
   live.session.target = from_seconds(target);
   std::size_t adoption = static_cast<std::size_t>(live.session.adoption);
   reader.read_choice("adopt", adoption, {"at-once", "when-accepted"});

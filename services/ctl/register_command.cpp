@@ -14,7 +14,7 @@
 
 #include "common/base/units.h"
 #include "fusion-server/client/service_client.h"
-#include "fusion-server/rest/registration_resources.h"
+#include "fusion-server/wire/session_limits.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/number_range.h"
@@ -346,7 +346,7 @@ Run add_register(CLI::App& options) {
   const auto arguments = std::make_shared<RegisterArguments>();
   add_server_option(options, arguments->url, "The fusion server");
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
-      ->check(number_range(rest::kMinSession, rest::kMaxSession))
+      ->check(number_range(wire::kMinSession, wire::kMaxSession))
       ->capture_default_str();
   auto* propose = options.add_flag(
       "--propose", arguments->propose,

@@ -26,29 +26,37 @@ def run(*command, **options):
     return subprocess.run([str(word) for word in command], check=True, **options)
 
 
-class Installed(unittest.TestCase):
+class Root(unittest.TestCase):
+    """A fresh root for each test, with the packages in /packages."""
+    packages, tar = PACKAGES, ROOT_TAR
+
     @classmethod
     def setUpClass(cls):
         if "CHORUS_PACKAGES" not in os.environ:
             run(ROOT / "deploy/make-packages.sh")
-        if not ROOT_TAR.exists():
-            ROOT_TAR.parent.mkdir(exist_ok=True)
-            run("mmdebstrap", "--variant=standard", "bookworm", ROOT_TAR)
+        cls.make_tar("--variant=standard")
+
+    @classmethod
+    def make_tar(cls, *options):
+        if not cls.tar.exists():
+            cls.tar.parent.mkdir(exist_ok=True)
+            run("mmdebstrap", *options, "bookworm", cls.tar)
 
     def setUp(self):
         self.root = Path(tempfile.mkdtemp(prefix="chorus-root."))
         self.addCleanup(shutil.rmtree, self.root, ignore_errors=True)
-        run("tar", "-C", self.root, "-xf", ROOT_TAR, "--exclude=./dev/*")
+        run("tar", "-C", self.root, "-xf", self.tar, "--exclude=./dev/*")
         (self.root / "usr/sbin/policy-rc.d").write_text("#!/bin/sh\nexit 101\n")  # a root that is not booted starts nothing
         (self.root / "usr/sbin/policy-rc.d").chmod(0o755)
-        run("cp", "-r", PACKAGES, self.root / "packages")
+        run("cp", "-r", self.packages, self.root / "packages")
 
-    def inside(self, command, check=True):
-        """Runs a script in the root, with a network of its own: loopback only."""
+    def inside(self, command, check=True, beside=None):
+        """Runs a script in the root, with a network of its own: loopback only.  With `beside`, only as long as that script outside the
+        root, which finds the root's folder in $0 and shares the network."""
         script = ("mount --make-rprivate / && mount -t proc proc $0/proc && mount -t tmpfs dev $0/dev && "
                   "for d in null zero urandom random; do touch $0/dev/$d; mount --bind /dev/$d $0/dev/$d; done; ip link set lo up; "
-                  'exec chroot "$0" bash -c "$1"')
-        done = subprocess.run(["unshare", "--mount", "--net", "--pid", "--fork", "bash", "-c", script, str(self.root), command],
+                  + ('chroot "$0" bash -c "$1" & exec bash -c "$2" "$0"' if beside else 'exec chroot "$0" bash -c "$1"'))
+        done = subprocess.run(["unshare", "--mount", "--net", "--pid", "--fork", "bash", "-c", script, str(self.root), command, beside or ""],
                               capture_output=True, text=True, check=False,
                               env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"})
         if check:
@@ -74,6 +82,8 @@ class Installed(unittest.TestCase):
     def exists(self, path):
         return os.path.lexists(self.root / path.lstrip("/"))
 
+
+class Installed(Root):
     def test_a_sensor_host_is_small_and_answers_within_a_minute(self):
         begun = time.monotonic()
         brought, others = self.install("chorus-sensor")

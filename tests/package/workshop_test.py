@@ -16,6 +16,7 @@ case $2 in
   *"tar -C /var/tmp"*) tar -tf - > "$NOTES/sent.$1" ;;
   "cat /etc/chorus/sensor.json") printf '// http://x\\n{"http": {"tls": {"key": "k"}, "tokens": [{"token": "%s", "role": "read"}]}}' '""" + TOKEN + """' ;;
   *"test -e /etc/chorus/tls/host.crt") [[ "$1" == *has-one* ]] ;;
+  "dpkg --print-architecture") [[ "$1" == *board* ]] && echo arm64 || echo amd64 ;;
   hostname) echo "name-of-${1#*@}" ;;
   "cat /etc/chorus/ca/ca.crt") echo "AUTHORITY" ;;
   *"chorus init certificate"*) echo "CERTIFICATE ${2#*certificate }" ;;
@@ -37,8 +38,13 @@ class Workshop(unittest.TestCase):
         self.folder = Path(folder.name)
         (self.folder / "ssh").write_text(FAKE_SSH)
         (self.folder / "ssh").chmod(0o755)
-        packages = self.folder / "packages"
+        self.make_packages("packages", "amd64")
+
+    def make_packages(self, name, architecture):
+        packages = self.folder / name
         packages.mkdir()
+        (packages / "SYSTEM").write_text(f"debian-12-{architecture}\n")
+        (packages / f"chorus-sensor_{architecture}.deb").touch()
         (packages / "install.sh").write_text("#!/bin/sh\n")
         (packages / "install.sh").chmod(0o755)
 
@@ -83,6 +89,18 @@ class Workshop(unittest.TestCase):
         done = self.run_it("lay-out", far)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("ssh-copy-id", done.stderr)
+
+    def test_a_host_of_another_architecture_gets_its_own_packages(self):
+        boards = {**INVENTORY, "sensors": [*INVENTORY["sensors"], {"id": "s3", "address": "10.0.0.13", "ssh": "root@board"}]}
+        done = self.run_it("lay-out", boards)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("make-packages.sh --arch arm64", done.stderr)
+        self.assertNotIn("install.sh", self.noted("commands"), "no host is changed before all can be")
+        self.make_packages("packages-arm64", "arm64")
+        done = self.run_it("lay-out", boards)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("chorus-sensor_arm64.deb", self.noted("sent.root@board"))
+        self.assertIn("chorus-sensor_amd64.deb", self.noted("sent.root@10.0.0.11"))
 
     def test_check_asks_every_host_and_fails_when_one_is_not_well(self):
         self.assertEqual(self.run_it("check").returncode, 0)
