@@ -34,8 +34,11 @@ struct DeviceDescription {
 /// settings for privacy forbid it.
 struct Capture {
   SensorFrame frame;
-  std::function<Result<CameraImage>()> color;
-  std::function<Result<CameraImage>()> depth;
+  /// True when nothing before holds any more, because another program or camera delivers now: a
+  /// frame without a floor plane then means that the floor is unknown.
+  bool begins_anew = false;
+  std::function<Result<CameraImage>()> color = {};
+  std::function<Result<CameraImage>()> depth = {};
 };
 
 class FrameSource {

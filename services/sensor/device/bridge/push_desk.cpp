@@ -124,6 +124,10 @@ Result<void> PushDesk::take(Seat seat, PushedFrame frame, const Hello& hello) {
   capture.frame.received = now();
   capture.frame.bodies = std::move(frame.bodies);
   capture.frame.floor = frame.floor ? frame.floor : hello.floor;
+  // The floor is that of one program: another may stand elsewhere, and this one may have taken its
+  // own back by a new hello.
+  capture.begins_anew = !holder_->last_frame || (holder_->hello_had_floor && !hello.floor);
+  holder_->hello_had_floor = hello.floor.has_value();
   last_captured_ = frame.captured;
   refused_captured_.reset();
   holder_->last_count = frame.sequence;

@@ -100,6 +100,7 @@ class PushDesk {
     SteadyTime sat_down{};
     std::optional<SteadyTime> last_frame;
     std::optional<std::uint64_t> last_count;  ///< The number that the pusher gave its last frame.
+    bool hello_had_floor = false;             ///< At the last frame.
     /// True if a message was refused after the last frame.
     bool refused_since = false;
   };
