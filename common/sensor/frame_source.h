@@ -52,6 +52,10 @@ class FrameSource {
   /// An error is final; a stop or the end of a recording is success.
   [[nodiscard]] virtual Result<void> run(std::stop_token stop, const Sink& sink) = 0;
 
+  /// Human-readable, one sentence each: what would not work if the device ran on this host now.
+  /// May take seconds.  Call it only while the device does not run.
+  [[nodiscard]] virtual std::vector<std::string> concerns() const { return {}; }
+
   /// Human-readable: why the device delivers nothing at the moment; empty when unknown.  May be
   /// called from any thread.
   [[nodiscard]] virtual std::string trouble() const { return {}; }

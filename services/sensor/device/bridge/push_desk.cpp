@@ -153,6 +153,15 @@ void PushDesk::note_left_out(Seat seat) {
   if (holder_ && holder_->seat == seat) ++holder_->status.left_out;
 }
 
+void PushDesk::note_doubt(Seat seat, const std::string& doubt) {
+  const std::lock_guard lock(mutex_);
+  if (!holder_ || holder_->seat != seat || holder_->status.doubt == doubt) return;
+  holder_->status.doubt = doubt;
+  if (!doubt.empty())
+    log::warn("pushed frames look wrong",
+              {{"name", holder_->status.pusher->name}, {"reason", doubt}});
+}
+
 void PushDesk::note_clock(Seat seat, const std::optional<ClockEstimate>& estimate) {
   const std::lock_guard lock(mutex_);
   if (holder_ && holder_->seat == seat) holder_->status.clock = estimate;
