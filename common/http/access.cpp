@@ -156,6 +156,11 @@ std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer, Ro
                  "this token has the role " + std::string(name_of(*role)) + ", and this needs " +
                      std::string(name_of(needed)) + ": send another one of this service"};
   }
+  if (usable_secret(head, needed)) {
+    return Error{ErrorCode::Unauthorized, "Authorization",
+                 "the token that was sent is none of this service: send one with the role " +
+                     std::string(name_of(needed)) + " (http.tokens in its configuration)"};
+  }
   return Error{ErrorCode::Unauthorized, "Authorization",
                "send a bearer token of this service with the role " + std::string(name_of(needed)) +
                    " (http.tokens in its configuration): \"Authorization: Bearer TOKEN\""};

@@ -27,6 +27,9 @@ class Dialogue {
   [[nodiscard]] virtual Reply hear(std::string_view message) = 0;
   /// Called four times a second, so that the dialogue can send something without being asked.
   [[nodiscard]] virtual Reply look() = 0;
+  /// Called when the carrier has to end the dialogue because of what the client sends: a message
+  /// that is too long, or of another kind.  Returns the last messages.
+  [[nodiscard]] virtual Reply end(const Error& why) = 0;
 };
 
 /// Begins a dialogue with the client at this address; if it returns an Error, the client is refused

@@ -68,7 +68,11 @@ void WebSocketConnection::open(std::string received) {
 }
 
 void WebSocketConnection::listen() {
-  stream_.read([me = self()](net::error_code failed) { failed ? me->close() : me->listen(); });
+  stream_.read([me = self()](net::error_code failed) {
+    if (failed == asio::error::message_size && me->state_ == State::Open)
+      (void)me->stream_.say_goodbye(Goodbye::TooBig);
+    failed ? me->close() : me->listen();
+  });
 }
 
 void WebSocketConnection::expire() {

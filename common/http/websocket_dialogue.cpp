@@ -1,6 +1,8 @@
 #include <deque>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "common/base/log.h"
 #include "common/http/server_core.h"
 #include "common/http/websocket.h"
@@ -12,6 +14,9 @@ namespace {
 constexpr std::chrono::milliseconds kLook{250};
 // How long the client may take for its own close frame.
 constexpr std::chrono::seconds kGoodbye{2};
+// So many times the longest message is read of one that is too long.  If the connection were closed
+// with bytes unread, the client would lose what it was told last.
+constexpr int kMaxReadOn = 8;
 
 class DialogueConnection final : public Connection {
  public:
@@ -21,7 +26,8 @@ class DialogueConnection final : public Connection {
         stream_(std::move(opening.stream),
                 {core.config.limits, opening.entry->dialogue->max_message_bytes,
                  std::move(opening.protocol)}),
-        dialogue_(std::move(opening.dialogue)) {}
+        dialogue_(std::move(opening.dialogue)),
+        most_(opening.entry->dialogue->max_message_bytes) {}
 
   void open(std::string received);
   void wake() override {}
@@ -34,6 +40,7 @@ class DialogueConnection final : public Connection {
 
   void listen();
   void on_heard(net::error_code failed);
+  void end(const Error& why, Goodbye code);
   template <class Speaking>
   void react(const Speaking& speaking);
   void send_next();
@@ -45,10 +52,13 @@ class DialogueConnection final : public Connection {
   ServerCore& core_;
   WebSocketStream stream_;
   std::shared_ptr<Dialogue> dialogue_;
+  std::size_t most_;  ///< Bytes of a message.
   State state_ = State::Opening;
   std::deque<std::string> unsent_;  ///< The first is being sent.
   std::size_t unsent_bytes_ = 0;
-  bool over_ = false;  ///< The dialogue ends when everything in unsent_ has been sent.
+  bool over_ = false;  ///< The dialogue ends when everything in unsent_ has been sent,
+  Goodbye ending_ = Goodbye::Policy;  ///< for this reason.
+  int read_on_ = 0;
   SteadyTime sending_until_{};
 };
 
@@ -71,15 +81,26 @@ void DialogueConnection::listen() {
 
 void DialogueConnection::on_heard(net::error_code failed) {
   if (state_ == State::Closed) return;
-  if (failed) return close();
+  const bool too_long = failed == asio::error::message_size;
+  if ((failed && !too_long) || (too_long && ++read_on_ > kMaxReadOn)) return close();
   if (state_ == State::Open && !over_) {
-    if (stream_.is_text()) {
+    if (too_long) {
+      end({ErrorCode::TooLarge, {}, fmt::format("a message has at most {} bytes", most_)},
+          Goodbye::TooBig);
+    } else if (stream_.is_text()) {
       react([&] { return dialogue_->hear(stream_.message()); });
     } else {
-      say_goodbye(Goodbye::UnknownData);
+      end({ErrorCode::Unsupported, {}, "binary messages are not taken; send text"},
+          Goodbye::UnknownData);
     }
   }
   if (state_ != State::Closed) listen();
+}
+
+void DialogueConnection::end(const Error& why, Goodbye code) {
+  ending_ = code;
+  over_ = true;
+  react([&] { return dialogue_->end(why); });
 }
 
 /// Calls the dialogue; an exception from it ends this dialogue only.
@@ -104,7 +125,7 @@ void DialogueConnection::react(const Speaking& speaking) {
 
 void DialogueConnection::send_next() {
   if (unsent_.empty()) {
-    if (over_) say_goodbye(Goodbye::Policy);
+    if (over_) say_goodbye(ending_);
     return;
   }
   sending_until_ = core_.now + core_.config.limits.write_timeout;

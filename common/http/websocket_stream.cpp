@@ -33,9 +33,11 @@ constexpr net::Allowance kPings{.per_second = 5.0, .burst = 50.0};
 }  // namespace
 
 struct WebSocketStream::Beast {
-  Beast(net::Stream from, std::size_t max_message) : stream(std::move(from)), said(max_message) {}
+  Beast(net::Stream from, std::size_t most)
+      : stream(std::move(from)), max_message(most), said(most + 1) {}
 
   websocket::stream<net::Stream> stream;
+  std::size_t max_message;
   boost::beast::flat_buffer said;
   net::TokenBucket pings{kPings};
   bool writing = false;
@@ -49,7 +51,7 @@ WebSocketStream::WebSocketStream(net::Stream from, const WebSocketOptions& optio
   patience.keep_alive_pings = true;
   auto& stream = beast_->stream;
   stream.set_option(patience);
-  stream.read_message_max(options.max_message);
+  stream.read_message_max(0);  // read_on() has the limit, so that a last word can still be said.
   stream.text(true);
   stream.auto_fragment(false);  // In pieces of 4 KiB a message would cost three times the CPU time.
   if (options.protocol.empty()) return;
@@ -75,8 +77,20 @@ void WebSocketStream::on_flood(std::function<void()> hang_up) {
 
 void WebSocketStream::read(Done done) {
   beast_->said.consume(beast_->said.size());
-  beast_->stream.async_read(beast_->said, [done = std::move(done)](net::error_code failed,
-                                                                   std::size_t) { done(failed); });
+  read_on(std::move(done));
+}
+
+void WebSocketStream::read_on(Done done) {
+  const std::size_t room = beast_->max_message + 1 - beast_->said.size();
+  beast_->stream.async_read_some(
+      beast_->said, room,
+      [this, done = std::move(done)](net::error_code failed, std::size_t) mutable {
+        if (failed) return done(failed);  // `done` keeps the stream alive
+        if (beast_->said.size() > beast_->max_message)
+          return done(asio::error::make_error_code(asio::error::message_size));
+        if (beast_->stream.is_message_done()) return done({});
+        read_on(std::move(done));
+      });
 }
 
 std::string_view WebSocketStream::message() const {

@@ -27,6 +27,7 @@ enum class Goodbye : std::uint16_t {
   GoingAway = 1001,
   UnknownData = 1003,
   Policy = 1008,
+  TooBig = 1009,
   Internal = 1011
 };
 
@@ -45,6 +46,8 @@ class WebSocketStream {
   /// `hang_up` is called when the client sends far more pings than it needs.
   void on_flood(std::function<void()> hang_up);
 
+  /// Reads one message.  Fails with message_size when it is too long: whoever reads on then gets
+  /// its next bytes.
   void read(Done done);
   /// The message read last.
   [[nodiscard]] std::string_view message() const;
@@ -62,6 +65,8 @@ class WebSocketStream {
 
  private:
   struct Beast;
+  void read_on(Done done);
+
   std::unique_ptr<Beast> beast_;
 };
 

@@ -34,8 +34,11 @@ struct DeviceDescription {
 /// settings for privacy forbid it.
 struct Capture {
   SensorFrame frame;
-  std::function<Result<CameraImage>()> color;
-  std::function<Result<CameraImage>()> depth;
+  /// True when nothing before holds any more, because another program or camera delivers now: a
+  /// frame without a floor plane then means that the floor is unknown.
+  bool begins_anew = false;
+  std::function<Result<CameraImage>()> color = {};
+  std::function<Result<CameraImage>()> depth = {};
 };
 
 class FrameSource {
@@ -48,6 +51,10 @@ class FrameSource {
   /// Delivers captures in time order, on the calling thread, until stopped or at the device's end.
   /// An error is final; a stop or the end of a recording is success.
   [[nodiscard]] virtual Result<void> run(std::stop_token stop, const Sink& sink) = 0;
+
+  /// Human-readable, one sentence each: what would not work if the device ran on this host now.
+  /// May take seconds.  Call it only while the device does not run.
+  [[nodiscard]] virtual std::vector<std::string> concerns() const { return {}; }
 
   /// Human-readable: why the device delivers nothing at the moment; empty when unknown.  May be
   /// called from any thread.

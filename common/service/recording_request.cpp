@@ -18,18 +18,22 @@ tl::unexpected<Error> wrong(std::string message) {
 
 /// Takes one key from the body of a POST.
 Result<void> take(const std::string& key, const nlohmann::json& value, RecordingRequest& out) {
-  if (key == "name" && value.is_string()) {
+  if (key == "name") {
+    if (!value.is_string()) return wrong("\"name\" is a text");
     out.name = value.get<std::string>();
-    if (record::is_recording_name(out.name)) return {};
-    return wrong("a \"name\" has 1 to 64 characters of A-Z a-z 0-9 _ -");
+    // A name that begins with - would be an option to every command that gets it.
+    if (record::is_recording_name(out.name) && !out.name.starts_with('-')) return {};
+    return wrong("a \"name\" has 1 to 64 characters of A-Z a-z 0-9 _ -, the first no -");
   }
-  if (key == "seconds" && value.is_number()) {
+  if (key == "seconds") {
+    if (!value.is_number()) return wrong("\"seconds\" is a number");
     const double length = value.get<double>();
     if (!(length >= 1.0 && length <= kLongest)) return wrong("\"seconds\" is from 1 to 604800");
     out.duration = from_seconds(length);
     return {};
   }
-  if ((key == "raw" || key == "fused") && value.is_boolean()) {
+  if (key == "raw" || key == "fused") {
+    if (!value.is_boolean()) return wrong("\"" + key + "\" is true or false");
     (key == "raw" ? out.raw : out.fused) = value.get<bool>();
     return {};
   }

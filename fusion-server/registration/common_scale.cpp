@@ -21,6 +21,7 @@ constexpr double kMeasured = 0.005;     // sigma of a distance measured by hand,
 constexpr double kLeastFactor = 0.5;    // a length that asks for a smaller factor is a mistake,
 constexpr double kMostFactor = 2.0;     // and so is one that asks for a larger factor
 constexpr double kSigmas95Percent = 196.0;
+constexpr double kContradiction = 2.5;  // sigmas of the person's guessed size
 constexpr std::size_t kLeastSegments = 20;
 /// Ankle to knee to hip to shoulder, as a share of the stature (Drillis and Contini 1966).
 constexpr double kChainOfStature = 0.779;
@@ -156,6 +157,18 @@ void doubt(Registration& found, std::string reason) {
   }
 }
 
+/// Adds a reason when the length contradicts the guessed size of the person.  The verdict stays:
+/// the length may be right all the same, as with a child.
+void compare(const KnownDistance& known, const Scale& scale, Registration& found) {
+  const double sigma = std::hypot(kUnknownScale, scale.sigma);
+  if (std::abs(std::log(scale.factor)) <= kContradiction * sigma) return;
+  found.reasons.push_back(
+      fmt::format("{} and {}: {:.2f} m given, {:.2f} m by the person's size; measure again, unless "
+                  "the person is unusually {}",
+                  known.first.str(), known.second.str(), known.length, known.length / scale.factor,
+                  scale.factor > 1.0 ? "tall" : "small"));
+}
+
 /// The mean of what the known distances say; none if none is usable, `found` then says why.
 std::optional<Scale> measured_scale(Registration& found, const RegistrationConfig& config) {
   double sum = 0.0;
@@ -166,6 +179,7 @@ std::optional<Scale> measured_scale(Registration& found, const RegistrationConfi
       doubt(found, scale.error().message);
       continue;
     }
+    compare(known, *scale, found);
     const double weight = 1.0 / (scale->sigma * scale->sigma);
     sum += weight * scale->factor;
     weights += weight;

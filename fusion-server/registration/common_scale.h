@@ -14,7 +14,8 @@ namespace chorus::registration {
 
 /// The registration in metres, if all placed sensors guess depth; otherwise unchanged.  Without a
 /// usable length the factor stays 1 and a reason says that the scale is unknown; a sensor is then
-/// provisional, but never refused for it.  `walk`: what `found` was solved from.
+/// provisional, but never refused for it.  A reason names a distance that differs from what the
+/// guessed size of the person says by more than 2.5 sigma.  `walk`: what `found` was solved from.
 [[nodiscard]] Registration with_scale(Registration found, const std::vector<WalkTrack>& walk,
                                       const RegistrationConfig& config);
 

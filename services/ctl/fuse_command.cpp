@@ -1,4 +1,5 @@
 // chorus fuse REC --out FILE: runs recordings through the pipeline, without clocks or sockets.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -32,28 +33,71 @@ struct FuseArguments {
   bool json = false;
 };
 
-/// The extrinsics from a file or from the recording; none when they are to be solved from the walk.
-Result<std::optional<Registration>> given_extrinsics(const FuseArguments& arguments,
-                                                     const RecordedCell& cell) {
-  if (arguments.from_walk) return std::nullopt;
-  const std::string& file = arguments.registration;
-  if (file.empty()) return cell.registration();
+/// Extrinsics, and a remark for the user on where they are from.
+struct Places {
+  std::optional<Registration> registration;  ///< None: they are to be solved from the walk.
+  std::string note;
+};
+
+/// The extrinsics that lie beside the recordings, as `chorus import` writes them.
+Result<Places> places_beside(const std::vector<std::filesystem::path>& files,
+                             const RecordedCell& cell) {
+  const auto beside = registration_beside(files);
+  if (!beside) return pass(beside);
+  if (!*beside) return Places{};
+  const std::string file = (*beside)->string();
   auto registration = server::load_registration_file(file);
-  if (!registration) return pass(registration);
-  return std::optional(std::move(*registration));
+  if (!registration) {
+    return fail(registration.error().code, file,
+                registration.error().message +
+                    "; it lies beside the recordings: name another with --registration, or "
+                    "register from the person with --from-walk");
+  }
+  const auto sensors = cell.sensors();
+  if (std::ranges::none_of(
+          sensors, [&](const SensorId& sensor) { return registration->sensors.contains(sensor); }))
+    return Places{std::nullopt, file + " is of other sensors, and is not used"};
+  return Places{std::move(*registration),
+                "the sensors stand where " + file +
+                    " says, which lies beside the recordings; --from-walk registers anew"};
 }
 
-Result<Registration> extrinsics(const FuseArguments& arguments, RecordedCell& cell,
-                                const pipeline::OfflineConfig& config) {
-  auto given = given_extrinsics(arguments, cell);
-  if (!given) return pass(given);
-  if (*given) return std::move(**given);
-  return pipeline::register_recordings(cell.input(), config);
+/// The extrinsics from a file, from the recording, or from beside it.
+Result<Places> given_extrinsics(const FuseArguments& arguments,
+                                const std::vector<std::filesystem::path>& files,
+                                const RecordedCell& cell) {
+  if (arguments.from_walk) return Places{};
+  if (!arguments.registration.empty()) {
+    auto registration = server::load_registration_file(arguments.registration);
+    if (!registration) return pass(registration);
+    return Places{std::move(*registration), {}};
+  }
+  auto recorded = cell.registration();
+  if (!recorded) return pass(recorded);
+  if (*recorded) return Places{std::move(*recorded), {}};
+  return places_beside(files, cell);
+}
+
+/// The given extrinsics, or those solved from the walk.
+Result<Places> extrinsics(Places given, RecordedCell& cell, const FuseArguments& arguments,
+                          const pipeline::OfflineConfig& config) {
+  if (given.registration) {
+    if (!arguments.options.distance.empty() || !arguments.options.stature.empty())
+      given.note += (given.note.empty() ? "" : "; ") +
+                    std::string("--distance and --stature change nothing without --from-walk");
+    return given;
+  }
+  auto solved = pipeline::register_recordings(cell.input(), config);
+  if (!solved) return pass(solved);
+  given.registration = std::move(*solved);
+  return given;
 }
 
 /// Refuses to write to any of the input files, which would destroy it.
 Result<void> check_outputs(const FuseArguments& arguments,
                            std::vector<std::filesystem::path> read) {
+  if (const auto beside = registration_beside(read); beside && *beside && !arguments.from_walk)
+    read.push_back(**beside);
   read.emplace_back(arguments.registration);
   read.emplace_back(arguments.options.config);
   if (auto ok = may_write(arguments.out, read); !ok) return ok;
@@ -115,10 +159,14 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
   auto cell = RecordedCell::open(*files);
   if (!cell) return pass(cell);
-  auto registration = extrinsics(arguments, *cell, *config);
-  if (!registration) return pass(registration);
-  const auto fused = fuse_into(arguments.out, *cell, std::move(*registration), *config);
+  auto places = given_extrinsics(arguments, *files, *cell).and_then([&](Places&& given) {
+    return extrinsics(std::move(given), *cell, arguments, *config);
+  });
+  if (!places) return pass(places);
+  auto fused = fuse_into(arguments.out, *cell, std::move(*places->registration), *config);
   if (!fused) return pass(fused);
+  auto& notes = fused->told.notes;
+  if (!places->note.empty()) notes.insert(notes.begin(), places->note);
   if (!arguments.save_registration.empty()) {
     const auto saved =
         write_text(arguments.save_registration, wire::write_registration(fused->registration));
@@ -140,10 +188,13 @@ Run add_fuse(CLI::App& options) {
   options
       .add_option("--out", arguments->out, "File to write: .mcap, or NDJSON; - is standard output")
       ->required();
-  options.add_option("--registration", arguments->registration,
-                     "Extrinsics as JSON; without it those of the recording, else from the person");
+  options.add_option(
+      "--registration", arguments->registration,
+      "Extrinsics as JSON; without it those of the recording, else registration.json "
+      "beside it, else from the person");
   options.add_flag("--from-walk", arguments->from_walk,
-                   "Register from the person, though the recording has a registration");
+                   "Register from the person, though the recording has a registration, in it or "
+                   "beside it");
   options.add_option("--save-registration", arguments->save_registration,
                      "Write the extrinsics used to this file");
   add_offline_options(options, arguments->options);

@@ -1,5 +1,6 @@
 #include "services/ctl/recorded_cell.h"
 
+#include <system_error>
 #include <utility>
 
 #include "fusion-server/client/recordings.h"
@@ -19,6 +20,22 @@ Result<std::optional<SensorFrame>> next_frame(record::CellStream& stream) {
 
 }  // namespace
 
+Result<std::optional<std::filesystem::path>> registration_beside(
+    const std::vector<std::filesystem::path>& files) {
+  std::set<std::filesystem::path> found;
+  for (const std::filesystem::path& file : files) {
+    const auto beside = file.parent_path() / "registration.json";
+    std::error_code unknown;
+    if (std::filesystem::is_regular_file(beside, unknown)) found.insert(beside);
+  }
+  if (found.empty()) return std::nullopt;
+  if (found.size() == 1) return *found.begin();
+  return fail(ErrorCode::Conflict, "recordings",
+              "several of their folders have a registration.json, such as " +
+                  found.begin()->string() + " and " + found.rbegin()->string() +
+                  "; name one with --registration, or register from the person with --from-walk");
+}
+
 Result<RecordedCell> RecordedCell::open(const std::vector<std::filesystem::path>& files) {
   auto lines = record::cell_lines(files);
   if (!lines) return pass(lines);
@@ -33,6 +50,12 @@ Result<std::optional<Registration>> RecordedCell::registration() const {
   if (!registration)
     return fail(registration.error().code, "/registration", to_string(registration.error()));
   return std::optional(std::move(*registration));
+}
+
+std::set<SensorId> RecordedCell::sensors() const {
+  std::set<SensorId> all;
+  for (const record::CellLine& line : lines_) all.insert(line.sensors.begin(), line.sensors.end());
+  return all;
 }
 
 pipeline::OfflineInput RecordedCell::input() {

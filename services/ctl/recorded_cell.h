@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,18 @@
 
 namespace chorus::ctl {
 
+/// The `registration.json` in the folder of the recordings; none if there is none.  Conflict when
+/// several of their folders have one.
+[[nodiscard]] Result<std::optional<std::filesystem::path>> registration_beside(
+    const std::vector<std::filesystem::path>& files);
+
 class RecordedCell {
  public:
   /// Looks at the files without reading all of them; errors name the file.
   [[nodiscard]] static Result<RecordedCell> open(const std::vector<std::filesystem::path>& files);
+
+  /// The sensors that the files name.
+  [[nodiscard]] std::set<SensorId> sensors() const;
 
   /// The last registration that was recorded.
   [[nodiscard]] Result<std::optional<Registration>> registration() const;

@@ -55,7 +55,7 @@ LatestCapturePtr latest_capture(Capture capture, const LatestCapture* before) {
   latest->frame = std::make_shared<const FrameResource>(resource::to_resource(capture.frame));
   latest->floor = capture.frame.floor;
   if (before != nullptr) {
-    if (!latest->floor) latest->floor = before->floor;
+    if (!latest->floor && !capture.begins_anew) latest->floor = before->floor;
     latest->floor_version = before->floor_version + (latest->floor != before->floor ? 1 : 0);
   }
   latest->color = lazy(std::move(capture.color));

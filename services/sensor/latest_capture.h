@@ -26,7 +26,7 @@ struct LatestCapture {
 using LatestCapturePtr = std::shared_ptr<const LatestCapture>;
 
 /// What is known after `capture`.  A capture without a floor plane gets that of `before`, which may
-/// be null.
+/// be null, unless it begins anew.
 [[nodiscard]] LatestCapturePtr latest_capture(Capture capture, const LatestCapture* before);
 
 // The documents about one capture.

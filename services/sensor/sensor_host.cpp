@@ -111,7 +111,9 @@ SensorHost::~SensorHost() { stop(); }
 
 service::Concerns SensorHost::concerns() const {
   const StartSettings& at_start = setup_.settings.at_start;
-  return service::common_concerns(at_start.http, at_start.recording);
+  service::Concerns all = service::common_concerns(at_start.http, at_start.recording);
+  for (std::string& concern : setup_.device->concerns()) all.push_back(std::move(concern));
+  return all;
 }
 
 Result<void> SensorHost::start() {

@@ -65,6 +65,7 @@ class Echo final : public Dialogue {
     ++told_->looks;
     return {};
   }
+  [[nodiscard]] Reply end(const Error& why) override { return {{"bye: " + why.message}, true}; }
 
  private:
   std::shared_ptr<Told> told_;
@@ -153,6 +154,22 @@ TEST(Dialogue, WhatGoesWrongEndsItAlone) {
     EXPECT_TRUE(soon([&] { return service.told->open == 0; }));
   }
   EXPECT_EQ(status_in(service.answer_to(hello())), 101);
+}
+
+TEST(Dialogue, WhoSendsWhatCannotBeTakenIsToldSoInFull) {
+  TalkServer service;
+  for (const auto& [fatal, says, code] :
+       {std::tuple{masked(1, std::string(201, 'x')), "at most 200 bytes", "\x03\xf1"},
+        std::tuple{masked(1, std::string(1500, 'x')), "at most 200 bytes", "\x03\xf1"},
+        std::tuple{masked(2, "binary"), "send text", "\x03\xeb"}}) {
+    RawClient client(service.server.port());
+    client.say(hello());
+    (void)client.hear_until("\r\n\r\n");
+    client.say(fatal);
+    const std::string heard = client.hear_until(std::string("\x88\x02") + code);
+    EXPECT_THAT(heard, HasSubstr(says));
+    EXPECT_THAT(heard, HasSubstr(std::string("\x88\x02") + code)) << "the close code";
+  }
 }
 
 TEST(Dialogue, WhoIsNotLetInGetsAProblemDocument) {

@@ -18,7 +18,7 @@ def hello_line(**more):
 
 
 def frame_line(captured=None, x=0.0):
-    points = [[x, 0.1 * i, 2.5] for i in range(17)]
+    points = [[x, 0.8 - 0.1 * i, 2.5] for i in range(17)]
     captured = time.time_ns() if captured is None else captured
     return json.dumps({"type": "frame", "captured": str(captured), "bodies": [{"id": 1, "points": points}]})
 

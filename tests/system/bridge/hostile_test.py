@@ -28,7 +28,7 @@ class Good(threading.Thread):
 
     def run(self):
         while not self.stopped.wait(1 / 30):
-            self.sent += self.pusher.push([{"id": 1, "points": [[0, 0.1 * i, 2] for i in range(17)]}])
+            self.sent += self.pusher.push([{"id": 1, "points": [[0, 0.8 - 0.1 * i, 2] for i in range(17)]}])
 
     def stop(self):
         self.stopped.set()

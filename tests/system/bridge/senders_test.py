@@ -1,10 +1,12 @@
 """The senders of the guide work: Python by WebSocket, POST and local socket, and C++; wrong clocks are corrected for each."""
+import json
 import os
 import subprocess
 import sys
 import threading
 import time
 import unittest
+import unittest.mock
 
 from bridge_rig import EXAMPLES, BridgeRig, get, get_json, wait_for
 
@@ -83,6 +85,7 @@ class Senders(BridgeRig):
             wrong = chorus_push.Pusher(url, {"name": "wrong", "layout": "coco_17"}, "wrong", tell=told.append)
             self.assertFalse(wrong.push([]))
             self.assertIn("401", told[-1])
+            self.assertIn("the token that was sent is none of this service", told[-1])
             time.sleep(2.1)  # a pusher by POST holds the sensor for this long
 
     def test_a_pusher_comes_back_when_the_sensor_does(self):
@@ -96,6 +99,31 @@ class Senders(BridgeRig):
         again = self.bridge(port=sensor.port)
         wait_for("it is back", lambda: pusher.push([]) and self.push_state(again)["state"] == "live")
         pusher.close()
+
+    def test_an_address_without_its_path_is_understood_and_a_wrong_one_told(self):
+        sensor = self.bridge()
+        for url in (sensor.ws, sensor.url + "push"):
+            told = []
+            pusher = chorus_push.Pusher(url[:-len("push")], {"name": "short", "layout": "coco_17"}, tell=told.append)
+            self.assertTrue(pusher.push([]), told)
+            pusher.close()
+            wrong = chorus_push.Pusher(url[:-len("push")] + "nothing", {"name": "wrong", "layout": "coco_17"}, tell=told.append)
+            self.assertFalse(wrong.push([]), told)
+            self.assertEqual(wrong.dropped, 1)
+            self.assertLess(len(told[0]), 200, "not the whole page")
+            self.assertIn("40", told[0])
+
+    def test_a_message_that_is_too_long_is_told_by_each_way(self):
+        sensor = self.bridge()
+        crowd = [{"id": i, "points": [[0.001 * i, 0.8 - 0.1 * j, 2.123456789] for j in range(17)], "remark": "x" * 5000} for i in range(60)]
+        for url in (sensor.ws, sensor.path):
+            told = []
+            pusher = chorus_push.Pusher(url, {"name": "long", "layout": "coco_17"}, tell=told.append)
+            self.assertTrue(pusher.push([]), told)
+            pusher.push(crowd)
+            wait_for("it is told why", lambda: any("max_message_kb" in text for text in told))
+            wait_for("so does the sensor", lambda: "max_message_kb" in self.push_state(sensor)["reason"])
+            pusher.close()
 
     def test_an_unknown_layout_is_told_the_known_ones(self):
         sensor = self.bridge()
@@ -116,6 +144,48 @@ class Senders(BridgeRig):
             wait_for("room for the next", lambda: get(sensor.url + "push")[0] == 200 and
                      self.push_state(sensor)["state"] != "live")
             time.sleep(2.1)
+
+
+class Plain(unittest.TestCase):
+    """What becomes of a frame before it is sent."""
+
+    class Number:  # as numpy has them
+        def __init__(self, value):
+            self.value = value
+
+        def tolist(self):
+            return self.value
+
+    def sent(self, bodies, captured=1):
+        pusher = chorus_push.Pusher("nowhere", {"name": "x", "layout": "coco_17"}, tell=self.told.append)
+        talk = unittest.mock.Mock()
+        pusher._talk = talk
+        taken = pusher.push(bodies, captured)
+        self.assertEqual((taken, pusher.dropped), (talk.push.called, 0 if talk.push.called else 1))
+        return json.loads(talk.push.call_args[0][0]) if taken else None
+
+    def setUp(self):
+        self.told = []
+
+    def test_landmarks_with_a_nan_are_not_seen(self):
+        nan = float("nan")
+        points = [[0, 1, 2], [nan, nan, nan], [0, 1, 2, nan], {"at": [nan, 0, 1], "confidence": 1},
+                  {"at": [0, 1, 2], "covariance": [nan] * 6, "confidence": nan}, None]
+        expected = [[0, 1, 2], None, None, None, {"at": [0, 1, 2]}, None]
+        self.assertEqual(self.sent([{"id": 1, "points": points}])["bodies"][0]["points"], expected)
+        self.assertEqual(self.sent([{"id": 1, "points": {"nose": [nan, 0, 0], "left_eye": [1, 2, 3]}}])["bodies"][0]["points"],
+                         {"nose": None, "left_eye": [1, 2, 3]})
+        self.assertEqual(self.told, [])
+
+    def test_numbers_of_numpy_will_do(self):
+        points = self.Number([[0.5, 1.0, 2.0], [float("nan")] * 3])
+        frame = self.sent([{"id": self.Number(7), "points": points}], captured=1.79e18)
+        self.assertEqual(frame["bodies"], [{"id": 7, "points": [[0.5, 1.0, 2.0], None]}])
+        self.assertEqual(frame["captured"], "1790000000000000000")
+
+    def test_what_is_no_frame_is_told_and_nothing_is_thrown(self):
+        self.assertIsNone(self.sent([{"id": 1, "points": object()}]))
+        self.assertIn("frame 1 cannot be sent", self.told[0])
 
 
 class DepthLandmarks(unittest.TestCase):

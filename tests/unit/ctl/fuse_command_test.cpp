@@ -1,4 +1,6 @@
 // chorus fuse, from recordings to fused frames, without a process or a socket.
+#include <regex>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/ctl/program_run.h"
@@ -71,6 +73,59 @@ TEST(FuseCommand, ASavedRegistrationStandsInForTheWalk) {
   const auto second = head_of(Json::parse(lines_of(again.out).back()));
   ASSERT_TRUE(first && second);
   EXPECT_LT((*first - *second).norm(), 1e-3);
+}
+
+/// The summary of fusing a cell that has a registration.json beside its recordings.
+Json summary_with_places_beside(const Cell& cell, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words{"fuse", cell.recordings(), "--out", "-", "--json"};
+  words.insert(words.end(), more.begin(), more.end());
+  const Outcome done = run_chorus(words);
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  return Json::parse(done.error);
+}
+
+TEST(FuseCommand, TakesTheRegistrationBesideTheRecordingsAndSaysSo) {
+  const Cell cell(4.0);
+  const std::string beside = cell.recordings() + "/registration.json";
+  ASSERT_EQ(
+      run_chorus({"fuse", cell.recordings(), "--out", "-", "--save-registration", beside}).code,
+      kExitOk);
+  Json places = Json::parse(bytes_of(beside));
+  places["reasons"] = {"published with the recording"};
+  std::ofstream(beside) << places.dump();
+  const Json taken = summary_with_places_beside(cell);
+  EXPECT_EQ(taken.at("registration").at("reasons"), places.at("reasons"));
+  EXPECT_THAT(taken.at("notes").dump(), HasSubstr(beside + " says"));
+  const Json ignored = summary_with_places_beside(cell, {"--distance", "s1,s2=3"});
+  EXPECT_THAT(ignored.at("notes").dump(), HasSubstr("change nothing without --from-walk"));
+  const Json walked = summary_with_places_beside(cell, {"--from-walk"});
+  EXPECT_NE(walked.at("registration").at("reasons"), places.at("reasons"));
+  EXPECT_TRUE(walked.at("notes").empty());
+  places["reasons"] = {"given"};
+  std::ofstream(cell.file("given.json")) << places.dump();
+  const Json given = summary_with_places_beside(cell, {"--registration", cell.file("given.json")});
+  EXPECT_EQ(given.at("registration").at("reasons"), places.at("reasons"));
+  EXPECT_TRUE(given.at("notes").empty());
+  EXPECT_THAT(run_chorus({"fuse", cell.recordings(), "--out", beside}).error,
+              HasSubstr("would destroy it"));
+}
+
+TEST(FuseCommand, ARegistrationBesideThatDoesNotFitIsNotTakenInSilence) {
+  const Cell cell(4.0);
+  const std::string beside = cell.recordings() + "/registration.json";
+  std::ofstream(beside) << "{\"sensors\": 3";
+  const Outcome broken = run_chorus({"fuse", cell.recordings(), "--out", "-"});
+  EXPECT_EQ(broken.code, kExitFailed);
+  EXPECT_THAT(broken.error, HasSubstr(beside));
+  EXPECT_THAT(broken.error, HasSubstr("--from-walk"));
+  ASSERT_EQ(run_chorus({"fuse", cell.recordings(), "--out", "-", "--from-walk",
+                        "--save-registration", beside})
+                .code,
+            kExitOk);
+  const std::string ours = bytes_of(beside);
+  std::ofstream(beside) << std::regex_replace(ours, std::regex("\\bs([123])\\b"), "t$1");
+  EXPECT_THAT(summary_with_places_beside(cell).at("notes").dump(),
+              HasSubstr("is of other sensors, and is not used"));
 }
 
 TEST(FuseCommand, TheMethodAndEveryOtherKeyCanBeChosen) {

@@ -105,6 +105,23 @@ TEST_F(Desk, FramesCarryTheSensorAndTheFloor) {
   EXPECT_EQ(captures[0].frame.floor, hello.floor);
 }
 
+TEST_F(Desk, TheFloorOfAProgramEndsWithIt) {
+  const auto begins_anew = [&](PushDesk::Seat seat, milliseconds at) {
+    EXPECT_THAT(push(seat, at), IsOk());
+    const auto captures = rig.desk->captures(Duration{0});
+    return captures.size() == 1 && captures[0].begins_anew;
+  };
+  hello.floor = FloorPlane{Eigen::Vector3d::UnitY(), 1.4};
+  const auto first = sit("first");
+  EXPECT_TRUE(begins_anew(*first, milliseconds(5)));
+  EXPECT_FALSE(begins_anew(*first, milliseconds(10)));
+  hello.floor.reset();
+  EXPECT_TRUE(begins_anew(*first, milliseconds(15))) << "a new hello took the floor back";
+  EXPECT_FALSE(begins_anew(*first, milliseconds(20))) << "a floor of its frames lasts";
+  rig.desk->leave(*first, "it was ended");
+  EXPECT_TRUE(begins_anew(*sit("second"), milliseconds(25)));
+}
+
 TEST_F(Desk, SaysWhyNothingComes) {
   EXPECT_EQ(rig.desk->status().state, "waiting");
   EXPECT_EQ(rig.desk->status().reason, "no program pushes frames");

@@ -76,6 +76,26 @@ TEST_F(Talk, ErrorsComeOnceASecondWithTheCountOfTheOthers) {
   EXPECT_EQ(said(talk->hear("{}"))["unsaid"], 5);
 }
 
+TEST_F(Talk, DoubtsAreToldOnceWhileFramesAreTaken) {
+  (void)talk->hear(kHello);
+  rig.pass(std::chrono::seconds(1));
+  std::vector<std::string> told;
+  for (int i = 0; i < 40; ++i) {
+    rig.pass(milliseconds(100));
+    const std::string now = std::to_string(to_unix_ns(rig.clock->now()));
+    const auto reply =
+        talk->hear(R"({"type":"frame","captured":")" + now +
+                   R"(","bodies":[{"id":1,"points":{"nose":[0,-0.6,2],"left_shoulder":[0,-0.5,2],)"
+                   R"("right_shoulder":[0.1,-0.5,2],"left_ankle":[0,0.9,2]}}]})");
+    told.insert(told.end(), reply.messages.begin(), reply.messages.end());
+  }
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(Json::parse(told[0])["type"], "doubt");
+  EXPECT_THAT(Json::parse(told[0])["detail"], HasSubstr("does y point down?"));
+  EXPECT_EQ(rig.desk->status().frames, 40U);
+  EXPECT_THAT(rig.desk->status().doubt, HasSubstr("head below the feet"));
+}
+
 TEST_F(Talk, EndsAfterTooManyErrorsInARow) {
   (void)talk->hear(kHello);
   int refused = 0;
@@ -102,6 +122,16 @@ TEST_F(Talk, EndsWhenNothingComesAnyMore) {
   (void)talk->hear(kHello);
   rig.pass(std::chrono::seconds(31));
   EXPECT_TRUE(talk->look().over);
+}
+
+TEST_F(Talk, SaysWhyTheCarrierEndsItAndSoDoesTheDesk) {
+  (void)talk->hear(kHello);
+  const auto reply = talk->end({ErrorCode::TooLarge, {}, "a message has at most 262144 bytes"});
+  EXPECT_TRUE(reply.over);
+  EXPECT_EQ(said(reply)["type"], "bye");
+  EXPECT_THAT(said(reply)["detail"], HasSubstr("max_message_kb"));
+  talk.reset();
+  EXPECT_THAT(rig.desk->status().reason, HasSubstr("at most 262144 bytes"));
 }
 
 TEST_F(Talk, EndsWhenAnotherProgramTookThePlace) {

@@ -117,6 +117,7 @@ TEST(Hello, MistakesAreNamed) {
   refused(with(kHelloMessage, "axes", "x y z"), "axes", "right down ahead");
   refused(with(kHelloMessage, "floor", {0, -1, 0, 1.5}), "floor", "pointing up");
   refused(with(kHelloMessage, "floor", {0, 1, 0}), "floor", "4 numbers");
+  refused(with(kHelloMessage, "floor", {0, 1, 0, 1600}), "floor[3]", "is it in millimetres?");
   refused(with(kHelloMessage, "trackedFrom", 60), "trackedFrom", "0 to 1");
   refused(with(kHelloMessage, "intrinsics", 900), "intrinsics", "fx");
   const Json half{{"width", 640}, {"height", 480}, {"fx", 500}, {"cx", 320}, {"cy", 240}};
@@ -207,7 +208,7 @@ TEST(PushedFrame, MistakesAreNamedWithTheirPlace) {
   expect_refused(with(fine, "captured", 12345), "captured", "nanoseconds since 1970");
   expect_refused(with(fine, "captured", -1795246200250000000), "captured",
                  "nanoseconds since 1970");
-  expect_refused(with(fine, "captured", 1.7952462e18), "captured", "nanoseconds since 1970");
+  expect_refused(with(fine, "captured", 1.7952462e18), "captured", "a whole number");
   expect_refused(with(fine, "sequence", "-1"), "sequence", "whole number");
   expect_refused(with(fine, "bodies", nullptr), "bodies", "array");
   expect_refused(with(fine, "bodies", {5}), "bodies[0]", "object");
@@ -240,6 +241,34 @@ TEST(PushedFrame, ABodyInMillimetresIsRefusedAndAWrongPointIsNot) {
   EXPECT_THAT(read_frame(frame_of("points", landmarks({{5, {0, 0, 2500}}, {6, {0, 0, 2.4}}}))),
               IsOk());
   EXPECT_THAT(read_frame(frame_of("points", landmarks({}))), IsOk()) << "nothing was seen";
+}
+
+TEST(PushedFrame, JointsExactlyAtTheSensorAreNotSeen) {
+  const Json lost{0, 0, 0};
+  expect_refused(frame_of("points", landmarks({{5, {0, 0, 2}}, {9, lost}, {10, lost}})),
+                 "bodies[0].points", "send null for joints that are not seen");
+  EXPECT_THAT(read_frame(frame_of("points", landmarks({{5, {0, 0, 2}}, {9, lost}}))), IsOk())
+      << "one may be a tracker's own origin";
+  const Json unseen{0, 0, 0, 0.0};
+  EXPECT_THAT(
+      read_frame(frame_of("points", landmarks({{5, {0, 0, 2}}, {9, unseen}, {10, unseen}}))),
+      IsOk());
+}
+
+TEST(PushedFrame, NormalisedPixelsAreRefusedAndThoseOutsideThePictureNoted) {
+  const Json camera{{"width", 1280}, {"height", 720}, {"fx", 900},
+                    {"fy", 900},     {"cx", 640},     {"cy", 360}};
+  const Json hello = with(kHelloMessage, "intrinsics", camera);
+  const auto three = [](const Json& at) {
+    return frame_of("pixels", landmarks({{5, at}, {6, at}, {11, {{"at", at}}}}));
+  };
+  expect_refused(three({0.5, 1.1}), "bodies[0].pixels", "Multiply them by width and height", hello);
+  EXPECT_EQ(read_frame(three({640, 360}), hello)->outside_picture, false);
+  EXPECT_EQ(read_frame(three({5000, 360}), hello)->outside_picture, true);
+  EXPECT_EQ(read_frame(three({640, -40}), hello)->outside_picture, true);
+  EXPECT_EQ(read_frame(frame_of("pixels", landmarks({{5, {5000, 1}}})), hello)->outside_picture,
+            std::nullopt)
+      << "one landmark says little";
 }
 
 TEST(PushedFrame, TooManyBodiesAreRefused) {
@@ -276,6 +305,10 @@ TEST(PushMessage, GarbageIsRefusedWithAReason) {
     EXPECT_NE(read.error().message, "") << garbage;
   }
   EXPECT_THAT(read_push_message(std::string(100, '['), &hello), FailsWith(ErrorCode::TooLarge));
+  const auto nan =
+      read_push_message(R"({"type":"frame","bodies":[{"points":[[NaN,1,2]]}]})", &hello);
+  ASSERT_FALSE(nan);
+  EXPECT_THAT(nan.error().message, HasSubstr("send null for what is not seen"));
 }
 
 }  // namespace

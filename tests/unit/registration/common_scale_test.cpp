@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include "fusion-server/registration/guessed_depth.h"
 #include "tests/unit/registration/walk_builder.h"
 
@@ -138,6 +140,23 @@ TEST(CommonScale, RefusesALengthThatCannotBe) {
   EXPECT_THAT(found.reasons, Contains(HasSubstr("s0 and s1 cannot be 30.00 m apart")));
   EXPECT_THAT(found.reasons, Contains(HasSubstr("scale unknown")));
   EXPECT_EQ(found.sensors.at(sensor(0)).scale, 1.0);
+}
+
+TEST(CommonScale, TellsOfALengthThatContradictsThePersonsSize) {
+  RegistrationConfig config;
+  const double seen = distance(exact(), 0, 2);
+  config.known_distances = {{sensor(0), sensor(2), 1.14 * seen}};
+  EXPECT_TRUE(with_scale(exact(), cameras(), config).reasons.empty());
+  for (const double factor : {1.27, 1.0 / 1.27}) {
+    config.known_distances = {{sensor(0), sensor(2), factor * seen}};
+    const Registration found = with_scale(exact(), cameras(), config);
+    EXPECT_THAT(
+        found.reasons,
+        Contains(HasSubstr(fmt::format("s0 and s2: {:.2f} m given, {:.2f} m by the person's size",
+                                       factor * seen, seen))));
+    EXPECT_EQ(found.verdict, Verdict::Good) << "the length may be right";
+    EXPECT_NEAR(found.sensors.at(sensor(1)).scale, factor, 1e-6) << "and is used";
+  }
 }
 
 TEST(CommonScale, IsPartOfASolveByCamerasAlone) {

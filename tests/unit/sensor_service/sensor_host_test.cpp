@@ -71,5 +71,19 @@ TEST(SensorHost, ADeviceThatThrowsIsStartedAgainAndItsNumbersGoOn) {
   host.stop();
 }
 
+TEST(SensorHost, ASocketThatCannotBeMadeIsAConcernBeforeTheStart) {
+  SensorSettings settings;
+  settings.at_start.id = chorus::testing::sensor_id("s1");
+  settings.at_start.http.port = 0;
+  const auto concerns = [&](const std::string& socket) {
+    settings.at_start.device = {"bridge", "{\"socket\": \"" + socket + "\"}"};
+    const auto host = SensorHost::make(settings);
+    return host ? ::testing::PrintToString((*host)->concerns()) : to_string(host.error());
+  };
+  EXPECT_THAT(concerns("/nonexistent/x.sock"), HasSubstr("device.bridge.socket"));
+  EXPECT_THAT(concerns("/etc/passwd"), HasSubstr("there is a file that is no socket"));
+  EXPECT_THAT(concerns(""), ::testing::Not(HasSubstr("socket")));
+}
+
 }  // namespace
 }  // namespace chorus::sensor_service

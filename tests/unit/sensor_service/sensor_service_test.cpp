@@ -193,6 +193,10 @@ TEST_F(SensorServiceTest, TheFloorPlaneChangesItsETagOnlyWhenItChanges) {
   moved.frame.floor = FloorPlane{Eigen::Vector3d(0.0, 1.0, 0.0), 1.25};
   service_.on_capture(std::move(moved));
   EXPECT_NE(get(router_, "/floor-plane").etag, first.etag);
+  Capture of_another_program = capture(4);
+  of_another_program.begins_anew = true;
+  service_.on_capture(std::move(of_another_program));
+  EXPECT_EQ(get(router_, "/floor-plane").status, 404) << "the floor was that of the one before";
 }
 
 TEST_F(SensorServiceTest, ImagesAreOffUntilSomebodyWantsThem) {

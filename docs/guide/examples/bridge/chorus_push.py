@@ -10,12 +10,15 @@
 ws://HOST:PORT/push is a WebSocket, http://HOST:PORT/push one POST a frame, anything else the path of a local socket.  wss:// and https://
 are for a sensor with TLS: `ca` (or CHORUS_CA) names the ca.crt of its authority, where the system does not know that.  The
 clock of this program need not be right: questions for the time are answered here.  When the sensor is not there, frames are
-dropped and the connection is tried again once a second.  What the messages mean: proto/bridge.md.
+dropped and the connection is tried again once a second.  Landmarks with a NaN are sent as not seen; numbers of numpy will do.  What the
+messages mean: proto/bridge.md.
 """
 import base64
+import contextlib
 import http.client
 import io
 import json
+import math
 import os
 import select
 import socket
@@ -44,6 +47,49 @@ class Refused(ConnectionError):
 
 def complain(text):
     print("chorus_push:", text, file=sys.stderr, flush=True)
+
+
+_LOST = object()
+
+
+def seen(value):
+    """The value as JSON knows it: numpy's numbers become plain ones, and a landmark with a NaN in it becomes None, which says not seen."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, float) and not math.isfinite(value):
+        return _LOST
+    if isinstance(value, dict):
+        values = {key: seen(one) for key, one in value.items()}
+        if values.get("at", 0) in (None, _LOST):
+            return None
+        return {key: None if one is _LOST else one for key, one in values.items()
+                if one is not _LOST or key not in ("confidence", "covariance", "sigma")}
+    if isinstance(value, (list, tuple)):
+        values = [seen(one) for one in value]
+        if _LOST in values and all(one is _LOST or isinstance(one, (int, float)) for one in values):
+            return _LOST
+        return [None if one is _LOST else one for one in values]
+    return value
+
+
+def _json(frame):
+    try:
+        return json.dumps(frame, separators=(",", ":"), allow_nan=False)
+    except (TypeError, ValueError):
+        return json.dumps(seen(frame), separators=(",", ":"), allow_nan=False)
+
+
+def _path(parts):
+    return parts.path.rstrip("/") or "/push"
+
+
+def _reason(body, path):
+    """Why the sensor refuses, from its problem document; what is no such document comes from elsewhere."""
+    try:
+        problem = json.loads(body)
+        return ": ".join(part for part in (problem.get("context"), problem["detail"]) if part)
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return "" if path.endswith("/push") else "the address of a sensor's bridge ends in /push"
 
 
 def _trusting(ca):
@@ -132,7 +178,7 @@ class WebSocketWay:
             self.stream = self.socket.makefile("rb")
         self.lock = threading.Lock()
         key = base64.b64encode(os.urandom(16)).decode()
-        fields = [f"GET {parts.path or '/push'} HTTP/1.1", f"Host: {parts.netloc}", "Connection: Upgrade", "Upgrade: websocket",
+        fields = [f"GET {_path(parts)} HTTP/1.1", f"Host: {parts.netloc}", "Connection: Upgrade", "Upgrade: websocket",
                   "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}"]
         if token:
             fields.append(f"Authorization: Bearer {token}")
@@ -144,7 +190,7 @@ class WebSocketWay:
             if name.lower() == b"content-length":
                 length = int(value)
         if " 101 " not in status:
-            why = self.stream.read(length).decode(errors="replace")
+            why = _reason(self.stream.read(length).decode(errors="replace"), _path(parts))
             self.socket.close()
             raise Refused(f"{status.strip()}: {why}")
         self.socket.settimeout(None)
@@ -211,7 +257,9 @@ class Talk:
             way.close()
             raise Refused(f"{answer.get('context', '')}: {answer['detail']}")
         self.welcome = answer
-        threading.Thread(target=self._listen, daemon=True).start()
+        self.last = "the sensor has gone"
+        self.listener = threading.Thread(target=self._listen, daemon=True)
+        self.listener.start()
 
     def _listen(self):
         try:
@@ -219,18 +267,25 @@ class Talk:
                 received = self.clock()
                 message = json.loads(text)
                 if message["type"] == "clock":
-                    self.way.send(json.dumps({"type": "clock", "sent": message["sent"], "received": str(received),
-                                              "answered": str(self.clock())}))
-                elif message["type"] in ("error", "bye"):
+                    with contextlib.suppress(OSError):  # a bye may still come
+                        self.way.send(json.dumps({"type": "clock", "sent": message["sent"], "received": str(received),
+                                                  "answered": str(self.clock())}))
+                elif message["type"] in ("error", "bye", "doubt"):
                     self.tell(f"{message['type']}: {message['context']}: {message['detail']}")
+                    if message["type"] == "bye":
+                        self.last = message["detail"]
         except (OSError, ValueError):
             pass
         self.over = True
 
     def push(self, frame):
         if self.over:
-            raise ConnectionError("the sensor has gone")
-        self.way.send(frame)
+            raise ConnectionError(self.last)
+        try:
+            self.way.send(frame)
+        except OSError:
+            self.listener.join(RETRY_S)  # its bye says more than the broken connection
+            raise
 
     def close(self):
         self.way.close()
@@ -241,7 +296,7 @@ class Post:
 
     def __init__(self, url, token, ca, hello, clock, tell):
         parts = urllib.parse.urlsplit(url)
-        self.path = parts.path or "/push"
+        self.path = _path(parts)
         if parts.scheme == "https":
             self.connection = http.client.HTTPSConnection(parts.hostname, parts.port or 443, timeout=TIMEOUT_S, context=_trusting(ca))
         else:
@@ -265,10 +320,13 @@ class Post:
         body = answer.read()
         stamps = answer.headers.get("Chorus-Clock", "").split()
         self.asked = (stamps[1], received) if len(stamps) == 2 else None
-        if answer.status in (401, 403, 404, 409, 503):
-            raise Refused(f"{answer.status}: {body.decode(errors='replace')}")
+        text = body.decode(errors="replace")
+        if answer.status in (401, 403, 404, 405, 409, 429, 503):
+            raise Refused(f"{answer.status}: {_reason(text, self.path)}")
         if answer.status != 200:
-            self.tell(f"{answer.status}: {body.decode(errors='replace')}")
+            self.tell(f"{answer.status}: {_reason(text, self.path)}")
+        elif (doubt := json.loads(text).get("doubt")):
+            self.tell(f"doubt: {doubt}")
 
     def push(self, frame):
         self._post([frame])
@@ -292,8 +350,12 @@ class Pusher:
         """Sends one frame; `bodies` is [] when nobody is seen.  Returns False when it could not be sent."""
         self.sequence += 1
         captured = self.clock() if captured is None else captured
-        frame = json.dumps({"type": "frame", "sequence": self.sequence, "captured": str(captured), "bodies": bodies, **more},
-                           separators=(",", ":"), allow_nan=False)
+        try:
+            frame = _json({"type": "frame", "sequence": self.sequence, "captured": str(int(captured)), "bodies": bodies, **more})
+        except (TypeError, ValueError) as problem:
+            self.tell(f"frame {self.sequence} cannot be sent: {problem}")
+            self.dropped += 1
+            return False
         try:
             if not self._connected():
                 self.dropped += 1

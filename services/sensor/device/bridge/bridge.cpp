@@ -18,6 +18,7 @@ class Bridge final : public FrameSource {
   [[nodiscard]] DeviceDescription describe() const override;
   [[nodiscard]] Result<void> run(std::stop_token stop, const Sink& sink) override;
   [[nodiscard]] std::string trouble() const override { return desk_->status().reason; }
+  [[nodiscard]] std::vector<std::string> concerns() const override;
 
  private:
   [[nodiscard]] Result<std::unique_ptr<LineServer>> listen() const;
@@ -44,6 +45,12 @@ Result<std::unique_ptr<LineServer>> Bridge::listen() const {
     return open_dialogue(desk, "local socket", address);
   };
   return LineServer::start({settings.socket, open, settings.max_message_bytes});
+}
+
+std::vector<std::string> Bridge::concerns() const {
+  const auto lines = listen();
+  if (!lines) return {to_string(lines.error())};
+  return {};
 }
 
 Result<void> Bridge::run(std::stop_token stop, const Sink& sink) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common/sensor/limits.h"
@@ -16,6 +17,8 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kMaxName = 64;
 constexpr Bounds kShare{0.0, 1.0};
+// No camera for people hangs so high [m]; one at 1.6 m seems to, in millimetres or centimetres.
+constexpr double kHighest = 100.0;
 
 struct Direction {
   std::string_view word;
@@ -141,6 +144,12 @@ Result<FloorPlane> read_floor(const Json& value, const Eigen::Matrix3d& sensor_f
     return pass(ok);
   const auto& [x, y, z, offset] = numbers;
   const Eigen::Vector3d normal = sensor_from_pusher * Eigen::Vector3d(x, y, z);
+  if (std::abs(offset) > kHighest) {
+    return wrong(at[3],
+                 fmt::format("is {:.0f}: that is how many metres the sensor is above the floor; is "
+                             "it in millimetres?",
+                             offset));
+  }
   const auto plane = make_plane(normal.x(), normal.y(), normal.z(), offset);
   if (!plane || plane->normal.y() <= 0.0 || plane->offset < 0.0) {
     return wrong(at,

@@ -68,8 +68,9 @@ Result<Timestamp> read_stamp(const Json& value, const At& at) {
     return from_unix_ns(static_cast<std::int64_t>(*ns));
   return wrong(
       at,
-      "must be nanoseconds since 1970 (UTC), such as \"1795246200250000000\"; a clock that "
-      "is wrong is no harm, one that counts from another beginning is");
+      "must be nanoseconds since 1970 (UTC), a whole number or its digits, such as "
+      "\"1795246200250000000\" (not 1.79e+18); a clock that is wrong is no harm, one that counts "
+      "from another beginning is");
 }
 
 }  // namespace chorus::bridge

@@ -98,12 +98,10 @@ void LineConnection::hear_lines() {
     if (!line.empty()) react(dialogue_->hear(line));
   }
   text_.erase(0, begin);
-  if (text_.size() <= max_line_bytes_ || over_) return;
-  react({{bye({ErrorCode::TooLarge,
-               {},
-               "a line has at most " + std::to_string(max_line_bytes_) +
-                   " bytes (device.bridge.max_message_kb)"})},
-         true});
+  if (text_.size() <= max_line_bytes_ || over_ || !dialogue_) return;
+  react(dialogue_->end({ErrorCode::TooLarge,
+                        {},
+                        "a line has at most " + std::to_string(max_line_bytes_) + " bytes"}));
 }
 
 void LineConnection::react(Reply reply) {

@@ -124,6 +124,10 @@ Result<void> PushDesk::take(Seat seat, PushedFrame frame, const Hello& hello) {
   capture.frame.received = now();
   capture.frame.bodies = std::move(frame.bodies);
   capture.frame.floor = frame.floor ? frame.floor : hello.floor;
+  // The floor is that of one program: another may stand elsewhere, and this one may have taken its
+  // own back by a new hello.
+  capture.begins_anew = !holder_->last_frame || (holder_->hello_had_floor && !hello.floor);
+  holder_->hello_had_floor = hello.floor.has_value();
   last_captured_ = frame.captured;
   refused_captured_.reset();
   holder_->last_count = frame.sequence;
@@ -147,6 +151,15 @@ void PushDesk::note_refusal(Seat seat, const Error& error) {
 void PushDesk::note_left_out(Seat seat) {
   const std::lock_guard lock(mutex_);
   if (holder_ && holder_->seat == seat) ++holder_->status.left_out;
+}
+
+void PushDesk::note_doubt(Seat seat, const std::string& doubt) {
+  const std::lock_guard lock(mutex_);
+  if (!holder_ || holder_->seat != seat || holder_->status.doubt == doubt) return;
+  holder_->status.doubt = doubt;
+  if (!doubt.empty())
+    log::warn("pushed frames look wrong",
+              {{"name", holder_->status.pusher->name}, {"reason", doubt}});
 }
 
 void PushDesk::note_clock(Seat seat, const std::optional<ClockEstimate>& estimate) {

@@ -43,6 +43,7 @@ struct PushStatus {
   /// Frames of this pusher beyond the maximum rate, or sent before its clock was known.
   std::uint64_t left_out = 0;
   std::string last_error;  ///< The error for the last refused message.
+  std::string doubt;       ///< What is probably wrong although frames are taken; empty: nothing.
   std::optional<ClockEstimate> clock;
 };
 
@@ -85,6 +86,7 @@ class PushDesk {
   [[nodiscard]] Result<void> take(Seat seat, PushedFrame frame, const Hello& hello);
   void note_refusal(Seat seat, const Error& error);
   void note_left_out(Seat seat);
+  void note_doubt(Seat seat, const std::string& doubt);
   void note_clock(Seat seat, const std::optional<ClockEstimate>& estimate);
 
   [[nodiscard]] PushStatus status() const;
@@ -100,6 +102,7 @@ class PushDesk {
     SteadyTime sat_down{};
     std::optional<SteadyTime> last_frame;
     std::optional<std::uint64_t> last_count;  ///< The number that the pusher gave its last frame.
+    bool hello_had_floor = false;             ///< At the last frame.
     /// True if a message was refused after the last frame.
     bool refused_since = false;
   };

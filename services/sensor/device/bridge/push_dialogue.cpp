@@ -47,12 +47,14 @@ class PushDialogue final : public http::Dialogue {
 
   [[nodiscard]] http::Reply hear(std::string_view message) override;
   [[nodiscard]] http::Reply look() override;
+  [[nodiscard]] http::Reply end(const Error& why) override;
 
  private:
   [[nodiscard]] std::string welcome() const;
   [[nodiscard]] std::string clock_question();
   [[nodiscard]] http::Reply complain(const Error& error);
   [[nodiscard]] http::Reply send_away(const Error& error);
+  [[nodiscard]] http::Reply doubt(const Error& error) const;
 
   std::shared_ptr<PushDesk> desk_;
   PushSession session_;
@@ -88,6 +90,10 @@ http::Reply PushDialogue::send_away(const Error& error) {
           true};
 }
 
+http::Reply PushDialogue::doubt(const Error& error) const {
+  return {{text_of({{"type", "doubt"}, {"context", error.context}, {"detail", error.message}})}};
+}
+
 http::Reply PushDialogue::complain(const Error& error) {
   const SteadyTime now = desk_->steady_now();
   if (++errors_in_a_row_ > kMaxErrorsInARow) {
@@ -111,6 +117,7 @@ http::Reply PushDialogue::hear(std::string_view message) {
   const auto heard = session_.hear(message);
   if (!heard) return session_.lost() ? send_away(heard.error()) : complain(heard.error());
   if (*heard == Heard::Frame) errors_in_a_row_ = 0;
+  if (const auto strange = session_.take_doubt()) return doubt(*strange);
   if (*heard == Heard::Hello) {
     session_.expect_clock();
     return {{welcome(), clock_question()}};
@@ -131,6 +138,13 @@ http::Reply PushDialogue::look() {
     return send_away({ErrorCode::Timeout, {}, "nothing has come for 30 s, not even the time"});
   if (asked_ && now - *asked_ < kClockEvery) return {};
   return {{clock_question()}};
+}
+
+http::Reply PushDialogue::end(const Error& why) {
+  if (why.code != ErrorCode::TooLarge) return send_away(why);
+  return send_away({why.code, why.context,
+                    why.message + " (device.bridge.max_message_kb); send fewer bodies at once, or "
+                                  "without covariances"});
 }
 
 }  // namespace

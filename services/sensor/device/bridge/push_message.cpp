@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <string>
 
 #include <fmt/format.h>
@@ -12,6 +10,7 @@
 #include "common/base/json.h"
 #include "common/sensor/limits.h"
 #include "common/sensor/pixel_ray.h"
+#include "services/sensor/device/bridge/body_checks.h"
 #include "services/sensor/device/bridge/json_value.h"
 
 namespace chorus::bridge {
@@ -22,9 +21,6 @@ using layout::Landmark;
 
 constexpr double kMaxVariance = 1e8;  // [m^2]
 constexpr double kMaxShape = 10.0;    // Limit of a coordinate in a shape [m].
-// No camera sees a person from so far away [m], but one at 2 m in millimetres or centimetres seems
-// to be farther.
-constexpr double kFarthestBody = 100.0;
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 
 /// An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
@@ -198,22 +194,10 @@ Result<std::vector<Landmark>> read_landmarks(const Json& value, ReadLandmark rea
   return landmarks;
 }
 
-/// Refuses a body of which every point is too far away.  Single points may be, since depth cameras
-/// measure some wrongly.
-Result<void> check_distance(const Skeleton<SensorSpace>& skeleton, const At& at) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Joint& joint : skeleton.joints) {
-    if (joint.seen()) nearest = std::min(nearest, joint.position.norm());
-  }
-  if (nearest <= kFarthestBody || std::isinf(nearest)) return {};
-  return wrong(at, fmt::format("are all {:.0f} m or more from the sensor; lengths are in metres: "
-                               "are these millimetres?",
-                               nearest));
-}
-
 struct PushedBody {
   BodyFrame body;
   Skeleton<SensorSpace> shape;
+  std::optional<bool> outside_picture;
 };
 
 /// The members of a body that state where its landmarks are.
@@ -257,9 +241,14 @@ Result<PushedBody> read_body(const Json& value, const Hello& hello, const At& at
                           : read_joints(places->pixels, &read_pixel, hello, at["pixels"]);
   if (!joints) return pass(joints);
   if (const auto ok = check_distance(*joints, at["points"]); !ok) return pass(ok);
+  if (const auto ok = check_origin(*joints, at["points"]); !ok) return pass(ok);
+  const auto pixels =
+      places->pixels != nullptr ? pixels_given(*places->pixels) : std::vector<Eigen::Vector2d>();
+  if (const auto ok = check_pixels(pixels, at["pixels"]); !ok) return pass(ok);
   const auto shape = read_joints(places->world, &read_shape_point, hello, at["world"]);
   if (!shape) return pass(shape);
-  PushedBody out{{BodyId{*number}, {}, *joints}, *shape};
+  PushedBody out{{BodyId{*number}, {}, *joints}, *shape, {}};
+  if (hello.camera) out.outside_picture = outside_picture(pixels, *hello.camera);
   // The error of the focal length is common to all landmarks, so it is added to joints: the mean of
   // two landmarks must not make it smaller.
   for (Joint& joint : out.body.skeleton.joints) widen_ray(joint, hello.focal_sigma);
@@ -287,6 +276,8 @@ Result<void> read_bodies(const Json& value, const Hello& hello, PushedFrame& out
     one->body.captured = out.captured;
     out.bodies.push_back(std::move(one->body));
     out.shapes.push_back(one->shape);
+    if (one->outside_picture)
+      out.outside_picture = out.outside_picture.value_or(true) && *one->outside_picture;
   }
   return {};
 }
@@ -327,11 +318,18 @@ Result<ClockAnswer> read_clock(const Json& message) {
   return ClockAnswer{stamps[0], stamps[1], stamps[2]};
 }
 
+/// Why a message is no JSON, with advice for the usual reason.
+Error unparsed(Error error, std::string_view text) {
+  if (text.find("NaN") != std::string_view::npos || text.find("Infinity") != std::string_view::npos)
+    error.message += "; JSON has no NaN: send null for what is not seen";
+  return error;
+}
+
 }  // namespace
 
 Result<PushMessage> read_push_message(std::string_view text, const Hello* hello) {
   const auto message = parse_json(text, kLimits);
-  if (!message) return pass(message);
+  if (!message) return tl::unexpected<Error>(unparsed(message.error(), text));
   const Json* type = message->is_object() ? find(*message, "type") : nullptr;
   const auto into = [](auto&& read) { return PushMessage(std::move(read)); };
   if (type != nullptr && *type == "hello") return read_hello(*message).map(into);

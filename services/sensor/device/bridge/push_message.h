@@ -27,6 +27,8 @@ struct PushedFrame {
   /// where there is none.
   std::vector<Skeleton<SensorSpace>> shapes;
   std::optional<FloorPlane> floor;
+  /// Whether all landmarks in pixels lie outside the picture; none if there are too few to tell.
+  std::optional<bool> outside_picture;
 };
 
 using PushMessage = std::variant<Hello, ClockAnswer, PushedFrame>;

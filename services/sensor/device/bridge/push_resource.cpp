@@ -33,6 +33,7 @@ Json pusher_json(const PushStatus& status) {
             {"since", to_iso8601(status.since)}, {"frames", status.frames},
             {"refused", status.refused},         {"leftOut", status.left_out},
             {"lastError", status.last_error}};
+  if (!status.doubt.empty()) json["doubt"] = status.doubt;
   if (status.clock) {
     json["clockOffsetMilliseconds"] = -seconds(status.clock->ours_minus_theirs) * kMillisecond;
     json["clockUncertaintyMilliseconds"] = seconds(status.clock->uncertainty) * kMillisecond;
@@ -66,9 +67,11 @@ class PostBox {
     std::uint64_t left_out = 0;
     std::uint64_t refused = 0;
     std::optional<Error> first;
+    std::string doubt;
   };
   [[nodiscard]] Result<void> greet(std::string_view line);
-  void hear(std::string_view line, Outcome& outcome);
+  /// `line_number`: counts the lines that are not empty from 1, the hello's.
+  void hear(std::string_view line, std::size_t line_number, Outcome& outcome);
 
   std::shared_ptr<PushDesk> desk_;
   std::unique_ptr<PushSession> session_;
@@ -105,23 +108,27 @@ Result<void> PostBox::greet(std::string_view line) {
   return {};
 }
 
-void PostBox::hear(std::string_view line, Outcome& outcome) {
+void PostBox::hear(std::string_view line, std::size_t line_number, Outcome& outcome) {
   const auto heard = session_->hear(line);
   if (!heard) {
     ++outcome.refused;
     if (!outcome.first) outcome.first = heard.error();
+    if (outcome.first->context.empty())
+      outcome.first->context = "line " + std::to_string(line_number);
     return;
   }
   if (*heard == Heard::Frame) ++outcome.taken;
   if (*heard == Heard::LeftOut) ++outcome.left_out;
+  if (const auto doubt = session_->take_doubt()) outcome.doubt = to_string(*doubt);
 }
 
 Result<http::ActionResult> PostBox::take(const Request& request) {
   std::string_view body = request.body;
   if (const auto ok = greet(next_line(body)); !ok) return pass(ok);
   Outcome outcome;
+  std::size_t number = 1;
   for (auto line = next_line(body); !line.empty() && !session_->lost(); line = next_line(body))
-    hear(line, outcome);
+    hear(line, ++number, outcome);
   if (session_->lost()) session_.reset();
   if (outcome.first && outcome.taken == 0) return tl::unexpected<Error>(*outcome.first);
   Json json{{"sensor", desk_->options().sensor.str()},
@@ -129,6 +136,7 @@ Result<http::ActionResult> PostBox::take(const Request& request) {
             {"leftOut", outcome.left_out},
             {"refused", outcome.refused}};
   if (outcome.first) json["reason"] = to_string(*outcome.first);
+  if (!outcome.doubt.empty()) json["doubt"] = outcome.doubt;
   return http::ActionResult{http::status::kOk,
                             json_document(json, std::to_string(to_unix_ns(desk_->now())))};
 }

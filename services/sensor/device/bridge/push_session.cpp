@@ -90,6 +90,7 @@ Result<Heard> PushSession::on(Hello hello) {
     if (!seat) return pass(seat);
     seat_ = *seat;
   }
+  if (hello_ && hello_->sensor_from_pusher != hello.sensor_from_pusher) doubts_ = {};
   if (hello_ && hello_->layout != hello.layout) placer_ = {};  // The new layout has other bones.
   hello_ = std::move(hello);
   return Heard::Hello;
@@ -147,6 +148,8 @@ Result<Heard> PushSession::on(PushedFrame frame) {
   PlacingErrors errors;
   errors.focal = hello_->focal_sigma;
   placer_.place(frame.bodies, frame.shapes, errors);
+  doubts_.look(frame, *hello_, now);
+  desk_->note_doubt(seat_, doubts_.lasting());
   const auto taken = desk_->take(seat_, std::move(frame), *hello_);
   if (!taken) return pass(taken);
   return Heard::Frame;

@@ -9,6 +9,7 @@
 
 #include "common/net/token_bucket.h"
 #include "common/sensor/body_placer.h"
+#include "services/sensor/device/bridge/pose_doubts.h"
 #include "services/sensor/device/bridge/push_desk.h"
 
 namespace chorus::bridge {
@@ -45,6 +46,8 @@ class PushSession {
   /// True when the pusher should be asked for its time again soon: there have been too few answers,
   /// or they contradict each other.
   [[nodiscard]] bool wants_clock() const;
+  /// What is probably wrong although frames are taken; each doubt is returned once.
+  [[nodiscard]] std::optional<Error> take_doubt() { return doubts_.take_new(); }
   [[nodiscard]] bool holds_sensor() const { return seat_ != 0 && desk_->sits(seat_); }
 
  private:
@@ -61,6 +64,7 @@ class PushSession {
   std::optional<Hello> hello_;
   PushDesk::Seat seat_ = 0;
   BodyPlacer placer_;
+  PoseDoubts doubts_;
   ClockFilter clock_;
   int exchanges_ = 0;
   /// While the pusher's clock is unknown, frames are left out until this time.

@@ -53,6 +53,7 @@ class Camera final : public FrameSource {
   [[nodiscard]] DeviceDescription describe() const override;
   [[nodiscard]] Result<void> run(std::stop_token stop, const Sink& sink) override;
   [[nodiscard]] std::string trouble() const override { return parts_.state->trouble(); }
+  [[nodiscard]] std::vector<std::string> concerns() const override;
 
  private:
   [[nodiscard]] Result<Looker> start_runner(const std::stop_token& stop) const;
@@ -73,6 +74,32 @@ DeviceDescription Camera::describe() const {
   device.nominal_rate_hz = settings.max_rate_hz;
   device.resources = {{"camera", "source and runner of the pictures, and their rates"}};
   return device;
+}
+
+/// Success if the lens is for the file's pictures, and these can be read.
+Result<void> check_file(const CameraSettings& settings) {
+  const auto video = open_video(settings);
+  if (!video) return pass(video);
+  const auto moment = (*video)->next();
+  if (!moment) return pass(moment);
+  const auto picture = (*video)->picture();
+  if (!picture) return pass(picture);
+  const auto lens = lens_for(settings, picture->size);
+  if (!lens) return pass(lens);
+  return {};
+}
+
+/// Neither a webcam nor a stream is opened: another program may be using it.  The shipped runner
+/// was checked when the device was made.
+std::vector<std::string> Camera::concerns() const {
+  std::vector<std::string> all;
+  if (kind_of(parts_.settings.source) == SourceKind::File) {
+    if (const auto ok = check_file(parts_.settings); !ok) all.push_back(to_string(ok.error()));
+  }
+  if (parts_.settings.runner.empty()) return all;
+  const auto looker = Looker::start(parts_.settings, parts_.command, {});
+  if (!looker) all.push_back(to_string(looker.error()));
+  return all;
 }
 
 Result<Looker> Camera::start_runner(const std::stop_token& stop) const {
@@ -97,6 +124,7 @@ Capture capture_of(SensorFrame frame, const Picture& picture, const Lens& lens) 
 /// Sends one picture to the runner and returns its answer.
 Result<Capture> Camera::ask(Looker& looker, const Shot& shot, const std::stop_token& stop) {
   const auto began = std::chrono::steady_clock::now();
+  parts_.state->lens_fits(lens_for(parts_.settings, shot.picture.size).has_value());
   auto found = looker.look(shot.picture, shot.captured, ++sequence_, stop);
   if (!found) return pass(found);
   SensorFrame frame{

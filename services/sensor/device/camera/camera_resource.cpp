@@ -31,6 +31,12 @@ Json report_json(const CameraReport& report) {
   return json;
 }
 
+/// While there is trouble.
+const char* state_of(const CameraReport& report) {
+  if (!report.source_trouble.empty()) return "no pictures";
+  return report.lens_fits ? "no runner" : "wrong lens";
+}
+
 }  // namespace
 
 void add_camera_route(http::Router& router, std::string source,
@@ -43,7 +49,7 @@ void add_camera_route(http::Router& router, std::string source,
     json["source"] = source;
     if (report.looked_at == 0) json["state"] = "starting";
     if (const std::string trouble = state->trouble(); !trouble.empty()) {
-      json["state"] = report.source_trouble.empty() ? "no runner" : "no pictures";
+      json["state"] = state_of(report);
       json["reason"] = trouble;
     }
     http::DocumentOptions options;

@@ -54,6 +54,11 @@ void CameraState::runner_failed(std::string why) {
   told("nobody looks at the pictures", report_.runner_trouble, std::move(why));
 }
 
+void CameraState::lens_fits(bool fits) {
+  const std::lock_guard lock(mutex_);
+  report_.lens_fits = fits;
+}
+
 void CameraState::answered(Size sent, Duration answer, Duration latency) {
   const std::lock_guard lock(mutex_);
   const bool first = report_.looked_at == 0;

@@ -13,6 +13,7 @@ namespace chorus::camera {
 struct CameraReport {
   std::string source_trouble;  ///< Why no pictures arrive; empty while they do.
   std::string runner_trouble;  ///< Why no runner works; empty while one does.
+  bool lens_fits = true;       ///< False: the lens is for pictures of another shape.
   std::string runner;          ///< The runner's name, from its hello.
   std::string layout;
   Size picture;                 ///< Size of the source's pictures [px].
@@ -32,6 +33,7 @@ class CameraState {
   void picture(Size size);
   void runner_ready(std::string name, std::string layout);
   void runner_failed(std::string why);
+  void lens_fits(bool fits);
   void answered(Size sent, Duration answer, Duration latency);
 
   [[nodiscard]] CameraReport report() const;
