@@ -44,7 +44,8 @@ struct SensorStatus {
   std::optional<Duration> age;
   double rate_hz = 0.0;
   std::size_t bodies = 0;  ///< Number of bodies in its newest frame.
-  double weight = 0.0;     ///< Largest Otto weight of its views; only "otto" methods use weights.
+  /// Largest Otto weight of its views; none: the fusion method uses no weights.
+  std::optional<double> weight;
   double share = 0.0;  ///< Share of the joints fused in the last second to which it contributed.
   double share_afterwards = 0.0;  ///< The same, including its late frames, as /frame?at= shows it.
   /// Share of the instants that waited for this sensor as long as they could.
@@ -56,6 +57,9 @@ struct SensorStatus {
   /// Added to its capture times as well, because a walk showed that its clock is off.
   std::optional<Duration> walked_offset;
   std::optional<Duration> walked_sigma;
+  /// True if that offset is only a guess from how old its frames arrive: the sensor walked alone,
+  /// so no other one told the time.
+  bool guessed_from_age = false;
   std::optional<NtpStatus> host;  ///< What the sensor's host says of its own clock.
   std::uint64_t frames = 0;       ///< Frames received from it since the start.
   std::uint64_t missed = 0;       ///< Frames missing from the sensor's numbering: neither delivered
@@ -178,14 +182,14 @@ struct SessionStatus {
 /// Where the registration is kept across restarts.
 struct StorageStatus {
   std::string folder;   ///< Empty: the registration is not kept.
-  std::string trouble;  ///< Why the last attempt to store it failed; empty if that succeeded.
+  std::string trouble;  ///< Why the last attempt to store something failed; empty if none did.
+  /// What was wrong with the file at the start, and what became of it; empty once a registration
+  /// has been stored, or if nothing was.
+  std::string damage;
+  bool writing = false;  ///< True until the registration put into use last has been written.
 
   bool operator==(const StorageStatus&) const = default;
 };
-
-[[nodiscard]] inline bool stored(const StorageStatus& storage) {
-  return !storage.folder.empty() && storage.trouble.empty();
-}
 
 /// The progress of registration; the registration in use is separate.
 struct RegistrationProgress {
@@ -196,8 +200,19 @@ struct RegistrationProgress {
   std::optional<Proposal> proposal;     ///< Waits to be accepted or declined.
   std::vector<std::string> alarms;      ///< Sensors that were moved, as sentences for people.
   StorageStatus storage;
-  std::uint64_t commands = 0;  ///< How many commands of clients were carried out.
+  /// True while the registration in use is one that the running session has put there; it is stored
+  /// at the session's end.
+  bool own_provisional = false;
+  std::vector<SensorId> unpolled;  ///< Sensors with a place that are not configured.
+  std::uint64_t commands = 0;      ///< How many commands of clients were carried out.
 };
+
+/// Whether the registration in use is the one that the next start would find.
+[[nodiscard]] inline bool stored(const RegistrationProgress& progress) {
+  const StorageStatus& storage = progress.storage;
+  return !storage.folder.empty() && storage.trouble.empty() && !storage.writing &&
+         !progress.own_provisional;
+}
 
 struct Counters {
   std::uint64_t ticks = 0;  ///< Snapshots published.

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 #include "common/base/log.h"
@@ -21,6 +22,17 @@ fs::path nearest_existing(fs::path folder) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
+/// Creates and removes a folder in this one, because permissions do not tell everything: /proc lets
+/// root write, and takes nothing.
+std::error_code try_folder(const fs::path& folder) {
+  const fs::path probe = folder / (".chorus-probe-" + std::to_string(::getpid()));
+  std::error_code error;
+  fs::create_directory(probe, error);
+  std::error_code ignored;
+  if (!error) fs::remove(probe, ignored);
+  return error;
+}
+
 }  // namespace
 
 Result<void> usable_folder(const std::string& folder) {
@@ -28,11 +40,13 @@ Result<void> usable_folder(const std::string& folder) {
   std::error_code ignored;
   if (!fs::is_directory(there, ignored))
     return fail(ErrorCode::Io, folder, there.string() + " is no folder");
-  if (::access(there.c_str(), W_OK | X_OK) == 0) return {};
+  const std::error_code refused = try_folder(there);
+  if (!refused) return {};
   const std::string what =
       there == fs::path(folder) ? "cannot be written to" : "cannot be created in " + there.string();
   return fail(ErrorCode::Io, folder,
-              what + " by this user; give it to the user of the service (chown), or name another");
+              what + " by this user (" + refused.message() +
+                  "); give it to the user of the service (chown), or name another");
 }
 
 Result<void> free_to_listen(const http::ServerConfig& config) {

@@ -17,7 +17,7 @@ namespace chorus::service {
 using Concerns = std::vector<std::string>;
 
 /// Success if this user can create files in the folder or, if it does not exist yet, can create the
-/// folder.  Changes nothing.
+/// folder; tries it, and leaves nothing behind.
 [[nodiscard]] Result<void> usable_folder(const std::string& folder);
 
 /// Success if a server could listen at this address now; Io when the port is taken or the address

@@ -12,6 +12,11 @@
 #include "fusion-server/core/world.h"
 
 namespace chorus::core {
+
+const char* const kContradicted =
+    "the sensors that have a place do not stand as the last walk showed them: if one was moved, "
+    "register all anew (chorus register --fresh)";
+
 namespace {
 
 // If the places of the held sensors in both registrations fit with a greater rms than this, one of
@@ -226,12 +231,9 @@ Result<Registration> extended(const Registration& current, const Registration& c
   if (!usable(current) || !usable(candidate) || added.empty())
     return fail(ErrorCode::NotFound, "registration", "no sensor is better placed than before");
   const auto world_from_candidate = between_worlds(current, candidate, added);
-  if (!world_from_candidate) {
-    return fail(ErrorCode::Conflict, "registration",
-                "the sensors that have a place do not stand as this walk shows them: if one was "
-                "moved, register all anew (chorus register --fresh)");
-  }
+  if (!world_from_candidate) return fail(ErrorCode::Conflict, "registration", kContradicted);
   Registration wider = current;
+  std::erase(wider.reasons, kContradicted);
   wider.solved = candidate.solved;
   spell_out_verdicts(wider);
   for (const SensorId& sensor : added) {
@@ -268,6 +270,8 @@ void note_refusals(Registration& current, const Registration& candidate) {
       take_verdict(current, sensor, own);
   }
 }
+
+void note_contradiction(Registration& current) { add_once(current.reasons, {kContradicted}); }
 
 Registration without(Registration current, const SensorId& sensor, const std::string& reason) {
   spell_out_verdicts(current);

@@ -12,6 +12,10 @@
 
 namespace chorus::core {
 
+/// Why extended() refuses a walk, and what stays a reason of the registration in use until another
+/// one replaces it.
+extern const char* const kContradicted;
+
 /// The sensor's own verdict, or that of the whole registration.  None: the sensor has no place.
 [[nodiscard]] Verdict verdict_of(const Registration& registration, const SensorId& sensor);
 
@@ -24,8 +28,8 @@ namespace chorus::core {
 
 /// The current places, plus those of sensors that only the candidate places well or, at the end of
 /// a walk, that only it places at all; they are moved into the world of the held ones. NotFound:
-/// there is no such sensor, or one of the two registrations is refused or empty. Conflict: the walk
-/// contradicts the places of the held sensors relative to one another.
+/// there is no such sensor, or one of the two registrations is refused or empty. Conflict, with
+/// kContradicted: the walk contradicts the places of the held sensors relative to one another.
 [[nodiscard]] Result<Registration> extended(const Registration& current,
                                             const Registration& candidate, SolveKind kind);
 
@@ -38,6 +42,9 @@ namespace chorus::core {
 
 /// Notes the reason for each sensor that neither the registration nor the candidate could place.
 void note_refusals(Registration& current, const Registration& candidate);
+
+/// Notes that the last walk contradicted the places: kContradicted.
+void note_contradiction(Registration& current);
 
 /// The registration without the place of this sensor, which was moved; the sensor is refused with
 /// `reason`.  If it was the master, the best of the others becomes the master.

@@ -9,6 +9,11 @@
 #include "fusion-server/core/coverage.h"
 
 namespace chorus::core {
+
+const char* const kDecide =
+    "new places wait for your decision: chorus register --accept puts them into use, "
+    "chorus register --decline keeps the old ones";
+
 namespace {
 
 /// "sensor s1" or "sensors s1, s2 and s3".
@@ -106,14 +111,25 @@ void say_start(const Situation& s, bool walking, std::vector<std::string>& out) 
   }
 }
 
+/// Says that all places are those of another setup.
+void say_unpolled(const Situation& s, std::vector<std::string>& out) {
+  std::vector<SensorId> placed;
+  for (const auto& [sensor, place] : s.registration.sensors) {
+    if (s.sensors.contains(sensor)) return;
+    placed.push_back(sensor);
+  }
+  if (placed.empty() || s.sensors.empty()) return;
+  out.push_back("the stored places are of another setup: " + named(placed) +
+                (placed.size() == 1 ? " is" : " are") +
+                " not configured; chorus register --fresh begins anew");
+}
+
 }  // namespace
 
 std::vector<std::string> awaited(const Situation& s) {
   std::vector<std::string> out;
-  if (s.proposes)
-    out.emplace_back(
-        "new places wait for your decision: chorus register --accept puts them into use, "
-        "chorus register --decline keeps the old ones");
+  if (s.proposes) out.emplace_back(kDecide);
+  say_unpolled(s, out);
   const auto missing =
       those(s, [&](const SensorId& sensor) { return !s.registration.sensors.contains(sensor); });
   if (missing.empty() && s.session == nullptr && !s.sensors.empty()) return out;

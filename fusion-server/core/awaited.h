@@ -11,6 +11,9 @@
 
 namespace chorus::core {
 
+/// Said while a registration waits to be accepted.
+extern const char* const kDecide;
+
 struct Situation {
   const std::set<SensorId>& sensors;  ///< The configured ones.
   const Registration& registration;

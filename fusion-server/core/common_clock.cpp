@@ -6,7 +6,6 @@
 namespace chorus::core {
 
 void keep_near_ours(Registration& registration) {
-  constexpr Duration kOldest = std::chrono::milliseconds(100);
   std::optional<Duration> youngest;
   for (const auto& [sensor, clock] : registration.clocks) {
     if (exchanges_time(seconds(clock.stated)) || !clock.least_age) return;
@@ -14,7 +13,7 @@ void keep_near_ours(Registration& registration) {
     youngest = std::min(youngest.value_or(age), age);
   }
   if (!youngest) return;
-  const Duration by = *youngest - std::clamp(*youngest, Duration{0}, kOldest);
+  const Duration by = *youngest - std::clamp(*youngest, Duration{0}, kOldestFrames);
   for (auto& [sensor, clock] : registration.clocks) clock.added += by;
 }
 

@@ -12,6 +12,11 @@ RegistrarConfig registrar_config(const CoreConfig& config) {
   return {config.registration, config.session, config.sensors};
 }
 
+CoreConfig with_polled(CoreConfig config) {
+  config.pipeline.polled = config.sensors;
+  return config;
+}
+
 constexpr std::string_view kOutOfOrder =
     "a frame was captured before the one it follows, and is refused: the clock of the sensor's "
     "host "
@@ -40,7 +45,7 @@ bool share_a_place(const Registration& one, const Registration& other) {
 }  // namespace
 
 FusionCore::FusionCore(CoreConfig config, Registration registration)
-    : config_(std::move(config)),
+    : config_(with_polled(std::move(config))),
       schedule_(config_.output, config_.first_sequence),
       registrar_(registrar_config(config_), std::move(registration), config_.first_session),
       hindsight_(config_.output.late_frames) {
@@ -49,7 +54,7 @@ FusionCore::FusionCore(CoreConfig config, Registration registration)
 
 void FusionCore::reconfigure(CoreConfig config) {
   const bool same_output = config.output == config_.output;
-  config_ = std::move(config);
+  config_ = with_polled(std::move(config));
   if (!same_output) schedule_.reconfigure(config_.output);
   registrar_.reconfigure(registrar_config(config_));
   const auto gone = [&](const auto& entry) { return !config_.sensors.contains(entry.first); };
@@ -296,6 +301,10 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
   progress.earlier = earlier();
   progress.proposal = registrar_.proposal();
   progress.awaits = registrar_.awaits(now);
+  progress.own_provisional = registrar_.own_provisional();
+  for (const auto& [sensor, place] : registration().sensors) {
+    if (!config_.sensors.contains(sensor)) progress.unpolled.push_back(sensor);
+  }
   for (const SensorId& sensor : config_.sensors) {
     const auto told = alarm(sensor);
     const bool twice = told && told->or_else && *told->or_else < sensor;

@@ -76,6 +76,10 @@ class FusionCore {
   [[nodiscard]] RegistrationProgress progress(Timestamp now) const;
 
   [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return reports_; }
+  /// Whether the weights in reports() mean anything to the method in use.
+  [[nodiscard]] bool uses_weights() const {
+    return pipeline::uses_weights(config_.pipeline.fusion.method);
+  }
   /// Number of bodies in the sensor's newest frame, whether the sensor has a place or not.
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);

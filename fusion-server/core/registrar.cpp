@@ -125,7 +125,8 @@ void Registrar::keep_earlier(const Registration& used) {
 Result<void> Registrar::unless_busy(const char* what) const {
   if (!busy()) return {};
   return fail(ErrorCode::Conflict, what,
-              "a registration session is running; wait for its end or cancel it");
+              "a registration session is running; wait for its end, or cancel it: chorus register "
+              "--cancel");
 }
 
 Result<void> Registrar::undo() {
@@ -295,6 +296,7 @@ Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   } else {
     const bool withdrawn = take_back();
     explain_refusal(candidate, next.error(), withdrawn);
+    if (next.error().message == kContradicted) note_contradiction(registration_);
     outcome = withdrawn ? Outcome::Withdrawn : Outcome::Nothing;
   }
   note_refusals(registration_, candidate);

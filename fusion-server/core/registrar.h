@@ -96,6 +96,8 @@ class Registrar {
   Outcome solved(Solution solution, Timestamp now);
 
   [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
+  /// Whether that is a provisional one of the running session.
+  [[nodiscard]] bool own_provisional() const noexcept { return before_.has_value(); }
   [[nodiscard]] const LastSeen& last_seen() const noexcept { return last_seen_; }
   /// The last sessions, newest first.
   [[nodiscard]] std::vector<SessionStatus> sessions() const;

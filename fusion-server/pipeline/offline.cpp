@@ -100,8 +100,10 @@ class Replay {
   Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
       : frames_(std::move(input.lanes), input.sensors, registration.clocks),
         registration_(registration),
-        config_(config),
-        grid_(config.rate_hz) {}
+        config_(config.pipeline),
+        grid_(config.rate_hz) {
+    if (!input.sensors.empty()) config_.polled.emplace(input.sensors.begin(), input.sensors.end());
+  }
 
   Result<void> run(const TakeSnapshot& take) {
     const auto first = frames_.next_after(Timestamp::min());
@@ -129,9 +131,11 @@ class Replay {
   /// The snapshot; none if no registered sensor covers the instant.
   std::optional<Snapshot> answer(Timestamp instant) {
     frames_.advance(instant, histories_);
-    const Timestamp late = instant + config_.pipeline.align.patience + Duration(1);
-    Step next =
-        step({instant, late, answered_ + 1}, histories_, registration_, memory_, config_.pipeline);
+    for (const auto& [sensor, history] : histories_) {
+      if (config_.polled) config_.polled->insert(sensor);
+    }
+    const Timestamp late = instant + config_.align.patience + Duration(1);
+    Step next = step({instant, late, answered_ + 1}, histories_, registration_, memory_, config_);
     memory_ = std::move(next.memory);
     if (!covered(next.snapshot)) return std::nullopt;
     ++answered_;
@@ -148,7 +152,7 @@ class Replay {
 
   RecordedFrames frames_;
   const Registration& registration_;
-  const OfflineConfig& config_;
+  PipelineConfig config_;
   Grid grid_;
   Histories histories_;
   Memory memory_;

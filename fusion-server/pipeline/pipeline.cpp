@@ -12,10 +12,12 @@
 namespace chorus::pipeline {
 namespace {
 
-std::vector<SensorId> registered_sensors(const Registration& registration) {
+/// The sensors with a place that can deliver.
+std::vector<SensorId> taking_part(const Registration& registration, const PipelineConfig& config) {
   std::vector<SensorId> sensors;
   for (const auto& [sensor, extrinsics] : registration.sensors) {
-    if (sensors.size() < kMaxSensors) sensors.push_back(sensor);
+    const bool polled = !config.polled || config.polled->contains(sensor);
+    if (polled && sensors.size() < kMaxSensors) sensors.push_back(sensor);
   }
   return sensors;
 }
@@ -151,12 +153,12 @@ void forget_the_gone(Memory& memory) {
   memory.fusion.keep_only(tracked);
 }
 
-/// One report for each sensor that has delivered a frame or is registered.
+/// One report for each sensor that has delivered a frame or takes part.
 std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
                                  const std::vector<Person>& people,
-                                 const Registration& registration) {
+                                 const std::vector<SensorId>& taking_part) {
   std::map<SensorId, SensorReport> reports;
-  for (const auto& [sensor, extrinsics] : registration.sensors) reports[sensor].sensor = sensor;
+  for (const SensorId& sensor : taking_part) reports[sensor].sensor = sensor;
   for (const AlignedSensor& sensor : aligned) {
     reports[sensor.sensor] = {sensor.sensor, sensor.basis, sensor.bodies.size(), 0.0};
   }
@@ -182,6 +184,11 @@ void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Pe
 }
 
 }  // namespace
+
+bool uses_weights(fusion::Method method) {
+  return method == fusion::Method::Otto || method == fusion::Method::OttoKalman ||
+         method == fusion::Method::BestView;
+}
 
 Waiting all_awaited(const Histories& histories, const Registration& registration,
                     const PipelineConfig& config) {
@@ -218,14 +225,14 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
   forget_the_gone(perceived.memory);
-  perceived.reports = report(aligned, perceived.people, registration);
+  perceived.reports = report(aligned, perceived.people, taking_part(registration, config));
   return perceived;
 }
 
 Step step(const Inputs& in, const Histories& histories, const Registration& registration,
           const Memory& memory, const PipelineConfig& config) {
   Perceived seen = perceive(in, histories, registration, memory, config);  // Figure 10
-  Snapshot snapshot{in.sequence, in.instant, registered_sensors(registration), {}, {}};
+  Snapshot snapshot{in.sequence, in.instant, taking_part(registration, config), {}, {}};
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
   leave_out_the_unplaced(snapshot.bodies, seen.people);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "fusion-server/align/aligner.h"
@@ -22,9 +24,15 @@ struct PipelineConfig {
   facing::SidesConfig sides;
   fusion::FusionConfig fusion;
   SeatingConfig seating;
+  /// The sensors that can deliver; others with a place are as if they had none.  None given: all
+  /// with a place.
+  std::optional<std::set<SensorId>> polled = {};
 
   bool operator==(const PipelineConfig&) const = default;
 };
+
+/// Whether the method uses the weights of views, SensorReport::weight.
+[[nodiscard]] bool uses_weights(fusion::Method method);
 
 using Histories = std::map<SensorId, align::History>;
 

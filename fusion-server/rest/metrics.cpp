@@ -33,7 +33,12 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
     out.gauge({"chorus_clock_offset_seconds", "Our clock minus the sensor's."}, seconds(*offset),
               labels);
   }
-  out.gauge({"chorus_view_weight", "Largest weight of the sensor's views."}, s.weight, labels);
+  if (s.weight) {
+    out.gauge({"chorus_view_weight",
+               "Largest weight of the sensor's views by Otto's Eqs. 1-3; only where the fusion "
+               "method uses it."},
+              *s.weight, labels);
+  }
   out.gauge({"chorus_sensor_share", "Fused joints of the last second the sensor contributed to."},
             s.share, labels);
   out.gauge({"chorus_sensor_moved", "1 while the sensor does not stand where it was registered."},
@@ -100,7 +105,7 @@ std::string metrics_text(const Status& status, const std::vector<std::unique_ptr
               number(counters.displaced));
   out.gauge({"chorus_registration_stored",
              "1 while the registration in use survives a restart; see /registration."},
-            stored(status.progress.storage) ? 1.0 : 0.0);
+            stored(status.progress) ? 1.0 : 0.0);
   for (const SensorStatus& sensor : status.sensors) add_sensor(out, sensor);
   for (const auto& sink : outputs) add_output(out, *sink);
   service::add_server(out, http);

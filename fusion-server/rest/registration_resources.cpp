@@ -9,6 +9,7 @@
 #include "common/base/log.h"
 #include "common/base/units.h"
 #include "common/http/status.h"
+#include "fusion-server/core/awaited.h"
 #include "fusion-server/wire/registration_nodes.h"
 #include "fusion-server/wire/session_limits.h"
 
@@ -33,8 +34,9 @@ bool busy(const RegistrationProgress& progress) {
 Result<void> unless_busy(const RegistrationProgress& progress, const char* what) {
   if (!busy(progress)) return {};
   return fail(ErrorCode::Conflict, what,
-              "a registration session is running; wait for its end, or DELETE " +
-                  wire::session_path(progress.sessions.front().id));
+              "a registration session is running; wait for its end, or cancel it: chorus register "
+              "--cancel (DELETE " +
+                  wire::session_path(progress.sessions.front().id) + ")");
 }
 
 }  // namespace
@@ -135,11 +137,17 @@ void RegistrationResources::end_newest() {
   if (busy(progress_)) progress_.sessions.front().state = SessionState::Cancelled;
 }
 
+/// Neither it nor the decision about it is shown any longer.
+void RegistrationResources::end_proposal() {
+  progress_.proposal.reset();
+  std::erase(progress_.awaits, core::kDecide);
+}
+
 http::ActionResult RegistrationResources::forget() {
   const std::scoped_lock lock(mutex_);
   end_newest();
   const std::uint64_t version = registration_.version;
-  progress_.proposal.reset();
+  end_proposal();
   registration_ = Registration{};
   registration_.version = version;
   control_.forget(++asked_);
@@ -166,7 +174,7 @@ Result<http::ActionResult> RegistrationResources::undo() {
   if (!progress_.earlier)
     return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
   const std::uint64_t version = registration_.version + 1;
-  progress_.proposal.reset();
+  end_proposal();
   std::swap(registration_, *progress_.earlier);
   if (progress_.earlier->sensors.empty()) progress_.earlier.reset();
   registration_.version = version;
@@ -182,7 +190,7 @@ Result<http::ActionResult> RegistrationResources::accept() {
     return fail(ErrorCode::NotFound, "registration", "no registration waits to be accepted");
   const std::uint64_t version = registration_.version + 1;
   progress_.earlier = std::exchange(registration_, std::move(progress_.proposal->registration));
-  progress_.proposal.reset();
+  end_proposal();
   registration_.version = version;
   control_.decide(true, ++asked_);
   show();
@@ -193,7 +201,7 @@ Result<http::ActionResult> RegistrationResources::decline() {
   const std::scoped_lock lock(mutex_);
   if (!progress_.proposal)
     return fail(ErrorCode::NotFound, "registration", "no registration waits to be accepted");
-  progress_.proposal.reset();
+  end_proposal();
   control_.decide(false, ++asked_);
   show();
   return http::ActionResult{http::status::kOk, live_->current(), {}};

@@ -57,6 +57,7 @@ class RegistrationResources {
   [[nodiscard]] Result<SessionStatus> find(const std::string& id) const;
   void show();
   void end_newest();
+  void end_proposal();
 
   service::Serving serving_;
   RegistrationControl control_;

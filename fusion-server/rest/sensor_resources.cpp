@@ -8,6 +8,7 @@
 #include "common/base/log.h"
 #include "common/base/units.h"
 #include "common/resource/floor_plane_resource.h"
+#include "fusion-server/core/common_clock.h"
 
 namespace chorus::rest {
 namespace {
@@ -31,7 +32,10 @@ void add_clock(resource::Node& node, const SensorStatus& sensor) {
     out.emplace_back(key, resource::Decimal{milliseconds_of(value), 3});
   };
   if (const auto offset = total_offset(sensor)) put("clockOffsetMilliseconds", *offset);
-  if (sensor.walked_offset) {
+  if (sensor.walked_offset && sensor.guessed_from_age) {
+    put("clockUncertaintyMilliseconds", core::kOldestFrames);
+    put("clockFromAgeMilliseconds", *sensor.walked_offset);
+  } else if (sensor.walked_offset) {
     put("clockUncertaintyMilliseconds", 2 * sensor.walked_sigma.value_or(Duration{0}));
     put("clockFromWalkMilliseconds", *sensor.walked_offset);
     if (sensor.clock_uncertainty)
@@ -60,7 +64,7 @@ resource::Node sensor_node(const SensorStatus& sensor, std::string id) {
   if (sensor.age) out.emplace_back("ageMilliseconds", Decimal{milliseconds_of(*sensor.age), 1});
   out.emplace_back("rateHz", Decimal{sensor.rate_hz, 2});
   out.emplace_back("bodies", static_cast<std::int64_t>(sensor.bodies));
-  out.emplace_back("weight", Decimal{sensor.weight, 3});
+  if (sensor.weight) out.emplace_back("weight", Decimal{*sensor.weight, 3});
   out.emplace_back("share", Decimal{sensor.share, 3});
   out.emplace_back("shareAfterwards", Decimal{sensor.share_afterwards, 3});
   out.emplace_back("awaited", Decimal{sensor.awaited, 3});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -18,6 +19,8 @@
 #include "fusion-server/rest/registration_resources.h"
 #include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/rest/tracker_description.h"
+#include "fusion-server/server/fusion_concerns.h"
+#include "fusion-server/server/initial_registration.h"
 #include "fusion-server/server/pipeline_loop.h"
 #include "fusion-server/server/recording_tap.h"
 #include "fusion-server/server/state_folder.h"
@@ -46,39 +49,6 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   return core;
 }
 
-/// Logs which sensors have no place in the stored registration, and which of its sensors are not
-/// polled.
-void report_fit(const Registration& registration, const std::vector<SensorId>& configured) {
-  for (const SensorId& sensor : configured) {
-    if (!registration.sensors.contains(sensor)) {
-      log::warn("sensor has no place in the stored registration", {{"sensor", sensor.str()}});
-    }
-  }
-  for (const auto& [sensor, place] : registration.sensors) {
-    if (std::find(configured.begin(), configured.end(), sensor) == configured.end()) {
-      log::warn("stored registration knows a sensor that is not polled",
-                {{"sensor", sensor.str()}});
-    }
-  }
-}
-
-Result<Registration> initial_registration(const FusionSettings& settings,
-                                          const RegistrationStore& store) {
-  const StartSettings& at_start = settings.at_start;
-  if (!at_start.registration_file.empty())
-    return load_registration_file(at_start.registration_file);
-  auto stored = store.load();
-  if (!stored) {
-    log::error("stored registration not used", {{"reason", to_string(stored.error())}});
-    return Registration{};
-  }
-  if (!*stored) return Registration{};
-  log::info("stored registration in use",
-            {{"version", (*stored)->version}, {"sensors", (*stored)->sensors.size()}});
-  report_fit(**stored, ids_of(settings.live.sensors));
-  return std::move(**stored);
-}
-
 std::uint64_t first_person(const RegistrationStore& store) {
   const auto next = store.load_next_person();
   if (next) return *next;
@@ -90,12 +60,12 @@ service::Health health_of(const Status& status) {
   std::size_t live = 0;
   for (const SensorStatus& sensor : status.sensors) live += sensor.state == "live" ? 1 : 0;
   if (live == 0) return {false, "none of the sensors delivers frames; see /sensors/"};
-  if (status.registration.sensors.empty()) {
+  if (status.progress.unpolled.size() == status.registration.sensors.size()) {
     return {false, "the sensors are not registered yet; walk through the room, see /registration"};
   }
   const StorageStatus& storage = status.progress.storage;
   if (!storage.trouble.empty()) return {true, "the registration is not stored: " + storage.trouble};
-  return {true, {}};
+  return {true, storage.damage};
 }
 
 /// Logs for each unusable folder what is wrong with it; the server runs without that folder.
@@ -165,7 +135,7 @@ struct FusionServer::Impl {
   }
 
   std::shared_ptr<http::Router> make_router();
-  LoopOptions loop_options(Registration places);
+  LoopOptions loop_options(InitialRegistration initial);
   void start_polling();
   void take_status(const Status& next);
   [[nodiscard]] Status status_now() const {
@@ -246,7 +216,7 @@ void FusionServer::Impl::take_status(const Status& next) {
   status = next;
 }
 
-LoopOptions FusionServer::Impl::loop_options(Registration places) {
+LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   LoopOptions options;
   options.core = core_config(config);
   // Sequences grow across restarts (no output is faster than 1 kHz), so that a cache never takes
@@ -256,7 +226,8 @@ LoopOptions FusionServer::Impl::loop_options(Registration places) {
   // of another run.
   options.core.first_session = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000'000);
   options.core.first_person = first_person(store);
-  options.registration = std::move(places);
+  options.registration = std::move(initial.registration);
+  options.store_damage = std::move(initial.damage);
   options.store = store;
   options.store_trouble = store_trouble;
   options.clock = clock;
@@ -295,18 +266,8 @@ FusionServer::FusionServer(FusionSettings settings, std::shared_ptr<const Clock>
 FusionServer::~FusionServer() { stop(); }
 
 service::Concerns FusionServer::concerns() const {
-  const StartSettings& config = impl_->config.at_start;
-  service::Concerns all = service::common_concerns(config.http, config.recording);
-  const auto add = [&all](const std::string& what, const Result<void>& probe) {
-    if (!probe) all.push_back(what + to_string(probe.error()));
-  };
-  const std::string state = state_folder(config.state_dir, config.http.port, own_environment());
-  if (!state.empty())
-    add("where the sensors stand cannot be kept: ", service::usable_folder(state));
-  if (!config.viewer_dir.empty())
-    add("the viewer cannot be served: ", probe_viewer(viewer_folder(config.viewer_dir)));
-  if (impl_->config.live.sensors.empty())
-    all.emplace_back("no sensor is named in the section \"sensors\"");
+  service::Concerns all = host_concerns(impl_->config);
+  std::ranges::move(setting_concerns(impl_->config), std::back_inserter(all));
   return all;
 }
 
@@ -317,8 +278,10 @@ Result<void> FusionServer::start() {
   service::log_concerns({});
   s.store = RegistrationStore(folder);
   s.store_trouble = probe_folders(s.config.at_start, folder);
-  auto registration = initial_registration(s.config, s.store);
-  if (!registration) return pass(registration);
+  for (const std::string& concern : setting_concerns(s.config))
+    log::warn("the configuration may not be what is meant", {{"what", concern}});
+  auto initial = initial_registration(s.config, s.store);
+  if (!initial) return pass(initial);
   auto sinks = outputs::open_outputs(s.config.at_start.outputs, s.clock);
   if (!sinks) return pass(sinks);
   s.sinks = std::move(*sinks);
@@ -329,7 +292,7 @@ Result<void> FusionServer::start() {
   http.policy = resource::answer_policy();
   s.http = std::make_unique<http::Server>(http, s.make_router());
 
-  s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*registration)));
+  s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*initial)));
   if (auto bound = s.http->start(); !bound) return bound;
   s.start_polling();
   s.status_at = std::chrono::steady_clock::now();

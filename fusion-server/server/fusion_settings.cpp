@@ -204,12 +204,13 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
 
 /// Two sensors and their distance.
 void read_known_distance(ConfigReader reader, registration::RegistrationConfig& out) {
-  constexpr double kLongest = 1000.0;  // [m]
+  constexpr double kShortest = 0.1;   // [m]
+  constexpr double kLongest = 100.0;  // [m]
   std::vector<std::string> between;
   double length = 0.0;
   reader.read("between", between);
-  reader.read("m", length, 0.0, kLongest);
-  if (!(length > 0.0)) return reader.complain("m", "must be above 0, in metres");
+  if (!reader.has("m")) return reader.complain("m", "is missing: the distance in metres");
+  reader.read("m", length, kShortest, kLongest);
   if (between.size() != 2 || between[0] == between[1])
     return reader.complain("between", "must name two sensors");
   const auto first = SensorId::parse(between[0]);

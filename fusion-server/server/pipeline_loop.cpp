@@ -50,7 +50,7 @@ PipelineLoop::PipelineLoop(LoopOptions options)
       commands_(kMaxCommands),
       solutions_(1),
       age_(kAgeBounds),
-      keeper_(options_.store, options_.store_trouble) {
+      keeper_(options_.store, options_.store_trouble, options_.store_damage) {
   if (auto earlier = options_.store.load_earlier()) core_.set_earlier(std::move(*earlier));
 }
 
@@ -265,13 +265,14 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   if (walked && walked->added != Duration{0}) {
     status.walked_offset = walked->added;
     status.walked_sigma = walked->sigma;
+    status.guessed_from_age = core_.registration().clocks.size() == 1;
   }
   status.host = report.host;
   const auto& reports = core_.reports();
   const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {
     return r.sensor == report.sensor.id;
   });
-  if (own != reports.end()) status.weight = own->weight;
+  if (own != reports.end() && core_.uses_weights()) status.weight = own->weight;
   status.bodies = core_.bodies(report.sensor.id, now);
   status.shift = core_.shift(report.sensor.id);
   status.alarm = core_.alarm_text(report.sensor.id, now);

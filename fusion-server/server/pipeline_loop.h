@@ -56,6 +56,7 @@ struct LoopOptions {
   Registration registration;
   RegistrationStore store{""};
   std::string store_trouble;  ///< Why the store's folder cannot be used; empty if it can.
+  std::string store_damage;   ///< As StorageStatus::damage.
   std::shared_ptr<const Clock> clock;
   std::vector<Sink*> sinks;  ///< Must outlive the loop.
   /// Called on the pipeline's thread, a few times a second and after each command and each solve.

@@ -35,6 +35,24 @@ Result<std::optional<Registration>> RegistrationStore::load() const {
   return std::optional(std::move(*registration));
 }
 
+Recovered RegistrationStore::recover(const Error& damage) const {
+  fs::path aside = path() + ".damaged";
+  std::error_code error;
+  for (int i = 2; fs::exists(aside, error); ++i) aside = path() + ".damaged-" + std::to_string(i);
+  fs::rename(path(), aside, error);
+  Recovered out{load_earlier(), "the stored registration cannot be read: " + to_string(damage)};
+  out.told += error ? "; it cannot be moved aside: " + error.message()
+                    : "; it is kept as " + aside.filename().string();
+  if (!out.registration) {
+    out.told += ", and there is none from before: the sensors have to be registered anew";
+    return out;
+  }
+  out.told += ", and the one from before it is in use (registration.json.old)";
+  if (!error) fs::rename(path() + ".old", path(), error);
+  sync_folder(folder_);
+  return out;
+}
+
 Result<void> RegistrationStore::write(const std::string& file, const std::string& text) const {
   std::error_code error;
   fs::create_directories(folder_, error);

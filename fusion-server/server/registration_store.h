@@ -11,6 +11,11 @@
 
 namespace chorus::server {
 
+struct Recovered {
+  std::optional<Registration> registration;
+  std::string told;  ///< What was wrong and what became of the files, as a sentence for people.
+};
+
 class RegistrationStore {
  public:
   /// If the folder is empty, nothing is stored.
@@ -19,6 +24,11 @@ class RegistrationStore {
   /// Loads the stored registration; none if nothing is stored.  An unreadable file is an error, and
   /// is left as it is.
   [[nodiscard]] Result<std::optional<Registration>> load() const;
+
+  /// What a start makes of a stored file that cannot be read (`damage`): moves it aside to
+  /// registration.json.damaged, and puts the registration before it, if there is one that can be
+  /// read, in its place.
+  [[nodiscard]] Recovered recover(const Error& damage) const;
 
   /// The registration before the stored one, for an undo; none if no earlier one can be read.
   [[nodiscard]] std::optional<Registration> load_earlier() const;

@@ -12,45 +12,59 @@ constexpr std::uint64_t kMinLeft = kReserve / 2;
 
 }  // namespace
 
-StateKeeper::StateKeeper(RegistrationStore store, std::string trouble)
+StateKeeper::StateKeeper(RegistrationStore store, std::string trouble, std::string damage)
     : shared_(std::make_shared<Shared>(std::move(store))) {
-  shared_->trouble = std::move(trouble);
+  shared_->troubles[Kind::Places] = std::move(trouble);
+  shared_->damage = std::move(damage);
 }
 
-void StateKeeper::Shared::note(const Result<void>& done) {
+void StateKeeper::Shared::note(Kind kind, const Result<void>& done) {
   const std::scoped_lock lock(mutex);
   const std::string now = done ? std::string() : to_string(done.error());
+  std::string& trouble = troubles[kind];
   if (!now.empty() && now != trouble) log::error("state not stored", {{"reason", now}});
   trouble = now;
+  if (kind == Kind::People) return;
+  --unwritten;
+  if (done) damage.clear();
 }
 
-void StateKeeper::post(Worker& worker, std::function<Result<void>(const RegistrationStore&)> job) {
+void StateKeeper::post(Worker& worker, Kind kind, Job job) {
   if (shared_->store.folder().empty()) return;
-  worker.post([shared = shared_, job = std::move(job)] { shared->note(job(shared->store)); });
+  if (kind == Kind::Places) {
+    const std::scoped_lock lock(shared_->mutex);
+    ++shared_->unwritten;
+  }
+  worker.post(
+      [shared = shared_, kind, job = std::move(job)] { shared->note(kind, job(shared->store)); });
 }
 
 void StateKeeper::keep(Worker& worker, const Registration& registration,
                        const std::optional<Registration>& earlier) {
-  post(worker, [registration, earlier](const RegistrationStore& store) {
+  post(worker, Kind::Places, [registration, earlier](const RegistrationStore& store) {
     return store.save(registration, earlier);
   });
 }
 
 void StateKeeper::forget(Worker& worker) {
-  post(worker, [](const RegistrationStore& store) { return store.forget(); });
+  post(worker, Kind::Places, [](const RegistrationStore& store) { return store.forget(); });
 }
 
 void StateKeeper::people(Worker& worker, std::uint64_t next) {
   if (next + kMinLeft < reserved_) return;
   reserved_ = next + kReserve;
-  post(worker, [reserved = reserved_](const RegistrationStore& store) {
+  post(worker, Kind::People, [reserved = reserved_](const RegistrationStore& store) {
     return store.save_next_person(reserved);
   });
 }
 
 StorageStatus StateKeeper::status() const {
   const std::scoped_lock lock(shared_->mutex);
-  return {shared_->store.folder(), shared_->trouble};
+  StorageStatus status{shared_->store.folder(), {}, shared_->damage, shared_->unwritten > 0};
+  for (const auto& [kind, trouble] : shared_->troubles) {
+    if (status.trouble.empty()) status.trouble = trouble;
+  }
+  return status;
 }
 
 }  // namespace chorus::server

@@ -1,10 +1,11 @@
 // Stores what must survive a restart: the registration in use, and up to which number person ids
-// may have been used.  The worker does the writing; a failure is reported until a later write
-// succeeds.
+// may have been used.  The worker does the writing; a failure is reported until a later write of
+// the same kind succeeds.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -19,8 +20,9 @@ namespace chorus::server {
 
 class StateKeeper {
  public:
-  /// `trouble`: an error that is already known (the folder cannot be used); empty if there is none.
-  StateKeeper(RegistrationStore store, std::string trouble);
+  /// `trouble`: an error that is already known (the folder cannot be used); `damage`: as
+  /// StorageStatus::damage.  Both are empty if there is none.
+  StateKeeper(RegistrationStore store, std::string trouble, std::string damage = {});
 
   void keep(Worker& worker, const Registration& registration,
             const std::optional<Registration>& earlier = {});
@@ -31,15 +33,20 @@ class StateKeeper {
   [[nodiscard]] StorageStatus status() const;
 
  private:
+  enum class Kind { Places, People };
   /// Shared with jobs that are still running when this object is destroyed.
   struct Shared {
     explicit Shared(RegistrationStore s) : store(std::move(s)) {}
     const RegistrationStore store;
     std::mutex mutex;
-    std::string trouble;  ///< Guarded by mutex.
-    void note(const Result<void>& done);
+    // Guarded by mutex.
+    std::map<Kind, std::string> troubles;
+    std::string damage;
+    int unwritten = 0;  ///< Number of registrations that wait to be written.
+    void note(Kind kind, const Result<void>& done);
   };
-  void post(Worker& worker, std::function<Result<void>(const RegistrationStore&)> job);
+  using Job = std::function<Result<void>(const RegistrationStore&)>;
+  void post(Worker& worker, Kind kind, Job job);
 
   std::shared_ptr<Shared> shared_;
   std::uint64_t reserved_ = 0;  ///< Person ids below this may be used without another write.

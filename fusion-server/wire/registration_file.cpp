@@ -10,6 +10,7 @@
 
 #include "common/base/json.h"
 #include "common/sensor/limits.h"
+#include "fusion-server/wire/registration_fields.h"
 #include "fusion-server/wire/registration_nodes.h"
 
 namespace chorus::wire {
@@ -30,10 +31,6 @@ constexpr const char* kClockLeastAge = "clockLeastAgeMilliseconds";
 constexpr double kMillisecond = 1e3;
 constexpr double kMaxClockOffset = 60e3;  // [ms]
 constexpr double kMaxClockAge = 60e3;     // [ms]
-
-Error wrong(std::string where, std::string what) {
-  return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
-}
 
 json verdict_json(const SensorVerdict& own) {
   return {{"verdict", name_of(own.verdict)}, {"reasons", own.reasons}};
@@ -64,22 +61,6 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
           {"scale", place.scale}};
 }
 
-/// A finite number of magnitude up to `most`. An absent key gives `fallback`; without a fallback it
-/// is an error.
-Result<double> number(const json& object, const std::string& where, const char* key, double most,
-                      std::optional<double> fallback = {}) {
-  const auto it = object.find(key);
-  if (it == object.end() && fallback) return *fallback;
-  if (it == object.end() || !it->is_number()) {
-    return tl::unexpected(wrong(where + "." + key, "a number is missing here"));
-  }
-  const double value = it->get<double>();
-  if (!std::isfinite(value) || std::abs(value) > most) {
-    return tl::unexpected(wrong(where + "." + key, "this number is not finite or absurdly large"));
-  }
-  return value;
-}
-
 Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) {
   std::array<double, 7> parts{};
   constexpr std::array kKeys{"x", "y", "z", "qx", "qy", "qz", "qw"};
@@ -96,42 +77,6 @@ Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) 
   pose.linear() = q.normalized().toRotationMatrix();
   pose.translation() = Eigen::Vector3d(parts[0], parts[1], parts[2]);
   return pose;
-}
-
-Result<std::vector<SensorId>> ids_of(const json& object, const std::string& where,
-                                     const std::string& key) {
-  std::vector<SensorId> ids;
-  const auto it = object.find(key);
-  if (it == object.end()) return ids;
-  if (!it->is_array() || it->size() > kMaxSensors) {
-    return tl::unexpected(wrong(where + "." + key, "a list of sensor names is wanted"));
-  }
-  for (const json& entry : *it) {
-    auto id = SensorId::parse(entry.is_string() ? entry.get<std::string>() : "");
-    if (!id) return tl::unexpected(wrong(where + "." + key, id.error().message));
-    ids.push_back(std::move(*id));
-  }
-  return ids;
-}
-
-/// Reads a matrix, column by column; `out` stays unchanged when the key is absent.
-template <class Matrix>
-Result<void> read_matrix(const json& object, const std::string& where, const char* key,
-                         Matrix& out) {
-  const auto it = object.find(key);
-  if (it == object.end()) return {};
-  const auto wanted = static_cast<std::size_t>(out.size());
-  const bool numbers = it->is_array() && it->size() == wanted &&
-                       std::all_of(it->begin(), it->end(), [](const json& value) {
-                         return value.is_number() && std::isfinite(value.get<double>());
-                       });
-  if (!numbers) {
-    return tl::unexpected(
-        wrong(where + "." + key, std::to_string(wanted) + " finite numbers are wanted"));
-  }
-  for (std::size_t i = 0; i < wanted; ++i)
-    out.reshaped()(static_cast<Eigen::Index>(i)) = (*it)[i].get<double>();
-  return {};
 }
 
 /// Replaces the pose's rotation, which was read from the quaternion, with the matrix if there is
@@ -188,6 +133,7 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
     return tl::unexpected(wrong(where + ".scale", "a scale from 0.1 to 10 is wanted"));
   out.scale = *scale;
   if (auto ok = read_matrix(object, where, "covariance", out.covariance); !ok) return pass(ok);
+  if (auto ok = check_covariance(out.covariance, where + ".covariance"); !ok) return pass(ok);
   return out;
 }
 
@@ -235,7 +181,9 @@ Result<PairwiseRegistration> edge_of(const json& object) {
   if (!object.is_object()) return tl::unexpected(wrong("edges", "objects are wanted"));
   PairwiseRegistration edge;
   for (const auto& [key, out] : {std::pair{"target", &edge.target}, {"source", &edge.source}}) {
-    auto id = SensorId::parse(object.value(key, std::string()));
+    const auto name = text_of(object, "edges.", key);
+    if (!name) return pass(name);
+    auto id = SensorId::parse(*name);
     if (!id) return tl::unexpected(wrong(std::string("edges.") + key, id.error().message));
     *out = std::move(*id);
   }
@@ -297,29 +245,36 @@ Result<void> read_verdicts(const json& root, const char* key, Verdict fallback, 
   return {};
 }
 
+Result<void> read_master(const json& root, Registration& out) {
+  out.master = out.sensors.begin()->first;
+  const auto master = text_of(root, "", "master");
+  if (!master) return pass(master);
+  if (master->empty()) return {};
+  auto id = SensorId::parse(*master);
+  if (!id || !out.sensors.contains(*id))
+    return tl::unexpected(wrong("master", "\"" + *master + "\" is none of the sensors"));
+  out.master = std::move(*id);
+  return {};
+}
+
 Result<void> read_header(const json& root, Registration& out) {
   const auto version = number(root, "", "version", 1e15, 1.0);
   if (!version) return pass(version);
   out.version = static_cast<std::uint64_t>(std::max(0.0, *version));
   // Given extrinsics without a verdict count as good.
-  const std::string verdict = root.value("verdict", std::string("Good"));
-  const auto known = verdict_named(verdict);
-  if (!known) return tl::unexpected(wrong("verdict", "\"" + verdict + "\" is not a verdict"));
+  const auto verdict = text_of(root, "", "verdict", "Good");
+  if (!verdict) return pass(verdict);
+  const auto known = verdict_named(*verdict);
+  if (!known) return tl::unexpected(wrong("verdict", "\"" + *verdict + "\" is not a verdict"));
   out.verdict = *known;
-  if (const std::string solved = root.value("solved", std::string()); !solved.empty()) {
-    auto time = parse_iso8601(solved);
+  const auto solved = text_of(root, "", "solved");
+  if (!solved) return pass(solved);
+  if (!solved->empty()) {
+    auto time = parse_iso8601(*solved);
     if (!time) return tl::unexpected(wrong("solved", time.error().message));
     out.solved = *time;
   }
-  out.master = out.sensors.begin()->first;
-  if (const std::string master = root.value("master", std::string()); !master.empty()) {
-    auto id = SensorId::parse(master);
-    if (!id || !out.sensors.contains(*id)) {
-      return tl::unexpected(wrong("master", "\"" + master + "\" is none of the sensors"));
-    }
-    out.master = std::move(*id);
-  }
-  return {};
+  return read_master(root, out);
 }
 
 Result<Registration> registration_of(const json& root) {

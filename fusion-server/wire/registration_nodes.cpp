@@ -1,5 +1,6 @@
 #include "fusion-server/wire/registration_nodes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -156,15 +157,16 @@ std::vector<Node> cell_nodes(const SessionStatus& session) {
   return nodes;
 }
 
-void add_storage(Node& node, const StorageStatus& storage) {
-  node.properties.emplace_back("stored", stored(storage));
-  if (stored(storage)) return;
-  node.properties.emplace_back("storeProblem",
-                               storage.folder.empty()
-                                   ? std::string("state_dir is empty, or \"auto\" without a "
-                                                 "HOME: the registration is forgotten when the "
-                                                 "server ends")
-                                   : storage.trouble);
+void add_storage(Node& node, const RegistrationProgress& progress) {
+  const StorageStatus& storage = progress.storage;
+  node.properties.emplace_back("stored", stored(progress));
+  std::string problem = storage.trouble.empty() ? storage.damage : storage.trouble;
+  if (storage.folder.empty()) {
+    problem =
+        "state_dir is empty, or \"auto\" without a HOME: the registration is forgotten when the "
+        "server ends";
+  }
+  if (!problem.empty()) node.properties.emplace_back("storeProblem", std::move(problem));
 }
 
 /// The registration that an undo goes back to.
@@ -306,12 +308,14 @@ Node registration_node(const Registration& registration, const RegistrationProgr
   if (progress.earlier) node.properties.emplace_back("earlier", earlier_node(*progress.earlier));
   if (progress.proposal)
     node.properties.emplace_back("proposal", proposal_node(*progress.proposal));
-  add_storage(node, progress.storage);
+  add_storage(node, progress);
   node.properties.emplace_back("session", newest_session(progress));
   node.properties.emplace_back("sessions", session_refs(progress));
   std::vector<Node> sensors;
   for (const auto& [id, place] : registration.sensors) {
     sensors.push_back(sensor_node(id, place));
+    if (std::ranges::find(progress.unpolled, id) != progress.unpolled.end())
+      sensors.back().properties.emplace_back("polled", false);
     add_clock(sensors.back(), registration, id);
     const auto own = registration.verdicts.find(id);
     add_verdict(sensors.back(), own != registration.verdicts.end()

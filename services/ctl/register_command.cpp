@@ -353,7 +353,8 @@ Run add_register(CLI::App& options) {
       "Leave the registration in use as it is until the new one is accepted (--accept, --decline)");
   std::vector<CLI::Option*> apart{
       options.add_flag("--fresh", arguments->fresh,
-                       "Forget the registration there is before starting"),
+                       "Forget the registration there is before starting; its world stays where it "
+                       "is, as far as the same sensors are found again"),
       options.add_flag("--accept", arguments->accept, "Put the proposed registration into use"),
       options.add_flag("--decline", arguments->decline,
                        "Forget the proposed registration; the one in use stays"),

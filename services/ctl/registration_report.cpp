@@ -97,15 +97,20 @@ std::string registration_report(const nlohmann::json& registration) {
   for (const std::string& next : lines_at(registration, "awaits")) text += "  next: " + next + "\n";
   text += clocks_shown(registration) + worst_loop_shown(registration);
   const std::string problem = client::text_at(registration, "storeProblem", "");
-  if (!problem.empty()) text += "  not stored: " + printable(problem) + "\n";
+  const auto stored = registration.find("stored");
+  const bool kept = stored != registration.end() && *stored == true;
+  if (!problem.empty()) text += (kept ? "  " : "  not stored: ") + printable(problem) + "\n";
   std::vector<std::vector<std::string>> rows{{"sensor", "verdict", "x [m]", "y [m]", "z [m]",
                                               "yaw [deg]", "error [mm]", "chain", "next best"}};
   for (const auto& [name, sensor] : client::part_at(registration, "sensors").items()) {
-    rows.push_back(
-        {name, client::text_at(sensor, "verdict"), shown(client::number_at(sensor, "x"), 3),
-         shown(client::number_at(sensor, "y"), 3), shown(client::number_at(sensor, "z"), 3),
-         yaw_shown(sensor), shown(to_mm(client::number_at(sensor, "error")), 1),
-         chain_shown(sensor, "chain"), next_shown(sensor)});
+    const auto polled = sensor.find("polled");
+    const bool idle = polled != sensor.end() && *polled == false;
+    rows.push_back({name, client::text_at(sensor, "verdict") + (idle ? ", not polled" : ""),
+                    shown(client::number_at(sensor, "x"), 3),
+                    shown(client::number_at(sensor, "y"), 3),
+                    shown(client::number_at(sensor, "z"), 3), yaw_shown(sensor),
+                    shown(to_mm(client::number_at(sensor, "error")), 1),
+                    chain_shown(sensor, "chain"), next_shown(sensor)});
   }
   for (const auto& [name, sensor] : client::part_at(registration, "unplaced").items())
     rows.push_back({name, client::text_at(sensor, "verdict"), "-", "-", "-", "-", "-", "-", "-"});

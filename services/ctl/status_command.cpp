@@ -23,8 +23,10 @@ struct StatusArguments {
   bool json = false;
 };
 
-/// Where the sensor's clock offset is known from: the host's answers, a walk, or nothing.
+/// Where the sensor's clock offset is known from: the host's answers, a walk, how old its frames
+/// are, or nothing.
 std::string clock_source(const nlohmann::json& sensor) {
+  if (sensor.contains("clockFromAgeMilliseconds")) return "age";
   if (sensor.contains("clockFromWalkMilliseconds")) return "walk";
   return sensor.contains("clockOffsetMilliseconds") ? "host" : "-";
 }

@@ -99,5 +99,6 @@ export function showRegistration(registration) {
   showLines('reasons', [...reasons, ...last.map((reason) => `last walk: ${reason}`)]);
   showLines('alarms', registration.alarms ?? []);
   showLines('awaits', registration.awaits ?? []);
-  element('stored').textContent = registration.storeProblem ? `not stored: ${registration.storeProblem}` : '';
+  const problem = registration.storeProblem ?? '';
+  element('stored').textContent = problem && !registration.stored ? `not stored: ${problem}` : problem;
 }

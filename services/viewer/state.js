@@ -11,16 +11,35 @@ function list(names) {
   return `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 }
 
+/// Finds out whether this page itself was held up: its timer should go off every `every` ms.
+/// What a page shows after a pause is as old as the pause, whatever the server has done meanwhile.
+export class OwnDelay {
+  constructor(every, ticking = () => performance.now()) {
+    [this.every, this.ticking, this.last, this.until] = [every, ticking, ticking(), -Infinity];
+  }
+
+  /// Called by the timer.  True while the page catches up: for STALE_MS after it went off late.
+  late() {
+    const now = this.ticking();
+    if (now - this.last > this.every + STALE_MS / 2) this.until = now + STALE_MS;
+    this.last = now;
+    return now < this.until;
+  }
+}
+
 /// Whether the screen is current: 'live', 'stale' (old, and shown as old) or 'gone' (no longer shown).
 export function freshness(known) {
   if (!known.frame) return 'gone';
   const old = Math.max(known.link.error ? known.link.silent : 0, known.frameAge || 0);
-  if (old > GONE_MS) return 'gone';
+  if (old > GONE_MS && !known.held) return 'gone';
   return old > STALE_MS || known.link.error ? 'stale' : 'live';
 }
 
-function ofTheLink({ link, frame, frameAge }) {
+function ofTheLink({ link, frame, frameAge, held }) {
   const silent = link.silent;
+  if (held && frame && !(frameAge <= STALE_MS)) {
+    return { tone: 'warn', sentence: 'This page was held up, and catches up.', next: 'This browser or its computer is busy; that says nothing about the tracker.' };
+  }
   if (link.error && !(silent < STALE_MS)) {
     const since = Number.isFinite(silent) ? `The fusion server has not answered for ${seconds(silent)}.` : 'The fusion server does not answer.';
     return { tone: 'bad', sentence: since, next: 'Is chorus-fusion running there? This page goes on by itself as soon as it answers.' };
@@ -56,7 +75,7 @@ function ofTheAlarms({ alarms = [] }) {
 }
 
 function ofTheRegistration({ session, sensors = {}, awaits = [], verdict, proposal }) {
-  const placed = Object.keys(sensors).length;
+  const placed = Object.values(sensors).filter((sensor) => sensor.polled !== false).length;
   if (session?.state === 'solving') return { tone: 'warn', sentence: 'The walk is over: the places are being solved.', next: '' };
   if (session?.state === 'collecting') {
     const walked = `${Math.round(session.elapsedSeconds)} of ${Math.round(session.targetSeconds)} s`;
@@ -68,6 +87,13 @@ function ofTheRegistration({ session, sensors = {}, awaits = [], verdict, propos
   if (proposal) return { tone: 'warn', sentence: 'New places wait for your decision.', next: 'Accept them, or keep the old ones: under Registration.' };
   if (verdict === 'Good') return null;
   return { tone: 'warn', sentence: '', next: '' };
+}
+
+/// A reason against a Good registration as a whole: the last walk contradicted it.
+function doubtOf({ verdict, reasons = [], sensors = {}, unplaced = {} }) {
+  if (verdict !== 'Good') return null;
+  const own = [...Object.values(sensors), ...Object.values(unplaced)].flatMap((sensor) => sensor.reasons ?? []);
+  return reasons.find((reason) => !own.includes(reason)) ?? null;
 }
 
 /// Returns {tone: 'good' | 'calm' | 'warn' | 'bad', sentence, next}.
@@ -88,6 +114,8 @@ export function stateOf(known) {
   const seen = people === 0 ? 'Nobody is in sight.' : `Live: ${present}.`;
   if (missing) return { ...missing, sentence: `${seen} ${missing.sentence}` };
   if (places) return { tone: 'warn', sentence: `${seen} The places are provisional.`, next: registration.reasons?.[0] ?? '' };
+  const doubt = doubtOf(registration);
+  if (doubt) return { tone: 'warn', sentence: `${seen} The places are in doubt.`, next: doubt };
   const unplaced = Object.keys(registration.unplaced ?? {});
   if (unplaced.length > 0) {
     return { tone: 'warn', sentence: `${seen} ${list(unplaced)} ${unplaced.length === 1 ? 'has' : 'have'} no place.`,

@@ -10,7 +10,7 @@ import { showCoverage } from './coverage.js';
 import { offerDecision, showProposal } from './proposal.js';
 import { rateOf, showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
 import { Readout } from './readout.js';
-import { freshness, stateOf } from './state.js';
+import { OwnDelay, freshness, stateOf } from './state.js';
 
 const COLORS = [0x4cc9f0, 0xf2b84b, 0x80ed99, 0xf28482, 0xb892ff, 0xffd6a5, 0x2ec4b6, 0xff9f1c, 0xa0c4ff, 0xcaffbf];
 const MOVED = 0x7d3b38; // a sensor that does not stand where it was registered
@@ -78,7 +78,7 @@ function showRaw(view, frame) {
 
 let framedVersion = null;
 function placeSensors(registration) {
-  const places = Object.entries(registration.sensors ?? {});
+  const places = Object.entries(registration.sensors ?? {}).filter(([, sensor]) => sensor.polled !== false);
   for (const view of sensors.values()) view.place.visible = false; // one that lost its place is drawn nowhere
   for (const [id, pose] of places) {
     const view = sensorView(id);
@@ -142,9 +142,11 @@ async function followSession(registration) {
 }
 
 /// Checks the clock too, because frames that no longer arrive cannot say so themselves.
+const ownDelay = new OwnDelay(STATE_EVERY_MS);
 setInterval(() => {
+  const held = ownDelay.late();
   const age = known.frame ? ageOf(known.frame) : NaN;
-  const now = { ...known, link: link.state(), frameAge: age };
+  const now = { ...known, link: link.state(), frameAge: age, held };
   const fresh = freshness(now);
   showState(stateOf(now), fresh);
   showPeople(switches.uncertainty.checked ? known.frame?.bodies ?? [] : []);

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { Link, ServerClock } from '../../services/viewer/poll.js';
 import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf, sharesOf } from '../../services/viewer/certainty.js';
 import { accuracyLine, lineOf, mapOf } from '../../services/viewer/coverage.js';
-import { freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
+import { OwnDelay, freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
 const LIVE = { state: 'live' };
 const GOOD = { verdict: 'Good', reasons: [], awaits: [], session: { state: 'idle' }, sensors: { s1: {}, s2: {} } };
@@ -50,6 +50,32 @@ test('a server that is gone or stands still is never good', () => {
   assert.equal(freshness(known({ link: { error: 'x', silent: 500 } })), 'stale');
   assert.equal(freshness(known({ link: gone })), 'gone');
   assert.equal(freshness(known({ frame: null })), 'gone');
+});
+
+test('a page that was itself held up does not blame the server', () => {
+  let ticks = 0;
+  const delay = new OwnDelay(200, () => ticks);
+  const after = (ms) => { ticks += ms; return delay.late(); };
+  assert.equal(after(200), false);
+  assert.equal(after(600), false, 'a hiccup');
+  assert.equal(after(5000), true, 'nothing of this page ran for 5 s');
+  assert.equal(said({ frameAge: 5000, held: true }), 'warn: This page was held up, and catches up.');
+  assert.equal(freshness(known({ frameAge: 5000, held: true })), 'stale', 'nothing is wiped out');
+  assert.equal(said({ frameAge: 40, held: true }), 'good: Live: one person, 2 sensors.', 'it has caught up');
+  assert.equal(after(200), true, 'frames may still be on their way');
+  for (let i = 0; i < 7; ++i) after(200);
+  assert.equal(delay.late(), false);
+  assert.equal(said({ frameAge: 7000, held: false }), 'bad: The fused output has stood still for 7 s.');
+});
+
+test('a walk that contradicted the places leaves them in doubt', () => {
+  const reason = 'the sensors that have a place do not stand as the last walk showed them: if one was moved, register all anew';
+  assert.deepEqual(stateOf(known({ registration: { ...GOOD, reasons: [reason] } })),
+    { tone: 'warn', sentence: 'Live: one person. The places are in doubt.', next: reason });
+  const coat = { ...GOOD, reasons: ['coat stand'], unplaced: { s5: { reasons: ['coat stand'] } } };
+  assert.equal(said({ registration: coat }), 'warn: Live: one person. s5 has no place.');
+  const others = { ...GOOD, sensors: { cam1: { polled: false } }, awaits: ['the stored places are of another setup'] };
+  assert.equal(said({ registration: others }), 'warn: It is not known yet where the sensors stand.');
 });
 
 test('the server’s clock is read from the quickest answers and ticks by itself', () => {

@@ -106,6 +106,8 @@ test('reasons, what is awaited, and what is not stored are shown without a regis
   assert.equal(await text(page, '#next'), 'nobody is in sight');
   assert.equal(await text(page, '#stored'), 'not stored: state_dir is empty');
   await picture(page, 'unregistered');
+  Object.assign(world.registration, { stored: true, storeProblem: 'the stored registration cannot be read' });
+  await page.waitForFunction(() => document.getElementById('stored').textContent === 'the stored registration cannot be read');
   world.registration.session = { state: 'collecting', elapsedSeconds: 12, targetSeconds: 30 };
   await headline(page, /^Registering: 12 of 30 s of the walk seen\.$/);
   await page.close();

@@ -67,8 +67,11 @@ class Program(Rig):
         for content in ("{", "[]", '{"sensors": {"s1": {"x": "NaN"}}}', "", "[" * 20000):
             (state / "registration.json").write_text(content)
             fusion = self.fusion({}, state_dir=state)
-            self.assertIn("stored registration not used", fusion.text())
-            self.assertEqual(get_json(fusion.url + "registration")["verdict"], "None")
+            self.assertIn("stored registration damaged", fusion.text())
+            shown = get_json(fusion.url + "registration")
+            self.assertEqual(shown["verdict"], "None")
+            self.assertIn("have to be registered anew", shown["storeProblem"])
+            self.assertIn(content, [file.read_text() for file in state.glob("registration.json.damaged*")], "kept aside")
             self.assertEqual(fusion.stop(), 0)
 
     def test_reload_takes_the_new_file_and_keeps_the_old_one_when_it_is_wrong(self):

@@ -97,8 +97,8 @@ class Sessions(Rig):
     def test_a_killed_server_comes_back_as_it_was(self):
         state = pathlib.Path(self.folder.name) / "state"
         fusion = self.start(state_dir=state)
-        before = self.registered(fusion)
-        self.assertTrue(before["stored"])
+        self.registered(fusion)
+        before = wait_for("stored", lambda: (r := self.registration(fusion))["stored"] and r)
         stored = wait_for("stored", lambda: (t := (state / "registration.json").read_bytes()) and json.loads(t)["version"] == before["version"] and t)
         person = wait_for("somebody", lambda: get_json(fusion.url + "frame")["bodies"])[0]["bodyId"]
         fusion.stop(signal.SIGKILL)

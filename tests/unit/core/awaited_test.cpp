@@ -90,6 +90,17 @@ TEST_F(Awaited, NothingWhenAllHaveAPlaceAndTheMissingOneWhenOneHasNot) {
   EXPECT_THAT(said(), IsEmpty());
 }
 
+TEST_F(Awaited, PlacesOfAnotherSetup) {
+  place("cam1");
+  place("cam2");
+  EXPECT_EQ(said().front(),
+            "the stored places are of another setup: sensors cam1 and cam2 are not configured; "
+            "chorus register --fresh begins anew");
+  place("s1");
+  for (const std::string& line : said())
+    EXPECT_THAT(line, ::testing::Not(HasSubstr("another setup")));
+}
+
 TEST(LastSeen, AreOfTheNewestFrameAndGrowOld) {
   LastSeen last_seen;
   SensorFrame frame = testing::sensor_frame("s1", kStart, std::vector<BodyFrame>(2));

@@ -195,6 +195,19 @@ TEST(FusionCore, ASensorTakenOutOfTheConfigNoLongerBindsTheRegistration) {
   EXPECT_EQ(core.registration().version, 5u);
 }
 
+TEST(FusionCore, SensorsThatNobodyPollsTakeNoPartAndAreNamedAsSuch) {
+  CoreConfig fewer = config();
+  fewer.sensors.erase(sensor_id("s2"));
+  FusionCore core(fewer, ring());
+  const auto snapshots = run(core, Duration{0}, std::chrono::seconds(1));
+  ASSERT_FALSE(snapshots.empty());
+  EXPECT_EQ(snapshots.back().sensors, (std::vector{sensor_id("s1"), sensor_id("s3")}));
+  ASSERT_EQ(snapshots.back().bodies.size(), 1u);
+  EXPECT_EQ(snapshots.back().bodies[0].contributors[0], 0b11u);
+  EXPECT_EQ(core.progress(kStart).unpolled, std::vector{sensor_id("s2")});
+  EXPECT_TRUE(core.registration().sensors.contains(sensor_id("s2"))) << "its place stays";
+}
+
 TEST(FusionCore, CountsBodiesOfSensorsWithoutAPlace) {
   FusionCore core(config(), ring(2));
   (void)run(core, Duration{0},

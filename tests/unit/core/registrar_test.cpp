@@ -106,6 +106,34 @@ TEST_F(Sessions, AFailingOneLeavesTheRegistrationAndSaysWhy) {
   EXPECT_THAT(newest().reasons, Contains("sensors s1 and s2 disagree"));
 }
 
+/// As ring(), with s3 on the other side of the room: nothing fits where s1 and s2 stood.
+Registration rearranged() {
+  Registration r = ring(kSensors, Verdict::Provisional);
+  std::swap(r.sensors.at(sensor_id("s1")), r.sensors.at(sensor_id("s2")));
+  r.sensors.at(sensor_id("s3")).world_from_sensor.translation().y() += 2.0;
+  r.verdicts.at(sensor_id("s3")).verdict = Verdict::Good;
+  return r;
+}
+
+TEST_F(Sessions, PlacesThatTheLastWalkContradictedAreToldUntilAnotherSettlesIt) {
+  begin_with(ring(2));
+  const auto reasons = [&] { return registrar().registration().reasons; };
+  const auto walked = [&](Registration result) {
+    const auto id = registrar().start(std::chrono::seconds(8), now_);
+    return registrar().solved({*id, SolveKind::Final, std::move(result)}, now_);
+  };
+  ASSERT_EQ(walked(rearranged()), Outcome::Nothing);
+  EXPECT_THAT(newest().reasons, Contains(kContradicted));
+  EXPECT_THAT(reasons(), Contains(kContradicted));
+  ASSERT_EQ(walked(rearranged()), Outcome::Nothing);
+  EXPECT_THAT(reasons(), ::testing::ElementsAre(kContradicted)) << "once";
+  ASSERT_TRUE(registrar().move_origin({1.0, 0.0, 0.0}));
+  ASSERT_EQ(walked(refused()), Outcome::Nothing);
+  EXPECT_THAT(reasons(), Contains(kContradicted)) << "such a walk settles nothing";
+  EXPECT_EQ(walked(ring()), Outcome::Adopted);
+  EXPECT_THAT(reasons(), ::testing::IsEmpty());
+}
+
 TEST_F(Sessions, AWalkThatMissesASensorSaysWhatToDo) {
   begin_with(ring());
   ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
@@ -121,9 +149,11 @@ TEST_F(Sessions, ARefusedEndTakesTheSessionsOwnProvisionalBackAndSaysSo) {
   EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, ring(3, Verdict::Provisional)}, now_),
             Outcome::Adopted);
   EXPECT_TRUE(newest().adopted);
+  EXPECT_TRUE(registrar().own_provisional()) << "a restart would not find it";
   const std::uint64_t version = registrar().registration().version;
   EXPECT_EQ(registrar().solved({7, SolveKind::Final, refused()}, now_), Outcome::Withdrawn);
   EXPECT_TRUE(registrar().registration().sensors.empty());
+  EXPECT_FALSE(registrar().own_provisional());
   EXPECT_GT(registrar().registration().version, version) << "readers see that it changed";
   EXPECT_THAT(registrar().registration().reasons, Contains("sensors s1 and s2 disagree"));
   EXPECT_FALSE(newest().adopted);

@@ -88,6 +88,15 @@ TEST(FuseOffline, EveryInstantOnceAtTheGrid) {
   }
 }
 
+TEST(FuseOffline, SensorsWithoutARecordingTakeNoPart) {
+  auto two = walk({.noise = 0.02});
+  two.resize(2);
+  const auto fused = fuse_offline(two, published(), {});
+  ASSERT_TRUE(fused) << fused.error().message;
+  for (const Snapshot& snapshot : fused->snapshots)
+    ASSERT_EQ(snapshot.sensors, (std::vector{sensor(0), sensor(1)}));
+}
+
 TEST(FuseOffline, GivenExtrinsicsAreUsedAsTheyAre) {
   const auto fused = fuse_offline(walk({.length = 5, .noise = 0.0}), published(), {});
   ASSERT_TRUE(fused);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fusion-server/fusion/methods.h"
 #include "tests/unit/pipeline/ring.h"
 
 namespace chorus::pipeline {
@@ -132,6 +133,13 @@ TEST(Step, FramesOfUnregisteredSensorsAreReportedButNotUsed) {
   ASSERT_EQ(last.snapshot.reports.size(), 6u);
   EXPECT_EQ(last.snapshot.reports[2].sensor, sensor(2));
   EXPECT_EQ(last.snapshot.reports[2].bodies, 1u);
+}
+
+TEST(Weights, AreUsedByTheMethodsOfOttoAndByTheBestView) {
+  for (const fusion::MethodRow& row : fusion::methods()) {
+    const bool wanted = row.name.starts_with("otto") || row.name == "best-view";
+    EXPECT_EQ(uses_weights(row.method), wanted) << row.name;
+  }
 }
 
 TEST(Step, ADeadSensorChangesNothingButItsReport) {

@@ -3,6 +3,7 @@
 
 #include "common/base/log.h"
 #include "common/base/units.h"
+#include "fusion-server/core/awaited.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/registration_resources.h"
@@ -74,6 +75,15 @@ TEST(SensorResources, TellsOfTheClockByWhomAndWhatBecameOfUntimelyFrames) {
         "\"framesEarly\": 3", "\"framesBackwards\": 4", "\"framesStale\": 5",
         "\"clockRestarts\": 6"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  s.guessed_from_age = true;
+  EXPECT_EQ(resource::undeclared_terms(sensor_node(s, "s1")), std::vector<std::string>{});
+  sensors.publish({s});
+  const auto alone = body(ask(router, "/sensors/s1"), "application/json");
+  for (const char* part :
+       {"\"clockOffsetMilliseconds\": 200.15", "\"clockFromAgeMilliseconds\": 200",
+        "\"clockUncertaintyMilliseconds\": 100"})
+    EXPECT_NE(alone.find(part), std::string::npos) << part << "\n" << alone;
+  EXPECT_EQ(alone.find("clockFromWalk"), std::string::npos) << "no walk told it";
   sensors.publish({status("s1")});
   const auto calm = body(ask(router, "/sensors/s1"), "application/json");
   EXPECT_EQ(calm.find("framesLate"), std::string::npos);
@@ -233,18 +243,23 @@ TEST_F(Registering, AProposalIsShownWithItsNumbersAndAcceptedOrDeclined) {
   Registration next = registration_;
   next.sensors[sensor_id("s2")] = Extrinsics{};
   progress_.proposal = Proposal{41, next, {{sensor_id("s1"), 0.04, 0.02, 0.12, 0.05}}};
+  progress_.awaits = {core::kDecide, "sensor s3 has no place yet"};
   publish();
+  EXPECT_NE(shown().find("new places wait for your decision"), std::string::npos);
   for (const char* text : {"\"presentRadius\": 0.04", "\"expectedRadius\": 0.02", "\"moves\": 0.12",
                            "\"turnsDegrees\": 2.8648"})
     EXPECT_NE(shown().find(text), std::string::npos) << text << shown();
   EXPECT_EQ(shown().find("sensors/s2"), std::string::npos) << "not in use yet";
   EXPECT_EQ(act(http::Method::Post, "/registration/decline")->status, 200);
   EXPECT_EQ(shown().find("proposal"), std::string::npos);
+  EXPECT_EQ(shown().find("wait for your decision"), std::string::npos) << shown();
+  EXPECT_NE(shown().find("sensor s3 has no place yet"), std::string::npos);
   progress_.commands = 2;
   publish();
   EXPECT_EQ(act(http::Method::Post, "/registration/accept")->status, 200);
   EXPECT_NE(shown().find("sensors/s2"), std::string::npos) << shown();
   EXPECT_EQ(shown().find("\"proposal\""), std::string::npos);
+  EXPECT_EQ(shown().find("wait for your decision"), std::string::npos) << shown();
   EXPECT_NE(shown().find("\"earlier\""), std::string::npos);
   EXPECT_EQ(asked_, "start 41 for 30 to propose #1; decline #2; accept #3; ");
 }
@@ -284,8 +299,10 @@ TEST_F(Registering, TheOriginNeedsAPlaceAndNoSession) {
   registration_.sensors[sensor_id("s1")] = Extrinsics{};
   add_session(40, SessionState::Collecting, true);
   publish();
-  EXPECT_EQ(act(http::Method::Post, "/registration/origin", "{}").error().code,
-            ErrorCode::Conflict);
+  const auto busy = act(http::Method::Post, "/registration/origin", "{}");
+  EXPECT_EQ(busy.error().code, ErrorCode::Conflict);
+  for (const char* way : {"chorus register --cancel", "DELETE /registration/sessions/40"})
+    EXPECT_NE(busy.error().message.find(way), std::string::npos) << busy.error().message;
   EXPECT_EQ(asked_, "");
 }
 
@@ -316,6 +333,21 @@ TEST_F(Registering, WhatIsAskedBeforeTheFirstNewsComesTooEarly) {
   EXPECT_EQ(act(http::Method::Post, "/registration").error().code, ErrorCode::Unavailable);
 }
 
+TEST(Weights, AreShownOnlyWhereTheMethodUsesThem) {
+  SensorStatus s = status("s1");
+  const auto document = [&s] { return write(sensor_node(s, "s1"), resource::Format::Json); };
+  const auto metrics = [&s] {
+    Status all;
+    all.sensors = {s};
+    return metrics_text(all, {}, {});
+  };
+  EXPECT_EQ(document().find("\"weight\""), std::string::npos) << document();
+  EXPECT_EQ(metrics().find("chorus_view_weight"), std::string::npos);
+  s.weight = 0.25;
+  EXPECT_NE(document().find("\"weight\": 0.25"), std::string::npos) << document();
+  EXPECT_NE(metrics().find("chorus_view_weight{sensor=\"s1\"} 0.25"), std::string::npos);
+}
+
 TEST(Metrics, NameEverySensorAndEveryCounterOnce) {
   Status all;
   all.sensors = {status("s1"), status("s2")};
@@ -328,6 +360,9 @@ TEST(Metrics, NameEverySensorAndEveryCounterOnce) {
   EXPECT_NE(text.find("chorus_registration_stored 0"), std::string::npos);
   all.progress.storage.folder = "/var/lib/chorus";
   EXPECT_NE(metrics_text(all, {}, {}).find("chorus_registration_stored 1"), std::string::npos);
+  all.progress.own_provisional = true;
+  EXPECT_NE(metrics_text(all, {}, {}).find("chorus_registration_stored 0"), std::string::npos)
+      << "a restart would not find it";
   const auto first = text.find("# TYPE chorus_sensor_up gauge");
   EXPECT_NE(first, std::string::npos);
   EXPECT_EQ(text.find("# TYPE chorus_sensor_up gauge", first + 1), std::string::npos);

@@ -100,7 +100,9 @@ TEST(FusionConfig, ALengthForCamerasNamesTwoSensors) {
   EXPECT_NE(refused(R"({"between": ["cam1"], "m": 4.31})").find("must name two sensors"),
             std::string::npos);
   EXPECT_NE(refused(R"({"between": ["cam1", "cam1"], "m": 4.31})"), "");
-  EXPECT_NE(refused(R"({"between": ["cam1", "cam2"]})").find("above 0"), std::string::npos);
+  EXPECT_NE(refused(R"({"between": ["cam1", "cam2"]})").find("in metres"), std::string::npos);
+  EXPECT_NE(refused(R"({"between": ["cam1", "cam2"], "m": 431})"), "") << "given in centimetres";
+  EXPECT_NE(refused(R"({"between": ["cam1", "cam2"], "m": 0.04})"), "");
 }
 
 TEST(FusionConfig, AReloadTakesEveryKeyOverOrItWaits) {

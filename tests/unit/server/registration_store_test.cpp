@@ -3,13 +3,13 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <thread>
+#include <future>
 
 #include <gtest/gtest.h>
 
+#include "fusion-server/server/initial_registration.h"
 #include "fusion-server/server/state_keeper.h"
 #include "tests/support/builders.h"
 
@@ -122,24 +122,76 @@ TEST_F(Store, TheKeeperTellsWhatFailedUntilSomethingSucceeds) {
   ::testing::internal::CaptureStderr();
   std::ofstream(folder_.string()) << "a file where the folder should be";
   StateKeeper keeper(RegistrationStore(folder_.string()), "");
-  EXPECT_TRUE(stored(keeper.status()));
-  const auto settled = [&](bool wanted) {
-    for (int i = 0; i < 2000 && stored(keeper.status()) != wanted; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return stored(keeper.status()) == wanted;
-  };
+  EXPECT_TRUE(keeper.status().trouble.empty());
   Worker worker;
+  // Once this returns, all jobs that were posted before have been done.
+  const auto settle = [&worker] {
+    std::promise<void> done;
+    worker.post([&done] { done.set_value(); });
+    done.get_future().wait();
+  };
   keeper.keep(worker, registration(1));
-  EXPECT_TRUE(settled(false));
+  settle();
   EXPECT_NE(keeper.status().trouble.find(folder_.string()), std::string::npos);
   fs::remove(folder_);
   keeper.people(worker, 7);
-  EXPECT_TRUE(settled(true));
+  settle();
   EXPECT_GT(*RegistrationStore(folder_.string()).load_next_person(), 7u + 50u);
+  EXPECT_FALSE(keeper.status().trouble.empty()) << "the registration is still not stored";
+  keeper.keep(worker, registration(1));
+  settle();
+  EXPECT_EQ(keeper.status().trouble, "");
   EXPECT_NE(::testing::internal::GetCapturedStderr().find("state not stored"), std::string::npos);
 }
 
+TEST_F(Store, TheKeeperSaysWhenARegistrationIsYetToBeWritten) {
+  StateKeeper keeper(RegistrationStore(folder_.string()), "", "it was cut off");
+  Worker worker;
+  std::promise<void> go_on;
+  worker.post([&go_on] { go_on.get_future().wait(); });
+  EXPECT_FALSE(keeper.status().writing);
+  keeper.people(worker, 7);
+  EXPECT_FALSE(keeper.status().writing);
+  keeper.keep(worker, registration(1));
+  EXPECT_TRUE(keeper.status().writing);
+  EXPECT_EQ(keeper.status().damage, "it was cut off");
+  std::promise<void> done;
+  worker.post([&done] { done.set_value(); });
+  go_on.set_value();
+  done.get_future().wait();
+  EXPECT_FALSE(keeper.status().writing);
+  EXPECT_EQ(keeper.status().damage, "") << "a good file has replaced it";
+}
+
+TEST_F(Store, ADamagedFileIsKeptAsideAndTheOneBeforeIsUsed) {
+  ::testing::internal::CaptureStderr();
+  const RegistrationStore store(folder_.string());
+  ASSERT_TRUE(store.save(registration(2), registration(1)));
+  write("{\"sensors\": ");
+  const auto found = initial_registration({}, store);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->registration.version, 1u);
+  EXPECT_NE(found->damage.find("registration.json.damaged"), std::string::npos) << found->damage;
+  EXPECT_TRUE(fs::exists(store.path() + ".damaged"));
+  EXPECT_EQ((*store.load())->version, 1u) << "the next start finds it, too";
+  write("[]");
+  const auto none = initial_registration({}, store);
+  ASSERT_TRUE(none);
+  EXPECT_TRUE(none->registration.sensors.empty());
+  EXPECT_NE(none->damage.find("have to be registered anew"), std::string::npos) << none->damage;
+  EXPECT_TRUE(fs::exists(store.path() + ".damaged-2")) << "the first is still there";
+  EXPECT_FALSE(store.load()->has_value());
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("stored registration damaged"),
+            std::string::npos);
+}
+
 TEST_F(Store, AMissingFileOfGivenExtrinsicsIsAnError) {
+  FusionSettings settings;
+  settings.at_start.registration_file = "nowhere.json";
+  const auto refused = initial_registration(settings, RegistrationStore(folder_.string()));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().context, "registration.file");
+
   EXPECT_EQ(load_registration_file((folder_ / "nowhere.json").string()).error().code,
             ErrorCode::Io);
 }

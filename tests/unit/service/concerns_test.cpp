@@ -19,6 +19,9 @@ TEST(UsableFolder, IsOneThatIsThereOrCanBeMade) {
   const auto file = folder.write("file", "in the way");
   EXPECT_FALSE(usable_folder(file.string()));
   EXPECT_FALSE(usable_folder((file / "below").string()));
+  EXPECT_FALSE(usable_folder("/proc/chorus")) << "even root cannot make it";
+  EXPECT_TRUE(usable_folder(folder.path().string()));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing is left behind";
 }
 
 TEST(FreeToListen, SeesWhoIsThereAlready) {

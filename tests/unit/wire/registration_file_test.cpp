@@ -148,6 +148,30 @@ TEST(RegistrationFile, NamesWhatIsWrong) {
             std::string::npos);
 }
 
+/// The example with one value replaced.
+std::string with(const std::string& pointer, const nlohmann::json& value) {
+  auto json = nlohmann::json::parse(write_registration(example()));
+  json[nlohmann::json::json_pointer(pointer)] = value;
+  return why(json.dump());
+}
+
+TEST(RegistrationFile, NamesTheMemberThatIsOfTheWrongKind) {
+  for (const char* member : {"/master", "/verdict", "/solved", "/edges/0/source"}) {
+    const std::string told = with(member, 5);
+    EXPECT_NE(told.find("a text is wanted"), std::string::npos) << member << ": " << told;
+    EXPECT_EQ(told.find("json.exception"), std::string::npos) << told;
+  }
+  EXPECT_NE(with("/edges/0/source", 5).find("edges.source"), std::string::npos);
+}
+
+TEST(RegistrationFile, ACovarianceCanBeOne) {
+  const std::string covariance = "/sensors/s1/covariance";
+  EXPECT_NE(with(covariance + "/0", -1).find("negative"), std::string::npos);
+  EXPECT_NE(with(covariance + "/35", 1e300).find("large"), std::string::npos);
+  EXPECT_NE(with(covariance + "/1", 0.5).find("symmetric"), std::string::npos);
+  EXPECT_EQ(with(covariance + "/0", 2e-6), "");
+}
+
 TEST(RegistrationFile, EveryPrefixOfAFileIsRefusedAndNoneCrashes) {
   const std::string text = write_registration(example());
   for (std::size_t n = 0; n + 2 < text.size(); n += 7) {
@@ -192,7 +216,7 @@ TEST(RegistrationNode, SaysWhyItIsNotStoredAndIdleWhenNoSessionRuns) {
   EXPECT_EQ(json["stored"], false);
   EXPECT_EQ(json["session"]["state"], "idle");
   EXPECT_FALSE(json["session"].contains("sessionId"));
-  progress.storage = {"/nowhere", "/nowhere: read-only"};
+  progress.storage = {"/nowhere", "/nowhere: read-only", {}, false};
   progress.sessions.resize(1);
   progress.sessions[0].id = 3;
   json =
@@ -200,6 +224,36 @@ TEST(RegistrationNode, SaysWhyItIsNotStoredAndIdleWhenNoSessionRuns) {
   EXPECT_EQ(json["storeProblem"], "/nowhere: read-only");
   EXPECT_EQ(json["session"]["state"], "idle");
   EXPECT_EQ(json["session"]["sessionId"], 3);
+}
+
+TEST(RegistrationNode, IsStoredOnceTheFileHoldsItAndTellsOfADamagedOne) {
+  RegistrationProgress progress;
+  progress.storage.folder = "/var/lib/chorus";
+  const auto shown = [&progress] {
+    return nlohmann::json::parse(
+        write(registration_node(example(), progress), resource::Format::Json));
+  };
+  EXPECT_EQ(shown()["stored"], true);
+  progress.own_provisional = true;
+  EXPECT_EQ(shown()["stored"], false);
+  EXPECT_FALSE(shown().contains("storeProblem")) << "that is no problem";
+  progress.own_provisional = false;
+  progress.storage.writing = true;
+  EXPECT_EQ(shown()["stored"], false);
+  progress.storage.writing = false;
+  progress.storage.damage = "it was cut off";
+  EXPECT_EQ(shown()["stored"], true);
+  EXPECT_EQ(shown()["storeProblem"], "it was cut off");
+}
+
+TEST(RegistrationNode, MarksSensorsThatNobodyPolls) {
+  RegistrationProgress progress;
+  progress.unpolled = {sensor_id("s3")};
+  const auto node = registration_node(example(), progress);
+  EXPECT_EQ(resource::undeclared_terms(node), std::vector<std::string>{});
+  const auto json = nlohmann::json::parse(write(node, resource::Format::Json));
+  EXPECT_EQ(json["sensors"]["s3"]["polled"], false);
+  EXPECT_FALSE(json["sensors"]["s1"].contains("polled"));
 }
 
 TEST(SessionNode, TellsOutcomeAndStopsAwaitingWhenItIsOver) {
