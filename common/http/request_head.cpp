@@ -158,8 +158,8 @@ std::optional<Refusal> read_request_line(std::string_view line, RequestHead& hea
   const auto method = method_named(name);
   if (!method)
     return Refusal{status::kNotImplemented,
-                   "the method is not known; methods are written in capitals: GET, HEAD, "
-                   "OPTIONS, POST, PUT, PATCH, DELETE"};
+                   "the method is not known here; those that are: GET, HEAD, OPTIONS, POST, PUT, "
+                   "PATCH, DELETE, in capitals"};
   head.method = *method;
   return read_target(line.substr(first + 1, last - first - 1), head);
 }

@@ -219,6 +219,7 @@ Result<int> from_board(const CalibrateArguments& arguments) {
 
 Result<int> run_calibrate(const CalibrateArguments& arguments) {
   if (!arguments.print_board.empty()) return print_board(arguments);
+  if (const auto ok = may_create(arguments.out); !ok) return pass(ok);
   if (arguments.fov_deg > 0.0) return from_field_of_view(arguments);
   if (!arguments.photo.empty()) return from_photo(arguments);
   if (!arguments.sources.empty()) return from_board(arguments);

@@ -137,6 +137,10 @@ nlohmann::json summary_of(const Fused& fused) {
           {"registration", nlohmann::json::parse(wire::write_registration(fused.registration))}};
 }
 
+std::string counted(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 void print_summary(const nlohmann::json& summary, const FuseArguments& arguments) {
   if (arguments.json) {
     std::cerr << summary.dump(2) << '\n';
@@ -145,9 +149,9 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
   for (const auto& note : summary["notes"])
     std::cerr << "note: " << note.get<std::string>() << '\n';
   std::cerr << registration_report(summary["registration"])
-            << fmt::format("{} sensors, {} fused frames, {} with somebody in them\n",
-                           summary["sensors"].get<std::size_t>(),
-                           summary["frames"].get<std::size_t>(),
+            << fmt::format("{}, {}, {} with somebody in them\n",
+                           counted(summary["sensors"].get<std::size_t>(), "sensor"),
+                           counted(summary["frames"].get<std::size_t>(), "fused frame"),
                            summary["framesWithBodies"].get<std::size_t>());
 }
 

@@ -37,4 +37,11 @@ Result<void> may_write(const std::string& file, const std::vector<fs::path>& inp
   return {};
 }
 
+Result<void> may_create(const std::string& file) {
+  std::error_code unknown;
+  if (file == "-" || !fs::exists(file, unknown)) return {};
+  return fail(ErrorCode::Conflict, file,
+              "exists already, and is not overwritten: move it away, or name another --out");
+}
+
 }  // namespace chorus::ctl

@@ -18,4 +18,7 @@ namespace chorus::ctl {
 [[nodiscard]] Result<void> may_write(const std::string& file,
                                      const std::vector<std::filesystem::path>& inputs);
 
+/// Conflict when the file exists; "-" never does.
+[[nodiscard]] Result<void> may_create(const std::string& file);
+
 }  // namespace chorus::ctl

@@ -152,7 +152,7 @@ TEST(Server, ProblemsNameWhatToChange) {
       {"/frames/%00", "GET", 400, "escape"},
       {"/echo?a=%zz", "GET", 400, "escape"},
       {"/frames/1?profile=nirvana", "GET", 404, "nirvana"},
-      {"/frame", "BREW", 501, "methods are written in capitals"},
+      {"/frame", "BREW", 501, "those that are: GET"},
   };
   for (const Case& c : cases) {
     const auto answer = service.ask(c.target, {}, c.method);

@@ -97,6 +97,10 @@ TEST_F(CalibrateCommand, AStatedFieldOfViewIsALensWithItsUncertainty) {
   EXPECT_NEAR(settings.intrinsics->fx, 640.0 / std::tan(deg(35.0)), 0.01);
   EXPECT_NEAR(settings.focal_sigma, deg(2.0) / std::sin(deg(70.0)), 1e-4);
   EXPECT_THAT(run({"--fov", "70"}).error, HasSubstr("--size"));
+  const Outcome again = run({"--fov", "50", "--size", "1280x720", "--out", at("lens.json")});
+  EXPECT_EQ(again.code, kExitFailed);
+  EXPECT_THAT(again.error, HasSubstr("is not overwritten"));
+  EXPECT_NEAR(lens_in(at("lens.json")).intrinsics->fx, settings.intrinsics->fx, 1e-9);
 }
 
 TEST_F(CalibrateCommand, APhotoThatDoesNotTellItsLensIsSaidToBeSo) {

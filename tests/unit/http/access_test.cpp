@@ -99,6 +99,12 @@ TEST(RefuseWriting, RemoteNeedsTheToken) {
     EXPECT_TRUE(refuse_writing(head, kRemote, kOneToken)) << wrong;
     EXPECT_TRUE(refuse_writing(head, kRemote, kNoToken)) << wrong;
   }
+  head.authorization = "Bearer wrong";
+  EXPECT_NE(refuse_writing(head, kRemote, kOneToken)->message.find("is none of this service"),
+            std::string::npos);
+  head.authorization = {};
+  EXPECT_NE(refuse_writing(head, kRemote, kOneToken)->message.find("send a bearer token"),
+            std::string::npos);
   head.authorization = "BEARER secret";
   EXPECT_FALSE(refuse_writing(head, kRemote, kOneToken));
 }

@@ -50,14 +50,15 @@ TEST(RecordingRequest, SaysWhatIsWrong) {
   EXPECT_EQ(all->duration, std::chrono::milliseconds(2500));
   EXPECT_FALSE(all->raw);
   for (const char* body :
-       {"[]", "{", R"({"name":"../x"})", R"({"name":5})", R"({"seconds":0})", R"({"seconds":"5"})",
-        R"({"seconds":1e9})", R"({"raw":1})", R"({"nmae":"x"})", R"({"raw":false,"fused":false})",
-        R"({"name":""})", R"({"name":"a.mcap"})", R"({"name":"a","name":"b"})",
-        R"({"name":[[[[[[[[]]]]]]]]})"}) {
+       {"[]", "{", R"({"name":"../x"})", R"({"name":"-rf"})", R"({"name":5})", R"({"seconds":0})",
+        R"({"seconds":"5"})", R"({"seconds":1e9})", R"({"raw":1})", R"({"nmae":"x"})",
+        R"({"raw":false,"fused":false})", R"({"name":""})", R"({"name":"a.mcap"})",
+        R"({"name":"a","name":"b"})", R"({"name":[[[[[[[[]]]]]]]]})"}) {
     const auto wrong = parse_recording_request(body, true);
     ASSERT_FALSE(wrong) << body;
     EXPECT_EQ(wrong.error().code, ErrorCode::InvalidArgument) << body;
   }
+  EXPECT_EQ(parse_recording_request(R"({"name":5})", true).error().message, "\"name\" is a text");
   EXPECT_THAT(parse_recording_request(R"({"fused":true})", false).error().message,
               HasSubstr("no fused frames"));
 }
