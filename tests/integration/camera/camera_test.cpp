@@ -237,6 +237,39 @@ TEST(Camera, ARunnerThatDiesIsStartedAgainAndItsReasonTold) {
   EXPECT_GE(rig.status()["runner"]["started"], 2);
 }
 
+TEST(Camera, ALensForAnotherShapeIsNotBlamedOnTheRunner) {
+  Rig rig;
+  auto section = rig.section();
+  section["intrinsics"] = {{"width", kWidth}, {"height", 2 * kHeight},
+                           {"fx", 100.0},     {"fy", 100.0},
+                           {"cx", 1.0},       {"cy", 1.0}};
+  rig.start(section);
+  EXPECT_TRUE(rig.eventually([&] { return rig.status()["state"] == "wrong lens"; }))
+      << rig.status();
+  EXPECT_GE(rig.status()["runner"]["started"], 1);
+  EXPECT_NE(rig.status()["reason"].get<std::string>().find("is for pictures of"),
+            std::string::npos);
+}
+
+TEST(Camera, WhatWouldNotWorkIsFoundWithoutRunning) {
+  const auto concern = [](const char* key, const nlohmann::json& value) -> std::string {
+    Rig rig;
+    auto section = rig.section();
+    if (key != nullptr) section[key] = value;
+    const auto device = rig.make(section);
+    const auto concerns = device ? (*device)->concerns() : std::vector<std::string>{"not made"};
+    EXPECT_LE(concerns.size(), 1u);
+    return concerns.empty() ? "" : concerns[0];
+  };
+  EXPECT_EQ(concern(nullptr, {}), "");
+  EXPECT_NE(concern("runner", {"nosuchprogram"}).find("nosuchprogram"), std::string::npos);
+  EXPECT_NE(concern("runner", {"python3", "-c", "import sys; sys.exit(3)"}), "");
+  EXPECT_NE(concern("source", "docs/guide/cameras.md").find("is it a video?"), std::string::npos);
+  nlohmann::json tall = Rig().section()["intrinsics"];
+  tall["height"] = 2 * kHeight;
+  EXPECT_NE(concern("intrinsics", tall).find("is for pictures of"), std::string::npos);
+}
+
 TEST(Camera, ARunnerThatAnswersAnotherImageIsNotBelieved) {
   Rig rig;
   rig.start(rig.section({"--lie"}));
