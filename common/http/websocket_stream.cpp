@@ -29,6 +29,7 @@ namespace {
 namespace websocket = boost::beast::websocket;
 
 constexpr net::Allowance kPings{.per_second = 5.0, .burst = 50.0};
+constexpr std::size_t kReadOn = 10;
 
 }  // namespace
 
@@ -51,7 +52,9 @@ WebSocketStream::WebSocketStream(net::Stream from, const WebSocketOptions& optio
   patience.keep_alive_pings = true;
   auto& stream = beast_->stream;
   stream.set_option(patience);
-  stream.read_message_max(0);  // read_on() has the limit, so that a last word can still be said.
+  // read_on() has the limit, so that a last word can still be said; what claims to be much longer
+  // is refused at once.
+  stream.read_message_max(kReadOn * options.max_message);
   stream.text(true);
   stream.auto_fragment(false);  // In pieces of 4 KiB a message would cost three times the CPU time.
   if (options.protocol.empty()) return;

@@ -73,6 +73,9 @@ test('green only while all is well: nobody there, no sensors, dead sensors', asy
   world.sensors = { s1: live(), s2: live() };
   const server = await startFakeFusion(FILES, world);
   const { page } = await openViewer(browser, server.url);
+  await headline(page, /^Live: one person\. The places are in doubt\.$/); // Good, but with a reason
+  assert.notEqual(await colour(page, '#headline'), GREEN);
+  world.registration.reasons = [];
   await headline(page, /^Live: one person, 2 sensors\.$/);
   assert.equal(await colour(page, '#headline'), GREEN);
   world.people = 0;
