@@ -51,7 +51,7 @@ mmdebstrap --quiet --variant=essential --include="$service,passwd,ca-certificate
 
 step "image"
 version=$(tar -xOf "$scratch/layer.tar" ./var/lib/dpkg/status \
-  | awk -v name="$service" '$1 == "Package:" { mine = $2 == name } mine && $1 == "Version:" { print $2; exit }')
+  | awk -v name="$service" '$1 == "Package:" { mine = $2 == name } mine && $1 == "Version:" { found = $2 } END { print found }')
 python3 deploy/package/oci_archive.py "$scratch/layer.tar" "$out/$service.tar" --service "$service" --version "$version" \
   --architecture "$(dpkg --print-architecture)"
 du -h "$out/$service.tar"
