@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kGuessedPair = 0.3;  // Weight of a pair with an inferred joint.
 // [m]; longer spans count as this long: a kick must not outweigh shoulders and hips.
-constexpr double kMaxSpan = 0.4;
+constexpr double kMaxSpan = 0.7;
 constexpr std::size_t kTrunkPairs = 2;
 constexpr int kRounds = 3;  // Rounds of join(); one or two usually suffice.
 
