@@ -16,7 +16,10 @@ constexpr std::size_t kMaxFrames = 4096;  // Two seconds of 64 sensors at 30 Hz.
 // Limit of the waiting commands: clients send commands on people's request, not with every frame.
 constexpr std::size_t kMaxCommands = 256;
 constexpr Duration kMaxIdle = std::chrono::milliseconds(20);
-constexpr Duration kGathering = std::chrono::milliseconds(2);
+/// How long frames are collected before this thread takes them, per sensor: 64 sensors would wake
+/// it for each of 1 920 frames a second; six may have each of their frames taken as it arrives.
+constexpr Duration kGatheringPerSensor = std::chrono::microseconds(30);
+constexpr Duration kMaxGathering = std::chrono::milliseconds(2);
 constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
 /// Pause after a failure, which may happen again at once in every iteration.
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
@@ -36,6 +39,11 @@ std::string_view name_of(core::SolveKind kind) {
   return kind == core::SolveKind::Final ? "final" : "provisional";
 }
 
+Duration gathering_of(const core::CoreConfig& config) {
+  return std::min<Duration>(static_cast<long>(config.sensors.size()) * kGatheringPerSensor,
+                            kMaxGathering);
+}
+
 std::string stale(Duration age) {
   return "its newest frame was captured " + log::number_text(seconds(age)) +
          " s ago by our clock; it delivers nothing, or the clock of its host is wrong";
@@ -50,6 +58,7 @@ PipelineLoop::PipelineLoop(LoopOptions options)
       commands_(kMaxCommands),
       solutions_(1),
       age_(kAgeBounds),
+      gathering_(gathering_of(options_.core)),
       keeper_(options_.store, options_.store_trouble, options_.store_damage) {
   if (auto earlier = options_.store.load_earlier()) core_.set_earlier(std::move(*earlier));
 }
@@ -93,12 +102,11 @@ void PipelineLoop::turn() {
   if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
 }
 
-/// Takes the frames that have arrived, or waits for the first.  With many sensors a frame arrives
-/// every other millisecond, so frames are collected instead of waking this thread for each.
+/// Takes the frames that have arrived, or waits for the first.
 void PipelineLoop::gather(Duration idle) {
   const auto since = std::chrono::steady_clock::now() - gathered_at_;
-  if (since < kGathering) {
-    const Duration pause = std::min<Duration>(kGathering - since, idle);
+  if (since < gathering_) {
+    const Duration pause = std::min<Duration>(gathering_ - since, idle);
     std::this_thread::sleep_for(pause);
     idle -= pause;
   }
@@ -121,7 +129,9 @@ void PipelineLoop::obey(Command command) {
   } else if (const auto* choice = std::get_if<Decide>(&command)) {
     decide(*choice);
   } else {
-    core_.reconfigure(std::move(std::get<core::CoreConfig>(command)));
+    auto& config = std::get<core::CoreConfig>(command);
+    gathering_ = gathering_of(config);
+    core_.reconfigure(std::move(config));
   }
   publish_status(options_.clock->now());
 }
