@@ -148,6 +148,21 @@ TEST(Admission, AMisplacedSensorMakesNoSecondPerson) {
   EXPECT_GE(room.until_more_than(1, astray, 20.0), 20.0);
 }
 
+/// Sensors 0 and 2 see somebody in the middle. Sensor 1 looks there, too, and shows a body behind
+/// sensor 2 instead, where only sensor 0 looks and sees nobody.
+TEST(Admission, WhoDoesNotSeeThePersonOthersSeeIsNotBelievedElsewhere) {
+  AdmissionRoom astray{.config = {.look_range = 8.0}};
+  astray.observers.pop_back();
+  AdmissionRoom sound = astray;
+  const std::vector<Body> middle{{0, 0, 0, 1}, {2, 0, 0, 1}};
+  std::vector<Body> bodies = middle;
+  bodies.push_back({1, 1.5, 3.0, 2});
+  EXPECT_GE(astray.until_more_than(1, bodies, 20.0), 20.0);
+  bodies.push_back({1, 0, 0, 1});
+  EXPECT_NEAR(sound.until_more_than(1, bodies, 20.0), seconds(sound.config.alone), 0.2)
+      << "a sensor that sees the person, too, may see a second one";
+}
+
 TEST(Admission, WhoSeesManyAloneIsBelievedLater) {
   AdmissionRoom room{.observers = {observer(0), observer(1)}};
   std::vector<Body> crowd{{0, 0, 0}, {1, 0, 0}};

@@ -78,6 +78,12 @@ TEST(Likeness, SaysLessTheShorterAndTheFewerTheSights) {
   EXPECT_LT(likeness(known, build_of(1.04, 1.0, 4)), likeness(known, build_of(1.04, 1.0, 1)));
 }
 
+TEST(Likeness, AGlimpseRulesNobodyOut) {
+  const Build known = build_of(1.0, 30.0);
+  EXPECT_NEAR(likeness(known, build_of(1.1, 0.01, 1)), 0.0, 1.0);
+  EXPECT_LT(likeness(known, build_of(1.1, 30.0, 1)), -3.0);
+}
+
 TEST(Build, AddsUpByTimeOfSight) {
   Build both = build_of(1.0, 3.0);
   both.add(build_of(1.1, 1.0));

@@ -89,6 +89,15 @@ TEST(RayMatching, TwoCamerasMakeOnePersonAtItsPlace) {
   EXPECT_TRUE(people[0].views[0].skeleton[JointId::Neck].bears()) << "they stay rays";
 }
 
+TEST(RayMatching, AllCamerasThatSeeAPersonMeetInOne) {
+  std::vector<PlacedView> views;
+  for (const Camera& camera : kFour)
+    views.push_back({.view = seen_by(camera, standing_person(), 1), .rays = true});
+  const auto people = meet(views, 0.15, {});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].size(), 4u);
+}
+
 TEST(RayMatching, ALoneCameraFoundsNobodyAndKeepsNobody) {
   RayRoom room;
   const std::vector<Camera> lone{kTwo[0]};
