@@ -48,6 +48,13 @@ TEST(Posture, ArmsThatOnlyOneSideSeesAreOnThatSide) {
   EXPECT_GT(posture_log_odds(views, kAhead, {}), 0.2);
 }
 
+TEST(Posture, ArmsThatAllSensorsSeeShowNoFrontHoweverManyStandOnOneSide) {
+  const auto body = body_at({0, 0, 0}, 0);
+  const std::vector<SensorView> views{view_from(1, deg(-20), body), view_from(2, deg(20), body),
+                                      view_from(3, deg(180), body)};
+  EXPECT_NEAR(posture_log_odds(views, kAhead, {}), 0.0, 1e-9);
+}
+
 TEST(Posture, OfNobodyOrWithoutDirectionOrWithoutJointsTellsNothing) {
   EXPECT_EQ(posture_log_odds({}, kAhead, {}), 0.0);
   EXPECT_EQ(posture_log_odds({view_from(1, 0, {})}, kAhead, {}), 0.0);

@@ -46,6 +46,51 @@ TEST(BodyFilterViews, NoiseTurnsNobodyHoweverManyFramesThereAre) {
   EXPECT_NEAR(left_after(60), usual, 0.1 * usual);
 }
 
+/// Somebody stands still and faces any way; sensor 2 is wrong about the wrist and falls silent.
+TEST(BodyFilterViews, WhoStandsStillIsNotTurningWhicheverWayTheyFace) {
+  const auto left_after = [](double heading) {
+    Room room;
+    room.config.body.bone = 0.0;
+    room.config.body.resting = 0.0;
+    room.config.body.handover = Duration{0};
+    auto exact = standing();
+    for (Joint& joint : exact.joints) joint.position = about_y(heading) * joint.position;
+    auto wrong = exact;
+    wrong[WristLeft].position.y() += 0.04;
+    for (int i = 0; i < kFilterSteps; ++i)
+      (void)room.at(i, {view_of(1, exact), view_of(2, wrong), view_of(3, exact)});
+    return body_room::wrist_off(room.at(kFilterSteps, {view_of(1, exact), view_of(3, exact)}),
+                                exact);
+  };
+  const double usual = left_after(0.0);
+  EXPECT_GT(usual, 0.003) << "something was learned";
+  for (const double heading : {60.0, 135.0, -90.0})
+    EXPECT_GT(left_after(deg(heading)), 0.8 * usual) << heading;
+}
+
+/// Each view is wrong about each joint in a way of its own.
+TEST(BodyFilterViews, WhereViewsDisagreeTheBodyIsSaidToErrByMore) {
+  const auto variance = [](double error) {
+    Room room;
+    FusedBody body;
+    for (int i = 0; i < kFilterSteps; ++i) {
+      std::vector<SensorView> views;
+      for (int v = 1; v <= 4; ++v) {
+        views.push_back(view_of(v, standing()));
+        for (std::size_t j = 0; j < kJointCount; ++j) {
+          const double phase = 7.0 * v + 2.0 * static_cast<double>(j) + 1.3 * i;
+          views.back().skeleton.joints[j].position +=
+              error *
+              Eigen::Vector3d(std::sin(phase), std::cos(2.1 * phase), std::sin(3.3 * phase));
+        }
+      }
+      body = room.at(i, views);
+    }
+    return body.variance[index_of(SpineMid)];
+  };
+  EXPECT_GT(variance(0.03), 2.5 * variance(0.0));
+}
+
 TEST(BodyFilterViews, ASensorThatFallsSilentMovesNobodyAtOnce) {
   const auto step = [](Duration handover) {
     Room room;

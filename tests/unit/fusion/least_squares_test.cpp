@@ -42,6 +42,17 @@ TEST(LeastSquares, ExactRaysMeetInThePoint) {
   }
 }
 
+TEST(LeastSquares, RaysThatMeetExactlyErrByTheirStatedAngles) {
+  RayDraw exact(1, 0.0);
+  std::vector views{exact({0, 1, -3}, {0, 1, 0}), exact({-3, 1, 0}, {0, 1, 0})};
+  for (JointView& view : views) view.covariance = kSigma * kSigma * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d covariance = least_squares(views, kSquaresHuber)->covariance;
+  const double one = 9.0 * kSigma * kSigma;  // [m^2], at 3 m
+  EXPECT_NEAR(covariance(0, 0), one, 0.01 * one);
+  EXPECT_NEAR(covariance(2, 2), one, 0.01 * one);
+  EXPECT_NEAR(covariance(1, 1), one / 2.0, 0.01 * one) << "both cameras see the height";
+}
+
 TEST(LeastSquares, ANearCameraCountsMoreThanAFarOne) {
   // Two rays along z, one from 1 m and one from 4 m away, determine x; a ray along x determines z.
   std::vector<JointView> views;

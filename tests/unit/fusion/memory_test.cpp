@@ -100,6 +100,13 @@ TEST(FusionMemory, CopiesGoOnApart) {
   EXPECT_EQ(seen.neck_x(milliseconds(66), better(2)), 0.0) << "it has not seen what the copy saw";
 }
 
+TEST(FusionMemory, ACopyRemembersWhatTheOriginalSaw) {
+  Seen seen(Method::BestSkeleton);
+  EXPECT_EQ(seen.neck_x(milliseconds(0), better(1)), 0.0);
+  Seen copy = seen;
+  EXPECT_EQ(copy.neck_x(milliseconds(33), better(2)), 0.0) << "sensor 1 had been the best";
+}
+
 TEST(FusionMemory, PeopleWhoLeftAndAnotherConfigurationBeginAnew) {
   Seen seen(Method::BestSkeleton);
   EXPECT_EQ(seen.neck_x(milliseconds(0), better(1)), 0.0);
