@@ -71,6 +71,21 @@ Pose pose_at(const Samples& samples, std::size_t after, Timestamp instant, Durat
   return pose_between(last, next, s);
 }
 
+/// The grid instants, or those of the samples that are kept unchanged there: an instant of 1/30 s
+/// is rounded to whole nanoseconds, and whoever compares texts needs the frame's own.
+std::vector<Timestamp> instants_of(const Samples& sorted, const Take& take) {
+  std::vector<Timestamp> instants;
+  instants.reserve(take.frames);
+  std::size_t next = 0;
+  for (std::size_t frame = 0; frame < take.frames; ++frame) {
+    const Timestamp instant = instant_of(take, frame);
+    while (next < sorted.size() && sorted[next].instant < instant - kSameInstant) ++next;
+    const bool same = next < sorted.size() && sorted[next].instant <= instant + kSameInstant;
+    instants.push_back(same ? sorted[next].instant : instant);
+  }
+  return instants;
+}
+
 Result<PersonTrack> track_of(const Samples& samples, const Take& take, Duration max_gap) {
   PersonTrack track{samples.front().person, {}};
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -91,6 +106,7 @@ Result<PersonTrack> track_of(const Samples& samples, const Take& take, Duration 
 }  // namespace
 
 Timestamp instant_of(const Take& take, std::size_t frame) {
+  if (frame < take.instants.size()) return take.instants[frame];
   const double ns = static_cast<double>(frame) * kNanosecondsPerSecond / take.rate_hz;
   return take.start + Duration(std::llround(ns));
 }
@@ -115,6 +131,7 @@ Result<Take> make_take(std::vector<FusedSample> samples, const TakeOptions& opti
     return fail(ErrorCode::TooLarge, "fused frames",
                 "make more than 500000 poses; export one person, fewer hertz, or a part.");
   take.frames = static_cast<std::size_t>(frames);
+  take.instants = instants_of(samples, take);
   samples = {};
   for (const auto& [person, own] : persons) {
     auto track = track_of(own, take, options.max_gap);

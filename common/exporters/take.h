@@ -49,6 +49,9 @@ struct Take {
   double rate_hz = 0.0;
   std::size_t frames = 0;
   std::vector<PersonTrack> persons;  ///< In order of their ids.
+  /// When each frame was captured: that of a sample that was kept unchanged, else the grid instant.
+  /// Empty: the grid instants.
+  std::vector<Timestamp> instants = {};
 };
 
 struct TakeOptions {

@@ -68,6 +68,10 @@ constexpr std::string_view kTruthFile = "triangulated.json";
 /// cameras.json.
 Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
                                    const ImportOptions& options) {
+  std::error_code unknown;
+  if (std::filesystem::is_regular_file(folder, unknown))
+    return fail(ErrorCode::InvalidArgument, folder.string(),
+                "is a file; name the folder with cameras.json and the landmarks of each camera.");
   const auto cameras = read_cameras(folder / kCamerasFile, options.limits);
   if (!cameras) return pass(cameras);
   ImportedSet set;

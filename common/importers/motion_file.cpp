@@ -24,6 +24,9 @@ namespace {
 
 constexpr std::size_t kShownLabels = 40;
 constexpr double kNanosecondsPerSecond = 1e9;
+// Thighs of toddlers and of giants in animations [m].
+constexpr double kShortestThigh = 0.1;
+constexpr double kLongestThigh = 2.0;
 
 /// What every reader returns: one motion per person, all of the same length.
 struct Captured {
@@ -74,12 +77,34 @@ Result<Captured> captured_c3d(const std::string& bytes, const std::string& origi
   return out;
 }
 
+/// BVH does not state its unit, so a wrong one shows in nothing but the size of the people.
+Result<void> check_size(const motion::Motion& motion, const std::string& origin) {
+  for (const auto& body : motion.frames) {
+    const Joint& hip = body[JointId::HipLeft];
+    const Joint& knee = body[JointId::KneeLeft];
+    if (!hip.seen() || !knee.seen()) continue;
+    const double thigh = (hip.position - knee.position).norm();
+    if (thigh >= kShortestThigh && thigh <= kLongestThigh) return {};
+    return fail(ErrorCode::Malformed, origin,
+                fmt::format("would hold a person with thighs of {:.3g} m: --unit must say whether "
+                            "its lengths are cm or m",
+                            thigh));
+  }
+  return {};
+}
+
 Result<Captured> captured_bvh(const std::string& text, const std::string& origin, double unit) {
   const auto bvh = motion::parse_bvh(text, origin, unit);
   if (!bvh) return pass(bvh);
   auto motion = motion::motion_from_bvh(*bvh);
   if (!motion) return fail(motion.error().code, origin, to_string(motion.error()));
-  return Captured{"BVH", {std::move(*motion)}, {1}};
+  if (auto ok = check_size(*motion, origin); !ok) return pass(ok);
+  Captured out{"BVH", {std::move(*motion)}, {1}};
+  if (motion::Motion& only = out.persons.front(); motion::starts_with_pose(only)) {
+    only.frames.erase(only.frames.begin());
+    out.notes["repeated"] = "the first frame is a pose and no part of the motion, and was left out";
+  }
+  return out;
 }
 
 Result<Captured> captured_mvnx(const std::string& text, const std::string& origin) {

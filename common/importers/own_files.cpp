@@ -127,6 +127,8 @@ Result<void> read_joint_rows(LineReader& lines, const ImportOptions& options,
     if (!joint->given()) continue;  // A missing joint has a row too.
     const auto body = instants.body(lines, *captured, BodyId{*person});
     if (!body) return pass(body);
+    if ((*body)->skeleton[*id].given())
+      return table->wrong("joint", "is there twice at one instant; is a column person missing?");
     (*body)->skeleton[*id] = *joint;
   }
 }

@@ -23,13 +23,19 @@ char separator_of(std::string_view header) {
   return best;
 }
 
+/// The field without the double quotes around it, which R and Excel write.
+std::string_view unquoted(std::string_view field) {
+  if (field.size() < 2 || !field.starts_with('"') || !field.ends_with('"')) return field;
+  return field.substr(1, field.size() - 2);
+}
+
 }  // namespace
 
 void Table::split(std::string_view line) {
   fields_.clear();
   while (fields_.size() <= kMaxColumns) {
     const auto end = line.find(separator_);
-    fields_.push_back(trimmed(line.substr(0, end), " \r"));
+    fields_.push_back(unquoted(trimmed(line.substr(0, end), " \r")));
     if (end == std::string_view::npos) return;
     line.remove_prefix(end + 1);
   }
@@ -71,6 +77,8 @@ Result<std::optional<double>> Table::number(std::string_view column, double boun
   const std::string_view text = field(column);
   if (text.empty()) return std::nullopt;
   const auto value = parse_finite(text);
+  if (!value && text.find(',') != std::string_view::npos)
+    return wrong(column, "is not a number; decimals need a point instead of the comma");
   if (!value) return wrong(column, "is not a number");
   if (std::abs(*value) > bound) return wrong(column, fmt::format("is beyond +-{}", bound));
   return value;

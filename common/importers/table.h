@@ -1,4 +1,5 @@
-// Tables whose first row names the columns, separated by commas, semicolons or tabs; no quotes.
+// Tables whose first row names the columns, separated by commas, semicolons or tabs.
+// A field may be in double quotes, but contain neither quotes nor separators.
 #pragma once
 
 #include <map>

@@ -11,6 +11,9 @@
 namespace chorus::importers {
 namespace {
 
+constexpr std::string_view kGzip = "\x1F\x8B";
+constexpr std::string_view kMcap = "\x89MCAP";
+
 /// Cuts the next field off `rest`; none when no field is left.
 std::optional<std::string_view> cut_field(std::string_view& rest, char separator, bool first) {
   if (separator == ' ') {
@@ -40,12 +43,20 @@ std::string_view trimmed(std::string_view text, std::string_view blanks) {
 
 Result<std::string> read_bounded(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   std::error_code failed;
+  if (std::filesystem::is_directory(file, failed))
+    return fail(ErrorCode::InvalidArgument, file.string(), "is a folder; name the file in it.");
   if (!std::filesystem::is_regular_file(file, failed))
     return fail(ErrorCode::NotFound, file.string(), "there is no such file.");
-  return read_file(file, max_bytes).map_error([](Error error) {
+  auto text = read_file(file, max_bytes).map_error([](Error error) {
     if (error.code == ErrorCode::TooLarge) error.message += ". Cut the recording into parts.";
     return error;
   });
+  if (text && text->starts_with(kGzip))
+    return fail(ErrorCode::Malformed, file.string(), "is packed with gzip: gunzip it first.");
+  if (text && text->starts_with(kMcap))
+    return fail(ErrorCode::Malformed, file.string(),
+                "is a recording already: chorus fuse and chorus replay read it as it is.");
+  return text;
 }
 
 std::optional<std::string_view> LineReader::next() {

@@ -11,6 +11,7 @@ namespace chorus::motion {
 namespace {
 
 constexpr double kTiny = 1e-6;
+constexpr double kFastest = 30.0;  // No joint is faster, not even a thrower's hand [m/s].
 
 /// The joints whose orientation a Kinect v2 does not give.
 constexpr std::array kLeaves{JointId::Head,         JointId::HandTipLeft, JointId::ThumbLeft,
@@ -51,6 +52,17 @@ void orient_segments(Skeleton<WorldSpace>& body) {
         body[JointId::SpineMid].position - body[JointId::SpineBase].position, forward);
   }
   for (const JointId leaf : kLeaves) body[leaf].orientation = Eigen::Quaterniond(0, 0, 0, 0);
+}
+
+bool starts_with_pose(const Motion& motion) {
+  if (motion.frames.size() < 3) return false;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const Joint& first = motion.frames[0].joints[i];
+    const Joint& second = motion.frames[1].joints[i];
+    const double way = (second.position - first.position).norm();
+    if (first.seen() && second.seen() && way * motion.rate_hz > kFastest) return true;
+  }
+  return false;
 }
 
 Skeleton<WorldSpace> at(const Motion& motion, double time) {

@@ -40,6 +40,10 @@ inline constexpr double kCmuRateHz = 120.0;
 /// If there are no frames, nothing is tracked.
 [[nodiscard]] Skeleton<WorldSpace> at(const Motion& motion, double time);
 
+/// True if the first frame is a separate T-pose, as Xsens MVN puts before the motion: nobody could
+/// get from there to the second frame in one step.
+[[nodiscard]] bool starts_with_pose(const Motion& motion);
+
 /// Gives each joint the orientation of its segment: +y along the bone that ends there (at
 /// SpineBase: along the bone to SpineMid), +z as near to the body's forward direction as possible.
 /// Joints stay as they are if an end of that bone is not seen.  The orientations of head, hand

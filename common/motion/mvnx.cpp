@@ -214,7 +214,9 @@ Result<Mvnx> MvnxReader::read(std::string_view xml) {
         XML_Parse(parser_.get(), piece.data(), static_cast<int>(piece.size()), xml.empty());
     if (wrong_) return tl::unexpected<Error>(*wrong_);
     if (status != XML_STATUS_OK)
-      return fail(ErrorCode::Malformed, place(), XML_ErrorString(XML_GetErrorCode(parser_.get())));
+      return fail(
+          ErrorCode::Malformed, place(),
+          std::string("is no complete XML: ") + XML_ErrorString(XML_GetErrorCode(parser_.get())));
     if (xml.empty()) break;
   }
   if (mvnx_.rate_hz == 0) return fail(ErrorCode::Malformed, origin_, "holds no subject");

@@ -62,14 +62,22 @@ Result<CellRecording> cell_of(const Recording& recording, const fs::path& name,
                               const CellQuery& query) {
   Sorting sorting(query);
   Collected collected(query.limits.max_total_bytes);
+  const auto collect_ready = [&]() -> Result<void> {
+    while (auto item = sorting.ready()) {
+      if (auto ok = collected.take(std::move(*item)); !ok) return ok;
+    }
+    return {};
+  };
   sorting.begin_file(name, recording.channels, recording.metadata);
   for (const Message& one : recording.messages) {
-    auto item = sorting.take({one.topic, one.sequence, one.log_time, one.publish_time, one.data});
-    if (!item) return pass(item);
-    if (!*item) continue;
-    if (auto ok = collected.take(std::move(**item)); !ok) return pass(ok);
+    const auto ok =
+        sorting.take({one.topic, one.sequence, one.log_time, one.publish_time, one.data})
+            .and_then(collect_ready);
+    if (!ok) return pass(ok);
   }
   if (auto ok = sorting.end_file({}, recording.notes); !ok) return pass(ok);
+  sorting.end();
+  if (auto ok = collect_ready(); !ok) return pass(ok);
   return collected.into(sorting.finish());
 }
 

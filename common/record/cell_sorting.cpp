@@ -16,6 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A frame may arrive this much after a newer one of its sensor and still take its place, as in a
+/// fusion server (align::HistoryLimits).
+constexpr Duration kLatest = std::chrono::milliseconds(1500);
+/// Most items that wait for late frames, whatever the log times say.
+constexpr std::size_t kMostHeld = 16'384;
+
 /// Recognises fused frames by their space, which our documents state at the beginning.
 bool says_world_space(std::string_view json) {
   constexpr std::size_t kHead = 512;
@@ -129,45 +135,93 @@ Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
   return &stream;
 }
 
-Sorting::Item Sorting::kept(Stream& stream, SensorFrame frame) const {
+/// True if the frame was overtaken on its way: it is numbered before the newest one, and not much
+/// older.  A clock that was set back goes on counting.
+bool Sorting::is_late(const Stream& stream, const SensorFrame& frame) const {
+  return !query_.strict && frame.sequence < stream.newest_sequence &&
+         frame.captured < *stream.newest && *stream.newest - frame.captured <= kLatest;
+}
+
+/// Puts a late frame before the frames that were captured after it.  Returns false if it is too
+/// late for that, or if there is a frame of that time.
+bool Sorting::put_in_place(Stream& stream, SensorFrame frame) {
+  if (stream.given && *stream.given >= frame.captured) return false;
+  const auto after = std::ranges::find_if(held_, [&](const Held& held) {
+    const auto* other = std::get_if<SensorFrame>(&held.item);
+    return other != nullptr && other->sensor == frame.sensor && other->captured >= frame.captured;
+  });
+  if (after != held_.end() && std::get<SensorFrame>(after->item).captured == frame.captured)
+    return false;
+  const Timestamp logged = after == held_.end() ? newest_logged_ : after->logged;
+  held_.insert(after, Held{std::move(frame), logged});
+  return true;
+}
+
+void Sorting::hold(SessionItem item, Timestamp logged) {
+  newest_logged_ = std::max(newest_logged_, logged);
+  held_.push_back({std::move(item), logged});
+}
+
+std::optional<SessionItem> Sorting::ready() {
+  if (held_.empty()) return std::nullopt;
+  const bool waits = !ended_ && !query_.strict && held_.size() <= kMostHeld &&
+                     newest_logged_ - held_.front().logged <= kLatest;
+  if (waits) return std::nullopt;
+  SessionItem item = std::move(held_.front().item);
+  held_.pop_front();
+  if (const auto* frame = std::get_if<SensorFrame>(&item))
+    streams_[frame->sensor].given = frame->captured;
+  return item;
+}
+
+Result<void> Sorting::keep(Stream& stream, SensorFrame frame) {
   bool told = moved(frame.captured, stream.shift);
   for (BodyFrame& body : frame.bodies) told = moved(body.captured, stream.shift) && told;
   if (!told) {
     ++stream.left_out;
-    return std::nullopt;
+    return {};
   }
   frame.floor = stream.floor;
   frame.clock_sigma = stream.clock_sigma;
-  if (!stream.newest || frame.captured > *stream.newest) {
-    stream.newest = frame.captured;
+  const Timestamp captured = frame.captured;
+  if (!stream.newest || captured > *stream.newest) {
+    stream.newest = captured;
+    stream.newest_sequence = frame.sequence;
     ++stream.kept;
-    return SessionItem(std::move(frame));
+    const Timestamp logged = frame.received;
+    hold(std::move(frame), logged);
+    return {};
+  }
+  if (is_late(stream, frame) && put_in_place(stream, std::move(frame))) {
+    ++stream.kept;
+    return {};
   }
   if (!query_.strict || stream.shift) {  // A corrected clock may step back.
     ++stream.left_out;
-    stream.newest_out = std::max(stream.newest_out.value_or(frame.captured), frame.captured);
-    return std::nullopt;
+    stream.newest_out = std::max(stream.newest_out.value_or(captured), captured);
+    return {};
   }
-  const bool repeats = frame.captured == *stream.newest;
+  const bool repeats = captured == *stream.newest;
   return fail(ErrorCode::Malformed, where(),
               "frame " + std::to_string(stream.kept) +
                   (repeats ? " repeats the capture time " : " goes back in time to ") +
-                  to_iso8601(frame.captured));
+                  to_iso8601(captured));
 }
 
-Sorting::Item Sorting::take_fused(resource::FrameResource frame) {
+Result<void> Sorting::take_fused(resource::FrameResource frame, Timestamp logged) {
   if (!begins_or_follows(fused_)) {
     return fail(ErrorCode::Conflict, where(),
                 "holds fused frames, and so does " + fused_.files.back().string() +
                     "; they are not parts of one recording: name one of them");
   }
-  return SessionItem(std::move(frame));
+  hold(std::move(frame), logged);
+  return {};
 }
 
-Sorting::Item Sorting::take_frame(const MessageView& message, const Topic& topic) {
+Result<void> Sorting::take_frame(const MessageView& message, const Topic& topic) {
   const bool maybe_fused = !topic.sensor && !source_.single;
   ++frames_;
-  if (maybe_fused && !query_.fused && says_world_space(message.data)) return std::nullopt;
+  if (maybe_fused && !query_.fused && says_world_space(message.data)) return {};
   auto frame = resource::read_frame(message.data, resource::Format::Json);
   if (!frame) {
     return fail(ErrorCode::Malformed, where(),
@@ -175,14 +229,14 @@ Sorting::Item Sorting::take_frame(const MessageView& message, const Topic& topic
                     ": " + to_string(frame.error()));
   }
   if (maybe_fused && frame->space == resource::SpaceKind::World)
-    return take_fused(std::move(*frame));
+    return take_fused(std::move(*frame), message.log_time);
   SensorId sensor = topic.sensor.value_or(source_.description.sensor);
   if (sensor.str().empty()) {
     if (const auto id = SensorId::parse(frame->source)) sensor = *id;
   }
   const auto stream = stream_of(sensor);
   if (!stream) return pass(stream);
-  return kept(**stream, resource::to_sensor_frame(*frame, sensor, message.log_time));
+  return keep(**stream, resource::to_sensor_frame(*frame, sensor, message.log_time));
 }
 
 /// Takes a message that states something about the frames after it.
@@ -202,18 +256,16 @@ Result<void> Sorting::take_state(const MessageView& message, const Topic& topic)
   return {};
 }
 
-Sorting::Item Sorting::take(const MessageView& message) {
+Result<void> Sorting::take(const MessageView& message) {
   const auto topic = topic_of(message.topic);
-  if (!topic) return std::nullopt;
+  if (!topic) return {};
   if (topic->what == "frame") return take_frame(message, *topic);
   const bool floor = topic->what == "floor-plane";
-  if (floor || (topic->what == "clock" && topic->sensor)) {
-    if (auto ok = take_state(message, *topic); !ok) return pass(ok);
-    return std::nullopt;
-  }
-  if (message.topic != "/registration" || registration_ == message.data) return std::nullopt;
+  if (floor || (topic->what == "clock" && topic->sensor)) return take_state(message, *topic);
+  if (message.topic != "/registration" || registration_ == message.data) return {};
   registration_ = message.data;
-  return SessionItem(registration_);
+  hold(registration_, message.log_time);
+  return {};
 }
 
 Result<void> Sorting::end_file(const std::vector<Channel>& channels,
@@ -249,8 +301,10 @@ CellRecording Sorting::finish() {
     for (std::size_t i = 0; i < out_.damage.size(); ++i)
       notes["damage." + std::to_string(i + 1)] = out_.damage[i];
     if (stream.left_out > 0)
-      notes["left_out"] =
-          std::to_string(stream.left_out) + " frames that go back in time or out of it";
+      notes["left_out"] = std::to_string(stream.left_out) +
+                          (stream.left_out == 1 ? " frame" : " frames") +
+                          " whose capture time is not later than that of the frame before (sent "
+                          "twice, or the clock was set back)";
     out_.sensors.push_back(std::move(stream.recording));
     out_.files[sensor] = std::move(stream.line.files);
   }

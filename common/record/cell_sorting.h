@@ -1,7 +1,8 @@
 // Internal to common/record: turns the messages of a recording into frames, separated by stream and
-// checked for order.
+// put into order.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -44,15 +45,23 @@ class Sorting {
 
   void begin_file(const std::filesystem::path& file, const std::vector<Channel>& channels,
                   const Metadata& metadata);
-  [[nodiscard]] Result<std::optional<SessionItem>> take(const MessageView& message);
+  [[nodiscard]] Result<void> take(const MessageView& message);
+  /// The next item, once no late frame can come before it any more.
+  [[nodiscard]] std::optional<SessionItem> ready();
+  /// Call this after the last file: ready() then returns all that is left.
+  void end() { ended_ = true; }
   /// `notes`: what was left out when reading the file.
   [[nodiscard]] Result<void> end_file(const std::vector<Channel>& channels,
                                       const std::vector<std::string>& notes);
-  /// Everything in the recording except the items that take() has returned.
+  /// Everything in the recording except the items that ready() has returned.
   [[nodiscard]] CellRecording finish();
 
  private:
-  using Item = Result<std::optional<SessionItem>>;
+  /// An item that waits until no late frame can come before it any more.
+  struct Held {
+    SessionItem item;
+    Timestamp logged;
+  };
 
   /// The file being read.
   struct Source {
@@ -77,7 +86,9 @@ class Sorting {
     std::optional<Duration> shift;
     double clock_sigma = kUnknownClock;
     std::size_t kept = 0;
-    std::optional<Timestamp> newest;  ///< Capture time of the newest frame kept.
+    std::optional<Timestamp> newest;    ///< Capture time of the newest frame kept.
+    std::uint64_t newest_sequence = 0;  ///< Its number.
+    std::optional<Timestamp> given;     ///< Capture time of the last frame that ready() returned.
     std::size_t left_out = 0;
     std::size_t kept_before = 0;  ///< The value of `kept` when the current file began.
     /// Capture time of the newest frame of the current file that was left out.
@@ -86,9 +97,12 @@ class Sorting {
 
   void note_cell(const std::vector<Channel>& channels);
   Result<void> take_state(const MessageView& message, const Topic& topic);
-  Item take_frame(const MessageView& message, const Topic& topic);
-  Item take_fused(resource::FrameResource frame);
-  Item kept(Stream& stream, SensorFrame frame) const;
+  Result<void> take_frame(const MessageView& message, const Topic& topic);
+  Result<void> take_fused(resource::FrameResource frame, Timestamp logged);
+  Result<void> keep(Stream& stream, SensorFrame frame);
+  [[nodiscard]] bool is_late(const Stream& stream, const SensorFrame& frame) const;
+  bool put_in_place(Stream& stream, SensorFrame frame);
+  void hold(SessionItem item, Timestamp logged);
   Result<Stream*> stream_of(const SensorId& sensor);
   [[nodiscard]] bool begins_or_follows(Line& line) const;
   [[nodiscard]] Result<void> check_order(const Stream& stream) const;
@@ -100,7 +114,10 @@ class Sorting {
   std::size_t frames_ = 0;  ///< Number of frames so far, on all topics.
   std::map<SensorId, Stream> streams_;
   Line fused_;
-  std::string registration_;  ///< The registration returned last, as JSON.
+  std::string registration_;  ///< The registration read last, as JSON.
+  std::deque<Held> held_;     ///< In log order, but for late frames.
+  Timestamp newest_logged_ = Timestamp::min();
+  bool ended_ = false;
   CellRecording out_;
 };
 

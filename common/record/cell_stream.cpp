@@ -60,8 +60,10 @@ CellStream::~CellStream() = default;
 
 Result<std::optional<SessionItem>> CellStream::next() {
   Impl& in = *impl_;
-  while (in.current || in.next_file < in.files.size()) {
+  while (true) {
+    if (auto item = in.sorting.ready()) return item;
     if (!in.current) {
+      if (in.next_file == in.files.size()) break;
       if (auto ok = in.open_next(); !ok) return pass(ok);
     }
     const auto message = in.current->next();
@@ -74,10 +76,10 @@ Result<std::optional<SessionItem>> CellStream::next() {
       if (auto ok = in.close_current(); !ok) return pass(ok);
       continue;
     }
-    auto item = in.sorting.take(**message);
-    if (!item || *item) return item;
+    if (auto ok = in.sorting.take(**message); !ok) return pass(ok);
   }
-  return std::nullopt;
+  in.sorting.end();
+  return in.sorting.ready();
 }
 
 CellRecording CellStream::finish() { return impl_->sorting.finish(); }

@@ -18,7 +18,10 @@ class Scan {
 
   Result<Outline> run() {
     if (walk_.peek(mcap::kMagic.size()) != mcap::kMagic) {
-      return fail(ErrorCode::Malformed, "recording", "this is not an MCAP file of version 0");
+      return fail(
+          ErrorCode::Malformed, "recording",
+          "this is not an MCAP file of version 0; files of other kinds become recordings with "
+          "chorus import");
     }
     walk_.skip(mcap::kMagic.size());
     while (step()) {

@@ -26,7 +26,6 @@ constexpr double kStandingShare = 0.05;
 constexpr double kMinThigh = 0.25;
 constexpr double kMaxThigh = 0.65;
 constexpr double kMaxRate = 1000.0;  // [Hz]
-constexpr double kFastest = 30.0;    // No joint is faster, not even a thrower's hand [m/s].
 
 constexpr std::array kRequired{JointId::HipLeft,       JointId::HipRight,   JointId::KneeLeft,
                                JointId::KneeRight,     JointId::AnkleLeft,  JointId::AnkleRight,
@@ -197,21 +196,8 @@ Result<void> can_be_played(const motion::Motion& role) {
                   role.rate_hz, kMaxRate));
 }
 
-/// True if the first frame is a separate T-pose, as Xsens MVN puts before the motion: nobody could
-/// get from there to the second frame in one step.
-bool starts_with_pose(const motion::Motion& role) {
-  if (role.frames.size() < 3) return false;
-  for (std::size_t i = 0; i < kJointCount; ++i) {
-    const Joint& first = role.frames[0].joints[i];
-    const Joint& second = role.frames[1].joints[i];
-    const double way = (second.position - first.position).norm();
-    if (first.seen() && second.seen() && way * role.rate_hz > kFastest) return true;
-  }
-  return false;
-}
-
 void drop_pose(std::vector<motion::Motion>& roles) {
-  if (!std::ranges::any_of(roles, starts_with_pose)) return;
+  if (!std::ranges::any_of(roles, motion::starts_with_pose)) return;
   for (motion::Motion& role : roles) {
     if (!role.frames.empty()) role.frames.erase(role.frames.begin());
   }

@@ -1,6 +1,7 @@
 #include "fusion-server/client/fused_frames.h"
 
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -58,15 +59,20 @@ Result<void> add_frame(FusedSamples& samples, const resource::FrameResource& fra
   return {};
 }
 
-/// Reads a recording file by file, so that only its samples are kept in memory.
-Result<FusedFrames> read_recording_files(const std::string& source) {
+TakeFrame into(FusedSamples& samples) {
+  return [&samples](const resource::FrameResource& frame, const std::string& at) {
+    return add_frame(samples, frame, at);
+  };
+}
+
+/// Reads a recording file by file, and keeps none of its frames.
+Result<Notes> each_of_recording(const std::string& source, const TakeFrame& take) {
   const auto files = find_recordings({source});
   if (!files) return pass(files);
   record::CellQuery query;
   query.fused = true;
   query.raw = false;
   record::CellStream stream(*files, query);
-  FusedFrames out;
   std::size_t frames = 0;
   std::string raw;  // A sensor with raw frames, if one was found.
   for (auto item = stream.next(); true; item = stream.next()) {
@@ -76,15 +82,14 @@ Result<FusedFrames> read_recording_files(const std::string& source) {
     const auto* fused = std::get_if<resource::FrameResource>(&**item);
     if (fused == nullptr) continue;
     ++frames;
-    if (const auto added = add_frame(out.samples, *fused, source); !added) return pass(added);
+    if (const auto taken = take(*fused, source); !taken) return pass(taken);
   }
   if (frames == 0 && !raw.empty()) return not_fused(raw, source);
   if (frames == 0)
     return fail(ErrorCode::NotFound, source,
                 "holds no fused frames (topic /frame). Fuse its sensors: chorus fuse DIR --out - | "
                 "chorus export - ...");
-  out.notes = notes_of(stream.finish());
-  return out;
+  return notes_of(stream.finish());
 }
 
 /// The lines of any stream; none is longer than kMaxLineBytes.
@@ -121,42 +126,58 @@ class Lines {
   bool too_long_ = false;
 };
 
-Result<FusedFrames> of_lines(std::istream& in, const std::string& origin) {
-  auto samples = read_fused_lines(in, origin);
-  if (!samples) return pass(samples);
-  return FusedFrames{std::move(*samples), {}};
+Result<Notes> each_of_lines(std::istream& in, const std::string& origin, const TakeFrame& take) {
+  Lines reader(in);
+  std::string line;
+  for (std::size_t number = 1; reader.next(line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::string at = fmt::format("{}:{}", origin, number);
+    const auto frame = world_frame(line, at);
+    if (!frame) return pass(frame);
+    if (const auto taken = take(*frame, at); !taken) return pass(taken);
+  }
+  if (reader.too_long()) return fail(ErrorCode::TooLarge, origin, "has a line of more than 16 MB.");
+  return Notes{};
 }
 
-Result<FusedFrames> read_file(const std::string& source) {
+Result<Notes> each_of_file(const std::string& source, const TakeFrame& take) {
   std::error_code ignored;
-  if (fs::is_directory(source, ignored)) return read_recording_files(source);
+  if (fs::is_directory(source, ignored)) return each_of_recording(source, take);
   std::ifstream file(source, std::ios::binary);
   if (!file) return fail(ErrorCode::NotFound, source, "there is no such file or folder.");
   std::string start(record::mcap::kMagic.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (start == record::mcap::kMagic) return read_recording_files(source);
+  if (start == record::mcap::kMagic) return each_of_recording(source, take);
   file.clear();
   file.seekg(0);
-  return of_lines(file, source);
+  return each_of_lines(file, source, take);
 }
 
 /// Receives a server's frames for some time, each frame once, by conditional long polling.
 class Listening {
  public:
-  Listening(const http::Url& server, std::string source, tls::Trust trust)
+  Listening(const http::Url& server, std::string source, tls::Trust trust, TakeFrame taker)
       : source_(std::move(source)),
+        taker_(std::move(taker)),
         poll_(io_, server, {std::string(kFusedTopic), "application/json", {}, std::move(trust)},
               {[this](const http::ClientResponse& answer) { take(answer); },
                [this](const Error& error, int status) { failed(error, status); }}) {}
 
-  Result<FusedFrames> run(std::chrono::milliseconds listen) {
+  /// Ctrl-C ends the listening early, and keeps what was heard.
+  Result<Notes> run(std::chrono::milliseconds listen) {
+    asio::signal_set signals(io_, SIGINT, SIGTERM);
+    signals.async_wait([this](const net::error_code& error, int) {
+      if (error) return;
+      stopped_ = true;
+      io_.stop();
+    });
     poll_.start();
     io_.run_for(listen);
     poll_.stop();
     if (fatal_) return tl::unexpected<Error>(*fatal_);
     if (count_.frames == 0 && !count_.error.empty())
       return fail(ErrorCode::Unavailable, source_, "delivered no frame; " + count_.error);
-    return FusedFrames{std::move(samples_), notes()};
+    return notes();
   }
 
  private:
@@ -172,9 +193,9 @@ class Listening {
     if (!frame) return count_.cannot_read(frame.error());
     // A server without ETags may send the same frame again.
     if (count_.frames > 0 && frame->sequence == count_.last) return;
-    if (auto added = add_frame(samples_, *frame, source_); !added) {
-      count_.cannot_read(added.error());
-      return end_with(added.error());
+    if (auto taken = taker_(*frame, source_); !taken) {
+      count_.cannot_read(taken.error());
+      return end_with(taken.error());
     }
     count_.take(frame->sequence);
   }
@@ -188,8 +209,9 @@ class Listening {
     end_with(std::move(why));
   }
 
-  [[nodiscard]] std::vector<std::string> notes() const {
-    std::vector<std::string> notes;
+  [[nodiscard]] Notes notes() const {
+    Notes notes;
+    if (stopped_) notes.emplace_back("stopped before --seconds had passed");
     if (count_.missed > 0) notes.push_back(fmt::format("{} frames were missed", count_.missed));
     if (count_.failed > 0) notes.push_back(fmt::format("{} requests failed", count_.failed));
     if (count_.unreadable > 0)
@@ -200,13 +222,15 @@ class Listening {
 
   std::string source_;
   asio::io_context io_{1};
+  TakeFrame taker_;
   LivePoll poll_;
-  FusedSamples samples_;
   StreamCount count_;
   std::optional<Error> fatal_;
+  bool stopped_ = false;
 };
 
-Result<FusedFrames> listen_to(const std::string& source, std::chrono::milliseconds listen) {
+Result<Notes> listen_to(const std::string& source, std::chrono::milliseconds listen,
+                        const TakeFrame& take) {
   auto url = http::parse_url(source);
   if (!url) return pass(url);
   std::string& path = url->target;
@@ -214,7 +238,7 @@ Result<FusedFrames> listen_to(const std::string& source, std::chrono::millisecon
   if (path.ends_with(kFusedTopic)) path.resize(path.size() - kFusedTopic.size());
   auto trust = authorities();
   if (!trust) return pass(trust);
-  return Listening(*url, source, std::move(*trust)).run(listen);
+  return Listening(*url, source, std::move(*trust), take).run(listen);
 }
 
 }  // namespace
@@ -225,26 +249,27 @@ std::string frame_line(const resource::FrameResource& frame) {
   return line + "\n";
 }
 
+Result<Notes> each_fused_frame(const std::string& source, std::chrono::milliseconds listen,
+                               const TakeFrame& take) {
+  if (source == "-") return each_of_lines(std::cin, "standard input", take);
+  if (source.starts_with("http://") || source.starts_with("https://"))
+    return listen_to(source, listen, take);
+  return each_of_file(source, take);
+}
+
 Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& origin) {
   FusedSamples samples;
-  Lines reader(lines);
-  std::string line;
-  for (std::size_t number = 1; reader.next(line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const std::string at = fmt::format("{}:{}", origin, number);
-    const auto frame = world_frame(line, at);
-    if (!frame) return pass(frame);
-    if (const auto added = add_frame(samples, *frame, at); !added) return pass(added);
-  }
-  if (reader.too_long()) return fail(ErrorCode::TooLarge, origin, "has a line of more than 16 MB.");
+  const auto read = each_of_lines(lines, origin, into(samples));
+  if (!read) return pass(read);
   return samples;
 }
 
 Result<FusedFrames> read_fused_frames(const std::string& source, std::chrono::milliseconds listen) {
-  if (source == "-") return of_lines(std::cin, "standard input");
-  if (source.starts_with("http://") || source.starts_with("https://"))
-    return listen_to(source, listen);
-  return read_file(source);
+  FusedFrames out;
+  auto notes = each_fused_frame(source, listen, into(out.samples));
+  if (!notes) return pass(notes);
+  out.notes = std::move(*notes);
+  return out;
 }
 
 }  // namespace chorus::client

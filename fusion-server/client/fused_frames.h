@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -14,17 +15,28 @@ namespace chorus::client {
 
 using FusedSamples = std::vector<exporters::FusedSample>;
 
+/// Human-readable: what is missing because of damage, gaps or failures.
+using Notes = std::vector<std::string>;
+
 struct FusedFrames {
   FusedSamples samples;
-  /// Human-readable: what is missing because of damage, gaps or failures.
-  std::vector<std::string> notes;
+  Notes notes;
 };
 
-/// Reads all fused frames of `source`.  An http:// or https:// address is a fusion server, or
-/// anything else with a /frame in world space, and is read for the time `listen`; "-" is NDJSON on
-/// standard input; a file that begins like MCAP, or a folder of .mcap files, is a recording; any
-/// other file is NDJSON.  Frames in sensor space are refused: they must be fused first.  If a
-/// server fails after its first frame, the frames received until then are kept.
+/// Takes a frame as it was read; `at` says where, for messages.  An error ends the reading.
+using TakeFrame =
+    std::function<Result<void>(const resource::FrameResource& frame, const std::string& at)>;
+
+/// Passes all fused frames of `source` on, one by one.  An http:// or https:// address is a fusion
+/// server, or anything else with a /frame in world space, and is read for the time `listen`; "-" is
+/// NDJSON on standard input; a file that begins like MCAP, or a folder of .mcap files, is a
+/// recording; any other file is NDJSON.  Frames in sensor space are refused: they must be fused
+/// first.  If a server fails after its first frame, the frames received until then are kept.
+[[nodiscard]] Result<Notes> each_fused_frame(const std::string& source,
+                                             std::chrono::milliseconds listen,
+                                             const TakeFrame& take);
+
+/// What make_take() needs of each_fused_frame().
 [[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
                                                     std::chrono::milliseconds listen);
 

@@ -13,13 +13,19 @@ constexpr const char* kWait = "wait=5";
 constexpr std::chrono::milliseconds kAfterFailure{250};
 // Pause for a resource that cannot wait: it answers with 304 at once, or has no ETag.
 constexpr std::chrono::milliseconds kAfterNothing{10};
+// A number that is farther below the newest one is no late frame: the device counts from the start.
+constexpr std::uint64_t kLateWithin = 100;
 
 }  // namespace
 
 void StreamCount::take(std::uint64_t sequence) {
-  if (frames > 0 && sequence > last + 1) missed += sequence - last - 1;
-  last = sequence;
   ++frames;
+  if (frames > 1 && sequence < last && last - sequence <= kLateWithin) {
+    if (missed > 0) --missed;  // It was counted as missed when a later one overtook it.
+    return;
+  }
+  if (frames > 1 && sequence > last + 1) missed += sequence - last - 1;
+  last = sequence;
 }
 
 void StreamCount::fail(const Error& why) {

@@ -126,7 +126,13 @@ class BodyFilter final : public Estimator {
     FusedJoint fused = sighted.shown(joint);
     if (!determined) fused.joint.state = JointState::Inferred;
     PlacedJoint place = filtered(j, instant, now, determined);
-    if (determined) place.covariance += sighted.stated(j) - now.covariance;
+    if (determined) {
+      const Eigen::Matrix3d beyond = sighted.stated(j) - now.covariance;
+      beyond_[j] = std::max(0.0, mean_variance(beyond));
+      place.covariance += beyond;
+    } else {
+      place.covariance += beyond_[j] * Eigen::Matrix3d::Identity();
+    }
     state(fused, place);
     if (fused.contributors != 0) contributed_[j] = instant;
     if (contributed_[j]) fused.age = seconds(instant - *contributed_[j]);
@@ -187,6 +193,8 @@ class BodyFilter final : public Estimator {
   Handover handover_;
   MotionFilters filters_;
   std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last determined [m^2].
+  /// What was stated of it beyond that, per axis [m^2]: nobody becomes surer by not looking.
+  std::array<double, kJointCount> beyond_{};
   std::array<std::optional<Timestamp>, kJointCount> contributed_;  ///< When a sensor last did.
   Habit agreement_{kFirstAgreement};
   Habit scale_square_;

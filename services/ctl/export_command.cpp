@@ -13,12 +13,18 @@
 #include "common/exporters/export_formats.h"
 #include "fusion-server/client/fused_frames.h"
 #include "services/ctl/command.h"
+#include "services/ctl/fused_file.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/server_option.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
 namespace {
+
+/// Unlike the motion formats, this one holds the frames as they are, on no grid.
+constexpr std::string_view kFrames = "ndjson";
+constexpr std::string_view kFramesAre =
+    "the frames as they are, a line each: covariances, contributors, ages";
 
 struct ExportArguments {
   std::string source;
@@ -27,6 +33,7 @@ struct ExportArguments {
   std::optional<std::uint64_t> person;
   double rate_hz = 0.0;
   int max_gap_ms = 200;
+  bool on_grid = false;  ///< True if --rate or --max-gap was given.
   double seconds = 10.0;
   std::string unit = "cm";
   bool json = false;
@@ -92,10 +99,64 @@ void report(const Done& done, bool as_json) {
     std::cerr << "note: this is binary glTF; most programs want it to be called .glb\n";
 }
 
+std::chrono::milliseconds listening(const ExportArguments& arguments) {
+  return std::chrono::milliseconds(std::llround(arguments.seconds * 1e3));
+}
+
+/// What was written as lines.
+struct Lines {
+  std::size_t frames = 0;
+  std::size_t with_bodies = 0;
+  client::Notes notes;
+};
+
+Result<Lines> write_lines(const ExportArguments& arguments) {
+  auto file = FrameLines::create(arguments.out);
+  if (!file) return pass(file);
+  Lines lines;
+  const auto take = [&](const resource::FrameResource& frame, const std::string&) {
+    resource::FrameResource kept = frame;
+    if (arguments.person)
+      std::erase_if(kept.bodies, [&](const auto& body) { return body.id != *arguments.person; });
+    ++lines.frames;
+    if (!kept.bodies.empty()) ++lines.with_bodies;
+    return file->add(kept);
+  };
+  auto notes = client::each_fused_frame(arguments.source, listening(arguments), take);
+  if (!notes) return pass(notes);
+  lines.notes = std::move(*notes);
+  if (lines.with_bodies == 0)
+    return fail(ErrorCode::NotFound, arguments.source,
+                arguments.person ? "has no frame with this person." : "has nobody in any frame.");
+  if (auto ok = file->finish(); !ok) return pass(ok);
+  return lines;
+}
+
+Result<int> run_lines(const ExportArguments& arguments) {
+  if (arguments.on_grid)
+    return fail(ErrorCode::InvalidArgument, "--format ndjson",
+                "writes the frames as they are; leave --rate and --max-gap out");
+  const auto lines = write_lines(arguments);
+  if (!lines) return pass(lines);
+  if (arguments.json) {
+    std::cerr << nlohmann::json{{"files", {arguments.out}},
+                                {"frames", lines->frames},
+                                {"framesWithBodies", lines->with_bodies},
+                                {"notes", lines->notes}}
+                     .dump(2)
+              << '\n';
+    return kExitOk;
+  }
+  for (const std::string& note : lines->notes) std::cerr << "note: " << note << '\n';
+  std::cerr << fmt::format("{} frames, {} with somebody in them\nwrote {}\n", lines->frames,
+                           lines->with_bodies, arguments.out);
+  return kExitOk;
+}
+
 Result<int> run_export(const ExportArguments& arguments) {
   if (auto ok = may_write(arguments.out, {arguments.source}); !ok) return pass(ok);
-  auto source = client::read_fused_frames(
-      arguments.source, std::chrono::milliseconds(std::llround(arguments.seconds * 1e3)));
+  if (arguments.format == kFrames) return run_lines(arguments);
+  auto source = client::read_fused_frames(arguments.source, listening(arguments));
   if (!source) return pass(source);
   exporters::TakeOptions options;
   options.rate_hz = arguments.rate_hz;
@@ -124,6 +185,8 @@ Run add_export(CLI::App& options) {
     formats += fmt::format("\n{}: {}", row.name, row.writes);
     names.emplace_back(row.name);
   }
+  formats += fmt::format("\n{}: {}", kFrames, kFramesAre);
+  names.emplace_back(kFrames);
   options
       .add_option("source", arguments->source,
                   "Recording (.mcap or a folder of them), NDJSON of chorus fuse, - for NDJSON on "
@@ -134,13 +197,16 @@ Run add_export(CLI::App& options) {
       ->check(CLI::IsMember(names));
   options.add_option("--out", arguments->out, "File to write; - is standard output")->required();
   options.add_option("--person", arguments->person, "Only the person of this id");
-  options.add_option("--rate", arguments->rate_hz, "Frames a second [Hz]; the source's by default")
-      ->check(number_range(0.1, 1000.0));
-  options
-      .add_option("--max-gap", arguments->max_gap_ms,
-                  "Longest hole that is bridged [ms]; joints are missing in longer ones")
-      ->check(CLI::Range(0, 60'000))
-      ->capture_default_str();
+  const auto* rate =
+      options
+          .add_option("--rate", arguments->rate_hz, "Frames a second [Hz]; the source's by default")
+          ->check(number_range(0.1, 1000.0));
+  const auto* gap =
+      options
+          .add_option("--max-gap", arguments->max_gap_ms,
+                      "Longest hole that is bridged [ms]; joints are missing in longer ones")
+          ->check(CLI::Range(0, 60'000))
+          ->capture_default_str();
   options.add_option("--seconds", arguments->seconds, "How long to listen to a server [s]")
       ->check(number_range(0.1, 86'400.0))
       ->capture_default_str();
@@ -150,7 +216,10 @@ Run add_export(CLI::App& options) {
   add_authority_option(options);
   add_token_footer(options);
   options.add_flag("--json", arguments->json, "Summary as JSON");
-  return [arguments] { return run_export(*arguments); };
+  return [arguments, rate, gap] {
+    arguments->on_grid = rate->count() > 0 || gap->count() > 0;
+    return run_export(*arguments);
+  };
 }
 
 }  // namespace chorus::ctl

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fusion-server/client/recordings.h"
+#include "fusion-server/fusion/methods.h"
 #include "fusion-server/pipeline/offline.h"
 #include "fusion-server/server/registration_store.h"
 #include "fusion-server/wire/registration_file.h"
@@ -82,9 +83,11 @@ Result<Places> given_extrinsics(const FuseArguments& arguments,
 Result<Places> extrinsics(Places given, RecordedCell& cell, const FuseArguments& arguments,
                           const pipeline::OfflineConfig& config) {
   if (given.registration) {
-    if (!arguments.options.distance.empty() || !arguments.options.stature.empty())
-      given.note += (given.note.empty() ? "" : "; ") +
-                    std::string("--distance and --stature change nothing without --from-walk");
+    const OfflineOptions& options = arguments.options;
+    if (!options.distance.empty() || !options.stature.empty() || !options.joints.empty())
+      given.note +=
+          (given.note.empty() ? "" : "; ") +
+          std::string("--distance, --stature and --joints change nothing without --from-walk");
     return given;
   }
   auto solved = pipeline::register_recordings(cell.input(), config);
@@ -101,11 +104,16 @@ Result<void> check_outputs(const FuseArguments& arguments,
   read.emplace_back(arguments.registration);
   read.emplace_back(arguments.options.config);
   if (auto ok = may_write(arguments.out, read); !ok) return ok;
-  return may_write(arguments.save_registration, read);
+  if (auto ok = may_write(arguments.save_registration, read); !ok) return ok;
+  if (!same_file(arguments.out, arguments.save_registration)) return {};
+  return fail(ErrorCode::InvalidArgument, "--save-registration",
+              "names the file of --out, which would lose what is fused; name another");
 }
 
 struct Fused {
   Registration registration;
+  std::string method;
+  double rate_hz = 0.0;
   std::size_t frames = 0;
   std::size_t with_bodies = 0;
   RecordedCell::Told told;
@@ -115,6 +123,8 @@ Result<Fused> fuse_into(const std::string& out, RecordedCell& cell, Registration
                         const pipeline::OfflineConfig& config) {
   Fused fused;
   fused.registration = std::move(registration);
+  fused.method = fusion::name_of(config.pipeline.fusion.method);
+  fused.rate_hz = config.rate_hz;
   const auto file = create_fused_file(out, fused.registration);
   if (!file) return pass(file);
   const auto done = pipeline::fuse_recordings(cell.input(), fused.registration, config,
@@ -133,6 +143,8 @@ nlohmann::json summary_of(const Fused& fused) {
   return {{"sensors", fused.told.sensors},
           {"frames", fused.frames},
           {"framesWithBodies", fused.with_bodies},
+          {"method", fused.method},
+          {"rateHz", fused.rate_hz},
           {"notes", fused.told.notes},
           {"registration", nlohmann::json::parse(wire::write_registration(fused.registration))}};
 }
@@ -149,6 +161,8 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
   for (const auto& note : summary["notes"])
     std::cerr << "note: " << note.get<std::string>() << '\n';
   std::cerr << registration_report(summary["registration"])
+            << fmt::format("method {}, {:.6g} instants a second\n",
+                           summary["method"].get<std::string>(), summary["rateHz"].get<double>())
             << fmt::format("{}, {}, {} with somebody in them\n",
                            counted(summary["sensors"].get<std::size_t>(), "sensor"),
                            counted(summary["frames"].get<std::size_t>(), "fused frame"),
@@ -192,13 +206,15 @@ Run add_fuse(CLI::App& options) {
   options
       .add_option("--out", arguments->out, "File to write: .mcap, or NDJSON; - is standard output")
       ->required();
-  options.add_option(
+  auto* registration = options.add_option(
       "--registration", arguments->registration,
       "Extrinsics as JSON; without it those of the recording, else registration.json "
       "beside it, else from the person");
-  options.add_flag("--from-walk", arguments->from_walk,
-                   "Register from the person, though the recording has a registration, in it or "
-                   "beside it");
+  options
+      .add_flag("--from-walk", arguments->from_walk,
+                "Register from the person, though the recording has a registration, in it or "
+                "beside it")
+      ->excludes(registration);
   options.add_option("--save-registration", arguments->save_registration,
                      "Write the extrinsics used to this file");
   add_offline_options(options, arguments->options);

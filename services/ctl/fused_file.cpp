@@ -86,9 +86,11 @@ class FusedRecording final : public FusedFile {
   bool placed_ = false;
 };
 
-class FusedLines final : public FusedFile {
+}  // namespace
+
+class FrameLines::Impl {
  public:
-  explicit FusedLines(const std::string& file) : file_(file) {}
+  explicit Impl(const std::string& file) : file_(file) {}
 
   Result<void> begin() {
     std::error_code ignored;
@@ -102,11 +104,11 @@ class FusedLines final : public FusedFile {
     out_.open(plain ? partial_->path() : file_, std::ios::binary | std::ios::trunc);
     return judged();
   }
-  Result<void> add(const Snapshot& snapshot) override {
-    stream() << client::frame_line(wire::to_resource(snapshot));
+  Result<void> add(const resource::FrameResource& frame) {
+    stream() << client::frame_line(frame);
     return judged();
   }
-  Result<void> finish() override {
+  Result<void> finish() {
     stream().flush();
     if (auto ok = judged(); !ok) return ok;
     if (out_.is_open()) out_.close();
@@ -124,6 +126,41 @@ class FusedLines final : public FusedFile {
   std::string file_;
   std::optional<Partial> partial_;
   std::ofstream out_;
+};
+
+FrameLines::FrameLines(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FrameLines::FrameLines(FrameLines&&) noexcept = default;
+FrameLines::~FrameLines() = default;
+
+Result<FrameLines> FrameLines::create(const std::string& file) {
+  auto impl = std::make_unique<Impl>(file);
+  if (auto ok = impl->begin(); !ok) return pass(ok);
+  return FrameLines(std::move(impl));
+}
+
+Result<void> FrameLines::add(const resource::FrameResource& frame) { return impl_->add(frame); }
+Result<void> FrameLines::finish() { return impl_->finish(); }
+
+namespace {
+
+class FusedLines final : public FusedFile {
+ public:
+  explicit FusedLines(const std::string& file) : file_(file) {}
+
+  Result<void> begin() {
+    auto lines = FrameLines::create(file_);
+    if (!lines) return pass(lines);
+    lines_.emplace(std::move(*lines));
+    return {};
+  }
+  Result<void> add(const Snapshot& snapshot) override {
+    return lines_->add(wire::to_resource(snapshot));
+  }
+  Result<void> finish() override { return lines_->finish(); }
+
+ private:
+  std::string file_;
+  std::optional<FrameLines> lines_;
 };
 
 template <class File>

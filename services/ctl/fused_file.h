@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/base/result.h"
+#include "common/resource/frame_resource.h"
 #include "fusion-server/flow.h"
 
 namespace chorus::ctl {
@@ -22,5 +23,21 @@ class FusedFile {
 
 [[nodiscard]] Result<std::unique_ptr<FusedFile>> create_fused_file(
     const std::string& file, const Registration& registration);
+
+/// Lines of JSON alone, under the rules of FusedFile.
+class FrameLines {
+ public:
+  [[nodiscard]] static Result<FrameLines> create(const std::string& file);
+  FrameLines(FrameLines&&) noexcept;
+  ~FrameLines();
+
+  [[nodiscard]] Result<void> add(const resource::FrameResource& frame);
+  [[nodiscard]] Result<void> finish();
+
+ private:
+  class Impl;
+  explicit FrameLines(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace chorus::ctl

@@ -16,6 +16,7 @@
 #include "common/record/recording_stream.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/client/fused_frames.h"
+#include "fusion-server/server/registration_store.h"
 #include "fusion-server/wire/registration_file.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
@@ -42,6 +43,8 @@ struct ImportArguments {
   std::vector<std::string> lenses;
   std::string model = "movenet";
   double rate_hz = 30.0;
+  bool unit_given = false;
+  bool rate_given = false;
 };
 
 /// The formats that come from cameras: only these take the cameras' lenses (--intrinsics).
@@ -139,11 +142,29 @@ Result<void> spare_recordings(const fs::path& folder, const importers::ImportedS
   return {};
 }
 
+/// Refuses to replace extrinsics that also place sensors which are not imported here: these would
+/// have no place any more.
+Result<void> spare_places(const fs::path& file, const importers::ImportedSet& set) {
+  std::error_code unknown;
+  if (set.world_from_sensor.empty() || !fs::exists(file, unknown)) return {};
+  const auto there = server::load_registration_file(file.string());
+  std::string others;
+  for (const auto& [sensor, place] : there ? there->sensors : decltype(there->sensors){}) {
+    if (!set.world_from_sensor.contains(sensor))
+      others += (others.empty() ? "" : ", ") + sensor.str();
+  }
+  if (there && others.empty()) return {};
+  return fail(ErrorCode::Conflict, file.string(),
+              there ? "says where " + others + " stand, and would be replaced. Name another --out."
+                    : "is there, and is no registration. Name another --out.");
+}
+
 Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers::ImportedSet& set) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) return fail(ErrorCode::Io, folder.string(), failed.message());
   if (auto ok = spare_recordings(folder, set); !ok) return pass(ok);
+  if (auto ok = spare_places(folder / "registration.json", set); !ok) return pass(ok);
   std::vector<fs::path> written;
   for (const auto& recording : set.recordings) {
     written.push_back(folder / (recording.sensor.str() + ".mcap"));
@@ -213,8 +234,11 @@ void print_summary(const importers::ImportedSet& set, const std::vector<fs::path
   for (const auto& recording : set.recordings) {
     for (const char* note :
          {"time", "states", "repeated", "unfitted", "joints", "labels", "sensors"}) {
-      if (const auto found = recording.notes.find(note); found != recording.notes.end())
-        std::cout << fmt::format("{}: {}\n", recording.sensor.str(), found->second);
+      const auto found = recording.notes.find(note);
+      if (found == recording.notes.end()) continue;
+      const bool states = found->first == "states";  // "none in the file", which needs its subject
+      std::cout << fmt::format("{}: {}{}\n", recording.sensor.str(),
+                               states ? "tracking states: " : "", found->second);
     }
   }
   for (const fs::path& file : written) std::cout << "wrote " << file.string() << '\n';
@@ -233,6 +257,22 @@ importers::ImportOptions options_of(const ImportArguments& arguments) {
   return options;
 }
 
+/// Refuses options that the format has no use for, because whoever gives one expects an effect.
+Result<void> check_options(const ImportArguments& arguments) {
+  const bool cameras = is_of_cameras(arguments.format);
+  if (arguments.unit_given && arguments.format != "bvh")
+    return fail(ErrorCode::InvalidArgument, "--unit", "is for bvh only; leave it out");
+  if (arguments.rate_given && !cameras)
+    return fail(ErrorCode::InvalidArgument, "--rate",
+                "is for pictures of cameras only; leave it out");
+  if (!cameras && !arguments.lenses.empty())
+    return fail(ErrorCode::InvalidArgument, "--intrinsics", "is for cameras; leave it out");
+  if (arguments.rays && arguments.format != "pose2sim")
+    return fail(ErrorCode::InvalidArgument, "--rays",
+                "only pose2sim has landmarks of cameras; leave it out");
+  return {};
+}
+
 Result<importers::ImportedSet> read_set(const ImportArguments& arguments,
                                         const importers::ImportOptions& options) {
   const std::vector<fs::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
@@ -240,16 +280,11 @@ Result<importers::ImportedSet> read_set(const ImportArguments& arguments,
     return import_videos(inputs, options, {arguments.lenses, arguments.model, arguments.rate_hz});
   if (is_of_cameras(arguments.format))
     return import_poses(inputs, options, {arguments.lenses, arguments.rate_hz});
-  if (!arguments.lenses.empty())
-    return fail(ErrorCode::InvalidArgument, "--intrinsics", "is for cameras; leave it out");
-  const auto format = importers::format_named(arguments.format);
-  if (options.rays && format != importers::FileFormat::Pose2Sim)
-    return fail(ErrorCode::InvalidArgument, "--rays",
-                "only pose2sim has landmarks of cameras; leave it out");
-  return importers::import_files(*format, inputs, options);
+  return importers::import_files(*importers::format_named(arguments.format), inputs, options);
 }
 
 Result<int> run_import(const ImportArguments& arguments) {
+  if (auto ok = check_options(arguments); !ok) return pass(ok);
   const auto set = read_set(arguments, options_of(arguments));
   if (!set) return pass(set);
   const auto written = write_set(arguments.out, *set);
@@ -291,9 +326,10 @@ Run add_import(CLI::App& options) {
       ->check(readable_by(parse_iso8601));
   options.add_option("--sensor", arguments->sensor, "Name of the sensor, for a single input")
       ->check(readable_by(SensorId::parse));
-  options.add_option("--unit", arguments->unit, "Of lengths in BVH, which does not say")
-      ->check(CLI::IsMember({"cm", "m"}))
-      ->capture_default_str();
+  const auto* unit =
+      options.add_option("--unit", arguments->unit, "Of lengths in BVH, which does not say")
+          ->check(CLI::IsMember({"cm", "m"}))
+          ->capture_default_str();
   options
       .add_option("--intrinsics", arguments->lenses,
                   "Lens of a camera, for video, openpose and mmpose: a file with the keys of "
@@ -303,17 +339,22 @@ Run add_import(CLI::App& options) {
       ->allow_extra_args(false);
   options.add_option("--model", arguments->model, "That the runner finds people in videos with")
       ->capture_default_str();
-  options
-      .add_option(
-          "--rate", arguments->rate_hz,
-          "Pictures a second: of a video, those that are looked at; of openpose and mmpose, "
-          "those there are")
-      ->check(number_range(0.1, 1000.0))
-      ->capture_default_str();
+  const auto* rate =
+      options
+          .add_option(
+              "--rate", arguments->rate_hz,
+              "Pictures a second: of a video, those that are looked at; of openpose and mmpose, "
+              "those there are")
+          ->check(number_range(0.1, 1000.0))
+          ->capture_default_str();
   options.add_flag("--rays", arguments->rays,
                    "Of camera landmarks only their directions, without the depth of a fit");
   options.add_flag("--json", arguments->json, "Report as JSON");
-  return [arguments] { return run_import(*arguments); };
+  return [arguments, unit, rate] {
+    arguments->unit_given = unit->count() > 0;
+    arguments->rate_given = rate->count() > 0;
+    return run_import(*arguments);
+  };
 }
 
 }  // namespace chorus::ctl

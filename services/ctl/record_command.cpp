@@ -175,6 +175,10 @@ Result<int> run_record(const RecordArguments& arguments) {
   const auto url = http::parse_url(arguments.url);
   if (!url) return pass(url);
   if (auto ok = may_write(arguments.out, {}); !ok) return pass(ok);
+  if (!arguments.out.ends_with(".mcap"))
+    return fail(ErrorCode::InvalidArgument, "--out",
+                "a recording is an .mcap file, and is found in a folder by that ending; name it " +
+                    arguments.out + ".mcap");
   client::LiveRecordingOptions options;
   options.service = *url;
   options.file = arguments.out;

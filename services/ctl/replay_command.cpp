@@ -130,7 +130,10 @@ Result<int> play(const std::vector<Part>& parts, const std::optional<Round>& rou
                              parts[i].from.string())
               << std::flush;
   }
-  std::cout << fmt::format("playing {} sensors\n", parts.size()) << std::flush;
+  std::cout << fmt::format("playing {} {} until Ctrl-C{}\n", parts.size(),
+                           parts.size() == 1 ? "sensor" : "sensors",
+                           arguments.loop ? "" : "; the last frames stay when the recording ends")
+            << std::flush;
   const auto done = run_children(children);
   if (!done) return pass(done);
   return kExitOk;

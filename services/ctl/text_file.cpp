@@ -37,6 +37,15 @@ Result<void> may_write(const std::string& file, const std::vector<fs::path>& inp
   return {};
 }
 
+bool same_file(const std::string& one, const std::string& other) {
+  if (one.empty() || other.empty()) return false;
+  if (one == "-" || other == "-") return one == other;
+  std::error_code unknown;
+  const fs::path a = fs::weakly_canonical(one, unknown);
+  const fs::path b = fs::weakly_canonical(other, unknown);
+  return !unknown && a == b;
+}
+
 Result<void> may_create(const std::string& file) {
   std::error_code unknown;
   if (file == "-" || !fs::exists(file, unknown)) return {};

@@ -18,6 +18,9 @@ namespace chorus::ctl {
 [[nodiscard]] Result<void> may_write(const std::string& file,
                                      const std::vector<std::filesystem::path>& inputs);
 
+/// True if both name one file, which need not exist, or both are "-".
+[[nodiscard]] bool same_file(const std::string& one, const std::string& other);
+
 /// Conflict when the file exists; "-" never does.
 [[nodiscard]] Result<void> may_create(const std::string& file);
 

@@ -77,6 +77,23 @@ TEST(ExportCommand, UnitsOfBvhAreCentimetresUnlessMetresAreAskedFor) {
   EXPECT_NEAR(first_offset(bvh("cm")), 100.0 * first_offset(bvh("m")), 0.2);
 }
 
+TEST(ExportCommand, LinesHoldTheFramesAsTheyAre) {
+  const Cell& cell = fused_cell();
+  const std::string recorded = cell.file("lines.mcap");
+  ASSERT_EQ(run_chorus({"fuse", cell.recordings(), "--out", recorded}).code, kExitOk);
+  const Outcome done = run_chorus({"export", recorded, "--format", "ndjson", "--out", "-"});
+  ASSERT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_EQ(done.out, bytes_of(cell.file("fused.ndjson"))) << "covariances, ages, shares and all";
+  EXPECT_THAT(done.error, HasSubstr(" with somebody in them"));
+  const Outcome nobody =
+      run_chorus({"export", recorded, "--format", "ndjson", "--out", "-", "--person", "77"});
+  EXPECT_EQ(nobody.code, kExitFailed);
+  const Outcome gridded =
+      run_chorus({"export", recorded, "--format", "ndjson", "--out", "-", "--rate", "10"});
+  EXPECT_EQ(gridded.code, kExitFailed);
+  EXPECT_THAT(gridded.error, HasSubstr("--rate"));
+}
+
 TEST(ExportCommand, RefusesWhatItCannotDo) {
   const Cell& cell = fused_cell();
   const std::string source = cell.file("fused.ndjson");
@@ -135,6 +152,43 @@ TEST(ImportCommand, SaysWhatLiesInTheFolderAlready) {
   EXPECT_EQ(second.code, kExitOk);
   EXPECT_THAT(second.error, HasSubstr("a.mcap was there before"));
   EXPECT_THAT(second.out, HasSubstr("wrote " + (folder / "b.mcap").string()));
+}
+
+TEST(ImportCommand, TakesNoSensorItsPlace) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string out = folder.path().string();
+  const std::string csv = "time_s,joint,x_m,y_m,z_m\n0,Head,0,1.6,2\n0.03,Head,0,1.6,2\n";
+  const auto left = folder.write("left.csv", csv).string();
+  const auto right = folder.write("right.csv", csv).string();
+  ASSERT_EQ(run_chorus({"import", "csv", left, "--out", out}).code, kExitOk);
+  ASSERT_EQ(run_chorus({"import", "csv", left, "--out", out}).code, kExitOk) << "may be repeated";
+  const std::string places = bytes_of(folder / "registration.json");
+  const Outcome other = run_chorus({"import", "csv", right, "--out", out});
+  EXPECT_EQ(other.code, kExitFailed);
+  EXPECT_THAT(other.error, HasSubstr("where left stand"));
+  EXPECT_EQ(bytes_of(folder / "registration.json"), places);
+  EXPECT_FALSE(fs::exists(folder / "right.mcap"));
+}
+
+TEST(ImportCommand, RefusesOptionsWithoutAnEffect) {
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--unit", "m"}, {"--rate", "50"}, {"--rays"}}) {
+    std::vector<std::string> words{"import", "labanotation", kLabanotation, "--out", "/tmp/x"};
+    words.insert(words.end(), option.begin(), option.end());
+    const Outcome done = run_chorus(words);
+    EXPECT_EQ(done.code, kExitFailed) << option[0];
+    EXPECT_THAT(done.error, HasSubstr(option[0] + ":"));
+    EXPECT_THAT(done.error, HasSubstr("leave it out"));
+  }
+}
+
+TEST(ImportCommand, SaysWhatTheFileSaysNothingOf) {
+  const chorus::testing::TemporaryFolder folder;
+  std::string row;
+  for (int i = 0; i < 25; ++i) row += "0 1.5 2 0 0 0 1 ";
+  const auto file = folder.write("kinect.txt", row + "\n" + row + "\n").string();
+  const Outcome done = run_chorus({"import", "keraal", file, "--out", (folder / "rec").string()});
+  EXPECT_THAT(done.out, HasSubstr("tracking states: none in the file")) << done.error;
 }
 
 TEST(ImportCommand, RefusesTextsThatMeanNothing) {

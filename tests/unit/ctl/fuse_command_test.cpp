@@ -165,6 +165,35 @@ TEST(FuseCommand, NeverWritesOverWhatItReadsOrOverARecording) {
               HasSubstr("never overwritten"));
 }
 
+TEST(FuseCommand, TheResultAndThePlacesNeedAFileEach) {
+  const Cell cell(2.0);
+  const std::string out = cell.file("both.ndjson");
+  const Outcome both = run_chorus(
+      {"fuse", cell.recordings(), "--out", out, "--save-registration", cell.file("./both.ndjson")});
+  EXPECT_EQ(both.code, kExitFailed);
+  EXPECT_THAT(both.error, HasSubstr("--save-registration"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(FuseCommand, OptionsThatContradictEachOtherAreRefused) {
+  const Cell cell(2.0);
+  const Outcome both = run_chorus({"fuse", cell.recordings(), "--out", "-", "--from-walk",
+                                   "--registration", cell.file("places.json")});
+  EXPECT_EQ(both.code, kExitUsage);
+  EXPECT_THAT(both.error, HasSubstr("--registration"));
+}
+
+TEST(FuseCommand, SaysByWhichMethodAndHowOftenASecond) {
+  const Cell cell(3.0);
+  const Outcome done = run_chorus({"fuse", cell.recordings(), "--out", "-", "--set",
+                                   "fusion.method=otto", "--method", "mean", "--json"});
+  ASSERT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_EQ(Json::parse(done.error).at("method"), "mean");
+  EXPECT_EQ(Json::parse(done.error).at("rateHz"), 30.0);
+  EXPECT_THAT(run_chorus({"fuse", cell.recordings(), "--out", "-"}).error,
+              HasSubstr("method body-filter, 30 instants a second"));
+}
+
 TEST(FuseCommand, NamesWhatItCannotUse) {
   const Cell cell(2.0);
   const std::string nonsense = cell.file("nonsense.json");

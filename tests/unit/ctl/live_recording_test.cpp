@@ -94,6 +94,16 @@ TEST_F(BrokenCell, CountsWhatFailedAndWhatCouldNotBeReadFromTheBeginning) {
   EXPECT_NE(s3.error, "");
 }
 
+TEST(StreamCount, WhatComesLateIsNotMissed) {
+  client::StreamCount count;
+  for (const std::uint64_t number : {5, 6, 10, 8, 7, 11}) count.take(number);
+  EXPECT_EQ(count.frames, 6u);
+  EXPECT_EQ(count.missed, 1u) << "9";
+  EXPECT_EQ(count.last, 11u);
+  for (const std::uint64_t number : {1000, 1, 2, 4}) count.take(number);
+  EXPECT_EQ(count.missed, 1u + 988u + 1u) << "the device began anew with 1, and 3 is missing";
+}
+
 TEST_F(BrokenCell, MakesTheCommandFailThoughSomethingCame) {
   const std::string out = (folder_ / "a.mcap").string();
   const std::string service = url();

@@ -27,17 +27,21 @@ bool missing(const Pose& pose) { return !pose.skeleton[JointId::SpineBase].seen(
 TEST(Take, KeepsSamplesOfAUniformSourceAsTheyAre) {
   std::vector<FusedSample> samples;
   for (int i = 0; i < 31; ++i) {
-    const auto instant = kStart + Duration((2 * i * std::int64_t{1'000'000'000} / 30 + 1) / 2);
+    // A grid that starts at a rounded instant misses every third of these by a nanosecond.
+    const auto instant =
+        kStart + Duration((2 * (i + 2) * std::int64_t{1'000'000'000} / 30 + 1) / 2);
     samples.push_back(sample(instant, 1, 0.01 * i * i));
   }
   const auto take = make_take(samples);
   ASSERT_THAT(take, IsOk());
   EXPECT_EQ(take->rate_hz, 30.0);
   ASSERT_EQ(take->frames, 31u);
-  EXPECT_EQ(take->start, kStart);
+  EXPECT_EQ(take->start, samples.front().instant);
   for (int i = 0; i < 31; ++i) {
     const Pose& pose = take->persons[0].poses[static_cast<std::size_t>(i)];
     EXPECT_EQ(x_of(pose), 0.01 * i * i) << i;
+    EXPECT_EQ(instant_of(*take, static_cast<std::size_t>(i)),
+              samples[static_cast<std::size_t>(i)].instant);
     EXPECT_EQ(pose.variance[3], 1e-4);
   }
 }

@@ -107,6 +107,26 @@ TEST(BodyFilterViews, ASensorThatFallsSilentMovesNobodyAtOnce) {
   EXPECT_LT(step(FusionConfig{}.body.handover), 0.5 * step(Duration{0}));
 }
 
+TEST(BodyFilterViews, NobodyIsSurerOfAPersonWhomNobodySees) {
+  Room room;
+  double before = room.settled(standing()).variance[index_of(WristLeft)];
+  for (int i = 1; i <= 20; ++i) {
+    const FusedBody body = room.at(kFilterSteps + i, {});
+    EXPECT_GT(body.variance[index_of(WristLeft)], before) << "after " << i << " frames";
+    before = body.variance[index_of(WristLeft)];
+  }
+}
+
+TEST(BodyFilterViews, ABoneAloneMakesALostJointHardlySurer) {
+  Room room;
+  const auto exact = standing();
+  auto without = exact;
+  without[WristLeft] = {};
+  const double seen = room.settled(exact).variance[index_of(WristLeft)];
+  const FusedBody lost = room.all_see(kFilterSteps + 1, without);
+  EXPECT_GT(lost.variance[index_of(WristLeft)], 0.9 * seen) << "its bone was not seen longer";
+}
+
 TEST(BodyFilterViews, SomebodyUnseenIsSaidToBeAnywhereSoon) {
   Room room;
   const double seen = room.settled(standing()).variance[index_of(SpineMid)];

@@ -230,6 +230,9 @@ TEST(CameraViews, RefuseBadLandmarksAndMissingFiles) {
   refused([](auto& v) { v["frames"][5]["image"].erase(0); }, "frames[5].image: must hold 33");
   refused([](auto& v) { v["frames"][5]["world"][7][1] = nullptr; }, "frames[5].world[7]: value 2");
   EXPECT_THAT(import_files(FileFormat::Pose2Sim, {folder.path()}), FailsWith(ErrorCode::NotFound));
+  const auto file = import_files(FileFormat::Pose2Sim, {folder.write("cam01.json", "{}")});
+  ASSERT_THAT(file, FailsWith(ErrorCode::InvalidArgument));
+  EXPECT_THAT(to_string(file.error()), HasSubstr("name the folder"));
 }
 
 TEST(CameraViews, KeepFramesInWhichNobodyWasFound) {

@@ -111,6 +111,34 @@ TEST(MotionFile, AnExportedBvhComesBackInTheUnitItWasWrittenIn) {
   }
 }
 
+TEST(MotionFile, ABvhInAnotherUnitThanStatedIsRefused) {
+  const TemporaryFolder folder;
+  const auto take = exporters::take_of({exporters::walk()}, 30.0);
+  for (const double units : {100.0, 1.0}) {
+    const auto text = exporters::exported(take, exporters::ExportFormat::Bvh, {"walk.bvh", units})
+                          ->files[0]
+                          .bytes;
+    ImportOptions options;
+    options.metres_per_unit = units == 1.0 ? 0.01 : 1.0;
+    const auto set = import_files(FileFormat::Bvh, {folder.write("walk.bvh", text)}, options);
+    ASSERT_THAT(set, FailsWith(ErrorCode::Malformed));
+    EXPECT_THAT(to_string(set.error()), HasSubstr("--unit"));
+  }
+}
+
+TEST(MotionFile, ThePoseBeforeTheMotionIsLeftOutAndNoted) {
+  const TemporaryFolder folder;
+  auto body = exporters::walk();
+  for (Joint& joint : body.front().joints) joint.position.z() += 2.0;  // 60 m/s to the next
+  const auto take = exporters::take_of({body}, 30.0);
+  const auto text = exporters::exported(take, exporters::ExportFormat::Bvh)->files[0].bytes;
+  const auto set = import_files(FileFormat::Bvh, {folder.write("walk.bvh", text)});
+  ASSERT_THAT(set, IsOk());
+  EXPECT_EQ(set->recordings[0].frames.size(), take.frames - 1);
+  EXPECT_EQ(set->recordings[0].frames[0].captured, kDefaultStart);
+  EXPECT_THAT(set->recordings[0].notes.at("repeated"), HasSubstr("left out"));
+}
+
 TEST(MotionFile, SaysWhatIsNoJointAndHowManyThereAre) {
   const TemporaryFolder folder;
   motion::C3dSpec spec;

@@ -44,6 +44,14 @@ TEST(JointCsv, TakesTheFewestColumnsThatTellAJoint) {
   EXPECT_EQ(read->frames[1].bodies[0].skeleton[JointId::Head].state, JointState::NotTracked);
 }
 
+TEST(JointCsv, FieldsMayBeQuotedAsRDoes) {
+  const auto read =
+      csv("\"\",\"time_s\",\"joint\",\"x_m\",\"y_m\",\"z_m\"\n\"1\",0,\"Neck\",1,2,3\n");
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->frames.at(0).bodies.at(0).skeleton[JointId::Neck].position,
+            Eigen::Vector3d(1, 2, 3));
+}
+
 TEST(JointCsv, PeopleOfOneInstantShareItsFrame) {
   const auto read = csv(std::string(kHeader) + "0,7,Neck,1,2,3\n0,9,Neck,2,2,3\n1,9,Neck,,,\n");
   ASSERT_THAT(read, IsOk());
@@ -66,6 +74,12 @@ TEST(JointCsv, NamesTheRowTheColumnAndWhatIsWrong) {
   EXPECT_THAT(why(start + "0,1,Neck,1,2,3000\n"), HasSubstr("z_m"));
   EXPECT_THAT(why(start + "0,1,Neck,1,nan,3\n"), HasSubstr("is not a number"));
   EXPECT_THAT(why(start + "1,1,Neck,1,2,3\n0,1,Neck,1,2,3\n"), HasSubstr("goes back in time"));
+  EXPECT_THAT(why(start + "0,1,Neck,1,2,3\n0,1,Neck,1,2,3.5\n"), HasSubstr("twice at one instant"));
+  EXPECT_THAT(why("time_s;joint;x_m;y_m;z_m\n0;Neck;0,1;2;3\n"), HasSubstr("need a point"));
+  EXPECT_THAT(why("\x1F\x8B\x08 packed"), HasSubstr("gunzip"));
+  EXPECT_THAT(why("\x89MCAP0\r\n"), HasSubstr("a recording already"));
+  const TemporaryFolder folder;
+  EXPECT_THAT(to_string(read_joint_csv(folder.path()).error()), HasSubstr("is a folder"));
   EXPECT_THAT(why("utc,joint,x_m,y_m,z_m\nnow,Neck,1,2,3\n"), HasSubstr("is not a UTC time"));
   EXPECT_THAT(why("utc,joint,x_m,y_m,z_m,qx,qy,qz,qw\n2026-11-22T07:00:00Z,Neck,1,2,3,1,1,0,0\n"),
               HasSubstr("no rotation"));

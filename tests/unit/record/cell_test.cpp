@@ -172,6 +172,43 @@ TEST(CellRecording, AClockThatWasSetBackCostsItsFramesAndIsNoted) {
   EXPECT_THAT(cell->sensors[0].notes.at("left_out"), HasSubstr("3 frames"));
 }
 
+/// Frames of s1 in the order in which they arrive, one every 33 ms.
+void write_arrivals(const std::filesystem::path& path, const std::vector<int>& numbers) {
+  auto writer = CellWriter::create(path, {});
+  ASSERT_TRUE(writer);
+  Timestamp received = kStart + kFrameInterval * numbers.back();
+  for (const int number : numbers) {
+    RawFrame frame = raw("s1", number);
+    frame.received = received;
+    received += kFrameInterval;
+    ASSERT_TRUE(writer->write(std::move(frame)));
+  }
+  ASSERT_TRUE(writer->close());
+}
+
+TEST(CellRecording, AFrameThatCameLateTakesItsPlace) {
+  const TemporaryFolder folder;
+  write_arrivals(folder / "a.mcap", {0, 1, 5, 3, 2, 4, 3, 6, 7});
+  const auto cell = read_cell(folder / "a.mcap");
+  ASSERT_TRUE(cell) << to_string(cell.error());
+  std::vector<std::uint64_t> numbers;
+  for (const SensorFrame& frame : cell->sensors[0].frames) numbers.push_back(frame.sequence);
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  EXPECT_THAT(cell->sensors[0].notes.at("left_out"), HasSubstr("1 frame ")) << "3 came twice";
+}
+
+TEST(CellRecording, AFrameThatCameMuchTooLateIsLeftOut) {
+  const TemporaryFolder folder;
+  std::vector<int> numbers{0, 1, 3};
+  for (int i = 4; i < 60; ++i) numbers.push_back(i);
+  numbers.insert(numbers.end(), {2, 60});
+  write_arrivals(folder / "a.mcap", numbers);
+  const auto cell = read_cell(folder / "a.mcap");
+  ASSERT_TRUE(cell) << to_string(cell.error());
+  EXPECT_THAT(cell->sensors[0].frames, SizeIs(60));
+  EXPECT_THAT(cell->sensors[0].notes.at("left_out"), HasSubstr("1 frame "));
+}
+
 TEST(CellRecording, AFolderIsReadAsOneRecording) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "rec");
