@@ -282,6 +282,7 @@ void FusionCore::take_over(Registration before) {
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays
+  memory_.seating = {};           // nobody left: whoever is here gets the low slots again
   hindsight_.forget();
   before_.reset();
   fade_.stop();
