@@ -127,6 +127,25 @@ TEST_F(Pushed, APlaceThatWasChangedOnPurposeIsNoAlarm) {
   for (int i = 0; i < kSensors; ++i) EXPECT_FALSE(core_.alarm(sensor_id(name(i))));
 }
 
+TEST_F(Pushed, ASensorThatWasCarriedAwayIsToldOfWhileItSeesSomebodyElsewhere) {
+  run(std::chrono::seconds(12));
+  EXPECT_TRUE(core_.progress(kStart + t_).alarms.empty());
+  pushed_ = 1;
+  push_ = 1.0;  // elsewhere, but still where the others look
+  run(std::chrono::seconds(9));
+  EXPECT_TRUE(core_.progress(kStart + t_).alarms.empty()) << "not at once";
+  run(std::chrono::seconds(4));
+  const auto alarms = core_.progress(kStart + t_).alarms;
+  ASSERT_EQ(alarms.size(), 1u);
+  EXPECT_THAT(alarms.front(), HasSubstr("s2 has seen somebody where no other sensor does for 1"));
+  EXPECT_EQ(core_.alarm_text(sensor_id("s2"), kStart + t_), alarms.front());
+  EXPECT_EQ(core_.alarm_text(sensor_id("s1"), kStart + t_), "");
+  EXPECT_TRUE(core_.registration().sensors.contains(sensor_id("s2"))) << "nothing is taken away";
+  push_ = 0.0;
+  run(std::chrono::seconds(1));
+  EXPECT_TRUE(core_.progress(kStart + t_).alarms.empty()) << "it was put back";
+}
+
 TEST_F(Pushed, WhoIsThereWhenTheOriginMovesStaysInTheFirstSlot) {
   run(std::chrono::seconds(2));
   for (const double x : {1.0, -1.0, 0.5}) {
