@@ -73,7 +73,8 @@ struct SensorStatus {
   /// How far this sensor now sees people from where it would usually see them, as compared with the
   /// others [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
-  /// Says in a sentence for people that the sensor was moved; empty if that is not known.
+  /// Says in a sentence for people that the sensor was moved, or sees people where others see
+  /// nobody; empty if nothing of the kind is known.
   std::string alarm;
 
   bool operator==(const SensorStatus&) const = default;
@@ -198,7 +199,7 @@ struct RegistrationProgress {
   std::vector<std::string> awaits;      ///< What is missing at present, as sentences for people.
   std::optional<Registration> earlier;  ///< The one in use before; an undo returns to it.
   std::optional<Proposal> proposal;     ///< Waits to be accepted or declined.
-  std::vector<std::string> alarms;      ///< Sensors that were moved, as sentences for people.
+  std::vector<std::string> alarms;      ///< The alarms of all sensors, for people.
   StorageStatus storage;
   /// True while the registration in use is one that the running session has put there; it is stored
   /// at the session's end.

@@ -50,8 +50,10 @@ bool say_silent(const Situation& s, std::vector<std::string>& out) {
   return silent.size() == s.sensors.size();
 }
 
-/// Reports what is missing for a walk; true when somebody walks in view of enough sensors.
-bool say_walker(const Situation& s, std::vector<std::string>& out) {
+enum class Walker { TooFew, Crowd, Alone };
+
+/// Reports what is missing for a walk: too few sensors see somebody, or all of them several people.
+Walker say_walker(const Situation& s, std::vector<std::string>& out) {
   const auto seeing =
       those(s, [&](const SensorId& sensor) { return s.last_seen.bodies(sensor, s.now) > 0; });
   const auto crowded =
@@ -69,7 +71,8 @@ bool say_walker(const Situation& s, std::vector<std::string>& out) {
     out.push_back(named(crowded) + (crowded.size() == 1 ? " sees" : " see") +
                   " more than one body: one person alone should walk");
   }
-  return seeing.size() >= enough && crowded.size() < seeing.size();
+  if (!seeing.empty() && crowded.size() == seeing.size()) return Walker::Crowd;
+  return seeing.size() >= enough ? Walker::Alone : Walker::TooFew;
 }
 
 /// Reports which pairs need more of the walk, once it has lasted for a while.
@@ -85,19 +88,41 @@ void say_uncovered(const Situation& s, std::vector<std::string>& out) {
   std::ranges::move(more, std::back_inserter(out));
 }
 
-void say_session(const Situation& s, bool walking, std::vector<std::string>& out) {
+/// Warns of a walk that cannot come into use, because a sensor that has a place is not there.  The
+/// places of sensors that have none yet would be added all the same.
+void say_in_vain(const Situation& s, std::vector<std::string>& out) {
+  const auto placed = [&](const SensorId& sensor) {
+    return s.registration.sensors.contains(sensor);
+  };
+  const auto gone = those(s, [&](const SensorId& sensor) {
+    return placed(sensor) && !s.last_seen.delivers(sensor, s.now);
+  });
+  const auto added = those(s, [&](const SensorId& sensor) {
+    return !placed(sensor) && s.last_seen.delivers(sensor, s.now);
+  });
+  if (gone.empty() || !added.empty()) return;
+  out.push_back(fmt::format(
+      "this walk will be in vain: the registration in use places {}, which {} nothing; start {}, "
+      "or take {} out of \"sensors\" and reload",
+      named(gone), gone.size() == 1 ? "delivers" : "deliver", gone.size() == 1 ? "it" : "them",
+      gone.size() == 1 ? "it" : "them"));
+}
+
+void say_session(const Situation& s, Walker walker, std::vector<std::string>& out) {
   if (s.session->state == SessionState::Solving) {
     out.emplace_back("the walk is over: its places are being solved");
     return;
   }
-  if (walking) {
+  if (walker == Walker::Alone) {
     out.push_back(fmt::format("keep walking: {:.0f} s more",
                               std::ceil(std::max(0.0, s.session->target - s.session->elapsed))));
   }
-  say_uncovered(s, out);
+  // What several people do together shows nothing, wherever they walk.
+  if (walker != Walker::Crowd) say_uncovered(s, out);
+  say_in_vain(s, out);
 }
 
-void say_start(const Situation& s, bool walking, std::vector<std::string>& out) {
+void say_start(const Situation& s, Walker walker, std::vector<std::string>& out) {
   if (s.proposes) return;  // no session starts by itself
   if (!s.automatic) {
     out.emplace_back(
@@ -106,7 +131,7 @@ void say_start(const Situation& s, bool walking, std::vector<std::string>& out) 
     out.push_back(
         fmt::format("the next try by itself is in {:.0f} s; chorus register tries at once",
                     std::ceil(seconds(*s.retry))));
-  } else if (walking) {
+  } else if (walker == Walker::Alone) {
     out.emplace_back("a session starts by itself");
   }
 }
@@ -137,11 +162,11 @@ std::vector<std::string> awaited(const Situation& s) {
     out.push_back(named(missing) + (missing.size() == 1 ? " has" : " have") + " no place yet");
   }
   if (say_silent(s, out)) return out;
-  const bool walking = say_walker(s, out);
+  const Walker walker = say_walker(s, out);
   if (s.session != nullptr) {
-    say_session(s, walking, out);
+    say_session(s, walker, out);
   } else {
-    say_start(s, walking, out);
+    say_start(s, walker, out);
   }
   return out;
 }

@@ -64,6 +64,7 @@ void FusionCore::reconfigure(CoreConfig config) {
   std::erase_if(displaced_at_, gone);
   shares_.keep(config_.sensors);
   guard_.keep(config_.sensors);
+  strays_.keep(config_.sensors);
   clocks_.keep(config_.sensors);
   awaited_by_ = 0;
 }
@@ -154,6 +155,7 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   hindsight_.remember(std::move(answered));
   schedule_.answered(now);
   guard_.look(step.people, tick.instant, config_.watch);
+  strays_.look(step.snapshot.reports, step.people, tick.instant);
   displace_moved(tick.instant);
   return std::move(step.snapshot);
 }
@@ -185,6 +187,7 @@ void FusionCore::displace_moved(Timestamp instant) {
   Registration before = registration();
   if (!registrar_.displace(*moved, reason_of(*moved, *guard_.alarm_of(*moved)))) return;
   guard_.displaced(*moved);
+  strays_.forget();
   displaced_at_[*moved] = instant;
   before_ = std::move(before);
   hindsight_.forget();
@@ -237,7 +240,7 @@ Duration FusionCore::idle(Timestamp now) {
 void FusionCore::forget() {
   const Registration before = registration();
   registrar_.forget();
-  guard_.replaced(before, registration());
+  note_places(before);
   leave_world();
 }
 
@@ -245,7 +248,7 @@ Result<void> FusionCore::move_origin(const Origin& origin) {
   const Registration before = registration();
   auto done = registrar_.move_origin(origin);
   if (!done) return done;
-  guard_.replaced(before, registration());
+  note_places(before);
   leave_world();
   return done;
 }
@@ -254,7 +257,7 @@ Result<void> FusionCore::undo() {
   Registration before = registration();
   auto done = registrar_.undo();
   if (!done) return done;
-  guard_.replaced(before, registration());
+  note_places(before);
   if (!share_a_place(before, registration())) {
     leave_world();
     return done;
@@ -271,10 +274,16 @@ Result<void> FusionCore::accept() {
   return done;
 }
 
+/// Called whenever the registration in use has become another one.
+void FusionCore::note_places(const Registration& before) {
+  guard_.replaced(before, registration());
+  strays_.forget();
+}
+
 /// After a change of places in the same world.
 void FusionCore::take_over(Registration before) {
   hindsight_.forget();  // all earlier answers were given by other places
-  guard_.replaced(before, registration());
+  note_places(before);
   if (!before.sensors.empty()) before_ = std::move(before);
 }
 
@@ -282,6 +291,7 @@ void FusionCore::take_over(Registration before) {
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays
+  memory_.seating = {};           // nobody left: whoever is here gets the low slots again
   hindsight_.forget();
   before_.reset();
   fade_.stop();
@@ -308,7 +318,7 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
   for (const SensorId& sensor : config_.sensors) {
     const auto told = alarm(sensor);
     const bool twice = told && told->or_else && *told->or_else < sensor;
-    if (told && !twice) progress.alarms.push_back(alarm_text(sensor, now));
+    if (told ? !twice : is_stray(sensor)) progress.alarms.push_back(alarm_text(sensor, now));
   }
   return progress;
 }
@@ -316,7 +326,13 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
 std::string FusionCore::alarm_text(const SensorId& sensor, Timestamp now) const {
   const auto told = alarm(sensor);
   const bool anew = config_.session.automatic && !registration().sensors.contains(sensor);
-  return told ? sentence_of(sensor, *told, now, anew) : std::string();
+  if (told) return sentence_of(sensor, *told, now, anew);
+  return is_stray(sensor) ? stray_sentence(sensor, *strays_.since(sensor), now) : std::string();
+}
+
+/// While a session runs, it says itself what it waits for.
+bool FusionCore::is_stray(const SensorId& sensor) const {
+  return !registrar_.busy() && strays_.since(sensor);
 }
 
 FrameFates FusionCore::fates(const SensorId& sensor) const {

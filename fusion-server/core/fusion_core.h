@@ -15,6 +15,7 @@
 #include "fusion-server/core/guard.h"
 #include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registrar.h"
+#include "fusion-server/core/strays.h"
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/core/walked_clocks.h"
 #include "fusion-server/pipeline/pipeline.h"
@@ -117,6 +118,8 @@ class FusionCore {
   };
 
   void leave_world();
+  void note_places(const Registration& before);
+  [[nodiscard]] bool is_stray(const SensorId& sensor) const;
   void take_over(Registration before);
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
   void displace_moved(Timestamp instant);
@@ -141,6 +144,7 @@ class FusionCore {
   Shares shares_;
   std::vector<SensorReport> reports_;
   Guard guard_;
+  Strays strays_;
   CrossFade fade_;
   /// The old registration, from which to fade; set until the next instant.
   std::optional<Registration> before_;

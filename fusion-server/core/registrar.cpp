@@ -240,8 +240,9 @@ std::vector<std::string> Registrar::shortfalls(const Registration& candidate) co
   for (const auto& [sensor, place] : registration_.sensors) {
     if (candidate.sensors.contains(sensor)) continue;
     reasons.push_back(
-        fmt::format("the registration in use places sensor {}, this walk does not; "
-                    "chorus register --fresh (DELETE /registration) gives it up",
+        fmt::format("the registration in use places sensor {0}, this walk does not; take {0} out "
+                    "of \"sensors\" if it is gone; chorus register --fresh (DELETE /registration) "
+                    "gives all places up",
                     sensor.str()));
   }
   return reasons;

@@ -102,6 +102,8 @@ class Registrar {
   /// The last sessions, newest first.
   [[nodiscard]] std::vector<SessionStatus> sessions() const;
   [[nodiscard]] std::uint64_t next_session() const noexcept { return next_session_; }
+  /// Whether a session is running.
+  [[nodiscard]] bool busy() const { return !sessions_.empty() && running(sessions_.front()); }
   /// What is missing for a (better) registration, as sentences for people.
   [[nodiscard]] std::vector<std::string> awaits(Timestamp now) const;
 
@@ -111,7 +113,6 @@ class Registrar {
     Timestamp not_before;
   };
 
-  [[nodiscard]] bool busy() const { return !sessions_.empty() && running(sessions_.front()); }
   /// Conflict while a session is running: `what` cannot be changed then.
   [[nodiscard]] Result<void> unless_busy(const char* what) const;
   void begin(Duration target, bool automatic, Timestamp now);

@@ -23,16 +23,20 @@ void Seating::release_absent(const std::vector<FusedBody>& here, Timestamp insta
 
 void Seating::seat_those_who_stood_in() {
   for (std::size_t i = 0; i < seats_.size(); ++i) {
-    if (!seats_[i] || seats_[i]->waits_for == i) continue;
-    auto& awaited = seats_[seats_[i]->waits_for];
-    if (awaited && awaited->absent) continue;
-    const bool came_back = awaited.has_value();
-    if (came_back) {
-      seats_[i]->waits_for = i;
-    } else {
-      awaited = std::exchange(seats_[i], std::nullopt);
-    }
+    if (!seats_[i] || seats_[i]->absent) continue;
+    if (const auto free = free_of_those(seats_[i]->stands_in_for)) move(i, *free);
   }
+}
+
+/// The lowest of these slots that nobody has any more.  Those whose person came back, or that
+/// somebody else got, are awaited no longer.
+std::optional<std::size_t> Seating::free_of_those(std::bitset<kMaxBodies>& awaited) const {
+  for (std::size_t slot = 0; awaited.any() && slot < seats_.size(); ++slot) {
+    if (!awaited[slot]) continue;
+    if (!seats_[slot]) return slot;
+    awaited[slot] = seats_[slot]->absent;
+  }
+  return std::nullopt;
 }
 
 void Seating::move_up(std::size_t front) {
@@ -41,21 +45,23 @@ void Seating::move_up(std::size_t front) {
     if (!seats_[i] || seats_[i]->absent) continue;
     while (free < front && seats_[free]) ++free;
     if (free == front) return;
-    seats_[i]->waits_for = std::min(seats_[i]->waits_for, free);
-    seats_[free] = std::exchange(seats_[i], std::nullopt);
+    move(i, free);
   }
 }
 
-std::size_t Seating::slot_to_wait_for(std::size_t free) const {
-  for (std::size_t lower = 0; lower < free; ++lower) {
-    if (!seats_[lower] || !seats_[lower]->absent) continue;
-    const auto waiting = std::count_if(seats_.begin(), seats_.end(), [&](const auto& seat) {
-      return seat && seat->waits_for == lower;
-    });
-    const bool its_own = seats_[lower]->waits_for == lower;
-    if (waiting == (its_own ? 1 : 0)) return lower;
+/// To a lower slot; only slots below that are still of interest.
+void Seating::move(std::size_t from, std::size_t to) {
+  seats_[to] = std::exchange(seats_[from], std::nullopt);
+  auto& awaited = seats_[to]->stands_in_for;
+  for (std::size_t slot = to; slot < awaited.size(); ++slot) awaited.reset(slot);
+}
+
+std::bitset<kMaxBodies> Seating::absent_below(std::size_t slot) const {
+  std::bitset<kMaxBodies> absent;
+  for (std::size_t lower = 0; lower < slot; ++lower) {
+    absent[lower] = seats_[lower] && seats_[lower]->absent;
   }
-  return free;
+  return absent;
 }
 
 std::optional<std::size_t> Seating::slot_of(PersonId person, Timestamp instant) {
@@ -69,7 +75,7 @@ std::optional<std::size_t> Seating::slot_of(PersonId person, Timestamp instant) 
   const auto slot = static_cast<std::size_t>(empty - seats_.begin());
   if (slot == kMaxBodies) return std::nullopt;
   if (empty == seats_.end()) seats_.emplace_back();
-  seats_[slot] = Seat{person, instant, false, slot_to_wait_for(slot)};
+  seats_[slot] = Seat{person, instant, false, absent_below(slot)};
   return slot;
 }
 

@@ -4,6 +4,7 @@
 // absent.
 #pragma once
 
+#include <bitset>
 #include <optional>
 #include <vector>
 
@@ -20,10 +21,10 @@ struct SeatingConfig {
 };
 
 /// An absent person's slot stays reserved while the person may return.  Meanwhile a newcomer gets a
-/// higher slot, and moves to the reserved one if nobody returns: the newcomer may be the same
-/// person with a new id, and a protocol with one slot would otherwise show nobody any more.  When
-/// the clock is set back by more than the time for which slots are reserved, seating starts over,
-/// as association does.
+/// higher slot, and moves to the lowest of the reserved ones to which nobody returns: the newcomer
+/// may be the same person with a new id, several times over, and a protocol with one slot would
+/// otherwise show nobody any more.  When the clock is set back by more than the time for which
+/// slots are reserved, seating starts over, as association does.
 class Seating {
  public:
   /// Sets FusedBody::slot of each body; bodies beyond kMaxBodies get none.  `keep`: how long an
@@ -36,15 +37,16 @@ class Seating {
     PersonId person;
     Timestamp seen;
     bool absent = false;
-    /// The slot for which the person waits: their own, or a lower one whose person was absent when
-    /// this one arrived.
-    std::size_t waits_for = 0;
+    /// Lower slots whose persons were absent when this one arrived, and have not come back.
+    std::bitset<kMaxBodies> stands_in_for;
   };
 
   void release_absent(const std::vector<FusedBody>& here, Timestamp instant, Duration keep);
   void seat_those_who_stood_in();
+  [[nodiscard]] std::optional<std::size_t> free_of_those(std::bitset<kMaxBodies>& awaited) const;
   void move_up(std::size_t front);
-  [[nodiscard]] std::size_t slot_to_wait_for(std::size_t free) const;
+  void move(std::size_t from, std::size_t to);
+  [[nodiscard]] std::bitset<kMaxBodies> absent_below(std::size_t slot) const;
   [[nodiscard]] std::optional<std::size_t> slot_of(PersonId person, Timestamp instant);
 
   std::vector<std::optional<Seat>> seats_;  ///< By slot; at most kMaxBodies.

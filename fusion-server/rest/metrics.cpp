@@ -41,7 +41,8 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
   }
   out.gauge({"chorus_sensor_share", "Fused joints of the last second the sensor contributed to."},
             s.share, labels);
-  out.gauge({"chorus_sensor_moved", "1 while the sensor does not stand where it was registered."},
+  out.gauge({"chorus_sensor_moved",
+             "1 while an alarm says that the sensor may not stand where it was registered."},
             s.alarm.empty() ? 0.0 : 1.0, labels);
   if (s.shift) {
     out.gauge({"chorus_sensor_displacement_meters",

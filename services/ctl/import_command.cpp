@@ -80,7 +80,6 @@ Registration registration_of(const importers::ImportedSet& set) {
   Registration registration;
   registration.version = 1;
   registration.verdict = Verdict::Good;
-  registration.reasons = {"published with the recording"};
   registration.solved = set.recordings.front().frames.front().captured;
   registration.master = set.recordings.front().sensor;
   for (const auto& [sensor, world_from_sensor] : set.world_from_sensor) {

@@ -7,6 +7,7 @@ import { Resource, clock, follow, link } from './poll.js';
 import { EllipsoidView, FusedView, RawView, frustum } from './skeleton_view.js';
 import { jointLines } from './certainty.js';
 import { showCoverage } from './coverage.js';
+import { framing, roomOf } from './framing.js';
 import { offerDecision, showProposal } from './proposal.js';
 import { rateOf, showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
 import { Readout } from './readout.js';
@@ -45,12 +46,9 @@ const fused = new FusedView();
 const ellipsoids = new EllipsoidView();
 scene.add(fused.object, ellipsoids.object);
 
-/// Looks at the centre of the sensors once they are known; people may turn the view afterwards.
-function frameRoom(positions) {
-  const centre = new THREE.Vector3();
-  positions.forEach((p) => centre.add(p));
-  if (positions.length > 0) centre.divideScalar(positions.length);
-  const reach = Math.max(2.2, ...positions.map((p) => p.distanceTo(centre)));
+/// Looks at the middle of the room once the sensors' places are known; people may turn the view afterwards.
+function frameRoom(places) {
+  const { centre, reach } = roomOf(places);
   controls.target.set(centre.x, 0.9, centre.z);
   camera.position.set(centre.x + reach * 1.15, 2.3 + reach * 0.45, centre.z + reach * 1.65);
   grid.position.set(Math.round(centre.x), 0, Math.round(centre.z));
@@ -88,7 +86,7 @@ function placeSensors(registration) {
   }
   if (places.length > 0 && framedVersion === null) {
     framedVersion = registration.version;
-    frameRoom(places.map(([, pose]) => new THREE.Vector3(pose.x, pose.y, pose.z)));
+    frameRoom(places.map(([, pose]) => pose));
   }
 }
 
@@ -200,9 +198,9 @@ function showUncertainty() {
 function fit() {
   renderer.setSize(window.innerWidth, window.innerHeight, false);
   camera.aspect = window.innerWidth / window.innerHeight;
-  // The panel covers the left edge: shift the picture so that the room is in the middle of what remains.
-  const covered = window.innerWidth > 900 ? 360 : 0;
-  camera.setViewOffset(window.innerWidth, window.innerHeight, -covered / 2, 0, window.innerWidth, window.innerHeight);
+  const { fov, left, top } = framing(window.innerWidth, window.innerHeight);
+  camera.fov = fov;
+  camera.setViewOffset(window.innerWidth, window.innerHeight, -left, -top, window.innerWidth, window.innerHeight);
   camera.updateProjectionMatrix();
 }
 window.addEventListener('resize', fit);

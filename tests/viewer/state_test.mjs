@@ -5,6 +5,7 @@ import { test } from 'node:test';
 import { Link, ServerClock } from '../../services/viewer/poll.js';
 import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf, sharesOf } from '../../services/viewer/certainty.js';
 import { accuracyLine, lineOf, mapOf } from '../../services/viewer/coverage.js';
+import { framing, roomOf } from '../../services/viewer/framing.js';
 import { OwnDelay, freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
 const LIVE = { state: 'live' };
@@ -181,4 +182,32 @@ test('a joint is told with its size, its sensors and its age; what is not stated
   assert.equal(covarianceOf({ cxx: 1, cxy: 0 }), null, 'half a covariance is none');
   assert.equal(personLine(body), 'person 7: seen, left and right 99 % certain', 'never rounded up to certainty');
   assert.equal(personLine({ bodyId: 8 }), 'person 8: seen, left and right not looked at');
+});
+
+test('the room is drawn in the part of the window that the panel leaves free', () => {
+  const across = ({ fov }, height, pixels) => (2 * Math.atan((Math.tan((fov * Math.PI) / 360) * pixels) / height) * 180) / Math.PI;
+  const wide = framing(1280, 800);
+  assert.deepEqual({ ...wide, fov: Math.round(wide.fov) }, { fov: 45, left: 180, top: 0 });
+  const phone = framing(420, 800);
+  assert.deepEqual([phone.left, phone.top], [0, 180], 'below the panel');
+  assert.ok(Math.abs(across(phone, 800, 420) - 45) < 0.1, 'as much of the room as a wide window shows');
+  const half = framing(700, 700);
+  assert.equal(half.left, 180);
+  assert.ok(Math.abs(across(half, 700, 340) - 45) < 0.1);
+  assert.ok(framing(1, 1).fov <= 120 && framing(0, 0).fov > 0, 'whatever a window may be');
+});
+
+test('the room is what sensors look at, not only where they stand', () => {
+  const ahead = { x: 0, y: 1.6, z: 0, qx: 0, qy: 0, qz: 0, qw: 1 };
+  const { centre, reach } = roomOf([ahead, { ...ahead, x: -2.6, z: 1.5, qy: Math.SQRT1_2, qw: Math.SQRT1_2 }]); // looks along +x
+  assert.ok(Math.abs(centre.x + 0.675) < 0.01 && Math.abs(centre.z - 1.375) < 0.01, JSON.stringify(centre));
+  assert.ok(reach >= 2.2);
+  assert.deepEqual(roomOf([]), { centre: { x: 0, z: 0 }, reach: 2.2 });
+});
+
+test('an alarm has its advice as the next step', () => {
+  const alarms = ['s4 has seen somebody where no other sensor does for 12 s; if it was moved, run chorus register, else it takes a thing for a person'];
+  const { tone, sentence, next } = stateOf(known({ registration: { ...GOOD, alarms } }));
+  assert.deepEqual([tone, sentence], ['bad', 's4 has seen somebody where no other sensor does for 12 s.']);
+  assert.ok(next.startsWith('if it was moved'));
 });

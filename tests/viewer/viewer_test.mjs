@@ -223,7 +223,7 @@ test('says so when the server goes away, and shows nothing of it any more', asyn
 
 test('says what is missing when three.js is not installed', async () => {
   const folder = await mkdtemp(join(tmpdir(), 'chorus-viewer-'));
-  for (const file of ['index.html', 'boot.js', 'viewer.js', 'viewer.css', 'poll.js', 'panel.js', 'state.js', 'coverage.js', 'certainty.js',
+  for (const file of ['index.html', 'boot.js', 'viewer.js', 'viewer.css', 'poll.js', 'panel.js', 'state.js', 'coverage.js', 'framing.js', 'certainty.js',
     'readout.js', 'skeleton_view.js'])
     await copyFile(join(FILES, file), join(folder, file));
   const server = await startFakeFusion(folder);

@@ -9,6 +9,7 @@
 namespace chorus::core {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -60,6 +61,34 @@ TEST_F(Awaited, NobodyThenOneSensorThenAWalk) {
 TEST_F(Awaited, SeveralPeople) {
   for (const char* sensor : {"s1", "s2", "s3"}) see(sensor, 2);
   EXPECT_THAT(said(), ElementsAre(HasSubstr("sensors s1, s2 and s3 see more than one body")));
+}
+
+TEST_F(Awaited, ACrowdDuringAWalkIsToldToWalkAloneAndNothingElse) {
+  for (const char* sensor : {"s1", "s2", "s3"}) see(sensor, 2);
+  session_.emplace();
+  session_->state = SessionState::Collecting;
+  session_->elapsed = 14;
+  session_->target = 30;
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("one person alone should walk")))
+      << "where the sensors overlap does not matter now";
+  see("s1", 1);  // a mirror before the two others
+  EXPECT_THAT(said(), Contains("keep walking: 16 s more"));
+}
+
+TEST_F(Awaited, AWalkWithoutASensorThatHasAPlaceIsSaidToBeInVain) {
+  for (const char* sensor : {"s1", "s2"}) see(sensor, 1);
+  for (const char* sensor : {"s1", "s2", "s3"}) place(sensor);
+  session_.emplace();
+  session_->state = SessionState::Collecting;
+  session_->elapsed = 1;
+  session_->target = 30;
+  EXPECT_EQ(said().back(),
+            "this walk will be in vain: the registration in use places sensor s3, which delivers "
+            "nothing; start it, or take it out of \"sensors\" and reload");
+  sensors_.insert(sensor_id("s4"));
+  see("s4", 1);
+  for (const std::string& line : said())
+    EXPECT_THAT(line, ::testing::Not(HasSubstr("in vain"))) << "s4 gets a place";
 }
 
 TEST_F(Awaited, TheRestOfTheWalkAndItsSolution) {

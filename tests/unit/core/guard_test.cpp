@@ -1,6 +1,8 @@
 // What is reported about a sensor that was moved, and what happens to its registration.
 #include "fusion-server/core/guard.h"
 
+#include <set>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,6 +71,7 @@ class Pushed : public ::testing::Test {
         const Eigen::Vector3d neck = snapshot->bodies[0].skeleton[JointId::Neck].position;
         if (neck_) most = std::max(most, (neck - *neck_).norm());
         neck_ = neck;
+        slots_.insert(snapshot->bodies[0].slot.value_or(99));
       }
     }
     return most;
@@ -79,6 +82,7 @@ class Pushed : public ::testing::Test {
   int pushed_ = -1;
   double push_ = 0.0;
   std::optional<Eigen::Vector3d> neck_;
+  std::set<std::size_t> slots_;  ///< Those in which the person was.
 };
 
 TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
@@ -121,6 +125,34 @@ TEST_F(Pushed, APlaceThatWasChangedOnPurposeIsNoAlarm) {
   run(std::chrono::seconds(40));
   EXPECT_EQ(core_.displaced(), 0u);
   for (int i = 0; i < kSensors; ++i) EXPECT_FALSE(core_.alarm(sensor_id(name(i))));
+}
+
+TEST_F(Pushed, ASensorThatWasCarriedAwayIsToldOfWhileItSeesSomebodyElsewhere) {
+  run(std::chrono::seconds(12));
+  EXPECT_TRUE(core_.progress(kStart + t_).alarms.empty());
+  pushed_ = 1;
+  push_ = 1.0;  // elsewhere, but still where the others look
+  run(std::chrono::seconds(9));
+  EXPECT_TRUE(core_.progress(kStart + t_).alarms.empty()) << "not at once";
+  run(std::chrono::seconds(4));
+  const auto alarms = core_.progress(kStart + t_).alarms;
+  ASSERT_EQ(alarms.size(), 1u);
+  EXPECT_THAT(alarms.front(), HasSubstr("s2 has seen somebody where no other sensor does for 1"));
+  EXPECT_EQ(core_.alarm_text(sensor_id("s2"), kStart + t_), alarms.front());
+  EXPECT_EQ(core_.alarm_text(sensor_id("s1"), kStart + t_), "");
+  EXPECT_TRUE(core_.registration().sensors.contains(sensor_id("s2"))) << "nothing is taken away";
+  push_ = 0.0;
+  run(std::chrono::seconds(1));
+  EXPECT_TRUE(core_.progress(kStart + t_).alarms.empty()) << "it was put back";
+}
+
+TEST_F(Pushed, WhoIsThereWhenTheOriginMovesStaysInTheFirstSlot) {
+  run(std::chrono::seconds(2));
+  for (const double x : {1.0, -1.0, 0.5}) {
+    ASSERT_TRUE(core_.move_origin({x, 0.0, 0.0}));
+    run(milliseconds(400));
+  }
+  EXPECT_EQ(slots_, std::set<std::size_t>{0}) << "nobody came or left";
 }
 
 }  // namespace

@@ -139,8 +139,9 @@ TEST_F(Sessions, AWalkThatMissesASensorSaysWhatToDo) {
   ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring(2)}, now_), Outcome::Nothing);
   EXPECT_THAT(newest().reasons,
-              Contains("the registration in use places sensor s3, this walk does not; chorus "
-                       "register --fresh (DELETE /registration) gives it up"));
+              Contains("the registration in use places sensor s3, this walk does not; take s3 out "
+                       "of \"sensors\" if it is gone; chorus register --fresh (DELETE "
+                       "/registration) gives all places up"));
 }
 
 TEST_F(Sessions, ARefusedEndTakesTheSessionsOwnProvisionalBackAndSaysSo) {

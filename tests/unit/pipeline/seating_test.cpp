@@ -61,6 +61,25 @@ TEST(Seating, GoesToWhoCameMeanwhileWhenTheHiddenPersonStaysAway) {
   EXPECT_EQ(room.at(milliseconds(1034), {5, 6}), (Slots{{0, 5}, {2, 6}}));
 }
 
+TEST(Seating, GoesToWhoIsStillThereAfterSeveralNewIdsOfOnePerson) {
+  Room room;
+  room.at(milliseconds(0), {1});
+  room.at(milliseconds(300), {2});
+  room.at(milliseconds(600), {3});
+  EXPECT_EQ(room.at(milliseconds(900), {4}), (Slots{{3, 4}}));
+  EXPECT_EQ(room.at(milliseconds(1001), {4}), (Slots{{0, 4}})) << "as soon as the first has left";
+  EXPECT_EQ(room.at(milliseconds(9000), {4}), (Slots{{0, 4}}));
+}
+
+TEST(Seating, OfOneWhoStoodInAndLeftGoesToTheNextOfThem) {
+  Room room;
+  room.at(milliseconds(0), {1});
+  room.at(milliseconds(33), {5, 6});  // both could be person 1
+  EXPECT_EQ(room.at(milliseconds(66), {6}), (Slots{{2, 6}}));
+  EXPECT_EQ(room.at(milliseconds(1001), {6}), (Slots{{0, 6}}));
+  EXPECT_EQ(room.at(milliseconds(1002), {5, 6}), (Slots{{0, 6}, {1, 5}})) << "5 was only hidden";
+}
+
 TEST(Seating, OfOneWhoCameBackIsNotWaitedForAnyLonger) {
   Room room;
   room.at(milliseconds(0), {1});

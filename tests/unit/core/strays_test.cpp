@@ -1,0 +1,94 @@
+// Which sensors see people where no other sensor does.
+#include "fusion-server/core/strays.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+
+namespace chorus::core {
+namespace {
+
+using std::chrono::seconds;
+using testing::kStart;
+using testing::sensor_id;
+
+/// A sensor "near" sees one person throughout; what "far" sees is told instant by instant.
+struct TwoViews {
+  void run(Duration length, std::size_t bodies_of_far, bool far_shares, bool near_sees = true) {
+    const SensorId near = sensor_id("near");
+    const SensorId far = sensor_id("far");
+    for (const Duration end = t + length; t < end; t += std::chrono::milliseconds(100)) {
+      Person person{{1}, {}};
+      for (const auto& [sensor, sees] : {std::pair{near, near_sees}, std::pair{far, far_shares}}) {
+        if (sees) person.views.emplace_back().sensor = sensor;
+      }
+      strays.look({{near, Basis::Exact, 1}, {far, Basis::Exact, bodies_of_far}}, {person},
+                  kStart + t);
+    }
+  }
+
+  [[nodiscard]] bool told() const { return strays.since(sensor_id("far")).has_value(); }
+
+  Strays strays;
+  Duration t{0};
+};
+
+TEST(Strays, AreToldAfterTenSecondsOfSeeingSomebodyElse) {
+  TwoViews two;
+  two.run(seconds(5), 1, true);
+  two.run(seconds(9), 1, false);
+  EXPECT_FALSE(two.told());
+  two.run(seconds(2), 1, false);
+  ASSERT_TRUE(two.told());
+  EXPECT_EQ(*two.strays.since(sensor_id("far")), kStart + seconds(5));
+  EXPECT_FALSE(two.strays.since(sensor_id("near")));
+}
+
+TEST(Strays, WhatNobodySeesIsNoEvidence) {
+  TwoViews two;
+  two.run(seconds(60), 0, false);  // far sees nobody
+  EXPECT_FALSE(two.told());
+  two.run(seconds(60), 1, false, false);  // near sees nobody
+  EXPECT_FALSE(two.told());
+}
+
+TEST(Strays, SecondsInWhichItSeesNobodyAreNotCountedAndForgetNothing) {
+  TwoViews two;
+  two.run(seconds(6), 1, false);
+  two.run(seconds(60), 0, false);
+  EXPECT_FALSE(two.told());
+  two.run(seconds(5), 1, false);
+  EXPECT_TRUE(two.told());
+}
+
+TEST(Strays, OneSharedViewEndsIt) {
+  TwoViews two;
+  two.run(seconds(20), 1, false);
+  ASSERT_TRUE(two.told());
+  two.run(std::chrono::milliseconds(100), 1, true);
+  EXPECT_FALSE(two.told());
+}
+
+TEST(Strays, ALongPauseOfTheServerIsNotCounted) {
+  TwoViews two;
+  two.run(seconds(2), 1, false);
+  two.t += seconds(3600);
+  two.run(seconds(2), 1, false);
+  EXPECT_FALSE(two.told());
+  two.t -= seconds(7200);  // the clock was set back
+  two.run(seconds(2), 1, false);
+  EXPECT_FALSE(two.told());
+}
+
+TEST(Strays, OfSensorsThatAreNotConfiguredAreForgotten) {
+  TwoViews two;
+  two.run(seconds(20), 1, false);
+  two.strays.keep({sensor_id("near")});
+  EXPECT_FALSE(two.told());
+  two.run(seconds(20), 1, false);
+  two.strays.forget();
+  EXPECT_FALSE(two.told());
+}
+
+}  // namespace
+}  // namespace chorus::core
