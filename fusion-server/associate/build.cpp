@@ -28,7 +28,8 @@ constexpr std::array<Span, kSpans> kSpanTable{{
 
 // Standard deviations [ln m].  Within one person, from one period in view to another: kOwnLength
 // whatever the number of views, kOwnInOneView in addition for a single view (a tracker's error
-// depends on its point of view).  Between people: kOthersSize of their size, kOthersLength of their
+// depends on its point of view); Repeatability says how much more it is with the sensors in use.
+// Between people: kOthersSize of their size, kOthersLength of their
 // lengths at the same size.  Fitted on simulated sensors with seeds from 1001 on.
 constexpr double kOwnLength = 0.010;
 constexpr double kOwnInOneView = 0.036;
@@ -36,6 +37,8 @@ constexpr double kOthersSize = 0.050;
 constexpr double kOthersLength = 0.020;
 // Variance of the mean over all lengths, relative to its value if the errors were independent.
 constexpr double kSizeShare = 0.5;
+constexpr double kLongMean = 60.0;  // [s] of a Repeatability
+constexpr double kMostOff = 50.0;   // A second that is farther off counts as this much.
 // A length that was in view for this time only [s] has twice the variance.
 constexpr double kSlowly = 0.3;
 
@@ -77,6 +80,29 @@ Located tracked_points(const Skeleton<WorldSpace>& body) {
 double variance_of(const Build& build, std::size_t span) {
   const double by_views = squared(kOwnInOneView) / std::max(1.0, build.views);
   return (squared(kOwnLength) + by_views) * (1.0 + kSlowly / build.sight[span]);
+}
+
+struct Difference {
+  double count = 0.0;  ///< Number of lengths that both have.
+  double own = 0.0;    ///< Variance of the difference of a length if the two are one person.
+  double size = 0.0;   ///< Mean over the lengths [ln m].
+  double rest = 0.0;   ///< Sum of the squared differences from that mean.
+};
+
+Difference difference(const Build& one, const Build& other) {
+  Difference all;
+  std::vector<double> off;
+  for (std::size_t i = 0; i < kSpans; ++i) {
+    if (!(one.sight[i] > 0) || !(other.sight[i] > 0)) continue;
+    off.push_back(one.mean[i] - other.mean[i]);
+    all.own += variance_of(one, i) + variance_of(other, i);
+  }
+  if (off.empty()) return all;
+  all.count = static_cast<double>(off.size());
+  all.own /= all.count;
+  for (const double each : off) all.size += each / all.count;
+  for (const double each : off) all.rest += squared(each - all.size);
+  return all;
 }
 
 /// Log likelihood ratio of `variance` against `variance` + `more`, for `count` normal deviations
@@ -130,24 +156,25 @@ double sight_of(const Build& build) {
   return median(std::vector<double>(build.sight.begin(), build.sight.end()));
 }
 
-double likeness(const Build& one, const Build& other) {
-  std::vector<double> off;
-  double own = 0.0;  // Variance of the difference of a length if the two are one person.
-  for (std::size_t i = 0; i < kSpans; ++i) {
-    if (!(one.sight[i] > 0) || !(other.sight[i] > 0)) continue;
-    off.push_back(one.mean[i] - other.mean[i]);
-    own += variance_of(one, i) + variance_of(other, i);
-  }
-  if (off.empty()) return 0.0;
-  const auto count = static_cast<double>(off.size());
-  own /= count;
-  double size = 0.0;
-  for (const double each : off) size += each / count;
-  double rest = 0.0;
-  for (const double each : off) rest += squared(each - size);
-  const double own_size = kSizeShare * own / count;
-  return odds_of(squared(size), 1.0, own_size, 2.0 * squared(kOthersSize)) +
-         odds_of(rest, count - 1.0, own, 2.0 * squared(kOthersLength));
+void Repeatability::learn(const Build& now, const Build& usual) {
+  const Difference off = difference(now, usual);
+  if (off.count < 2.0) return;
+  seconds = std::min(seconds + 1.0, kLongMean);
+  const auto follow = [&](double& ratio, double squares, double expected) {
+    ratio += (std::min(squares / expected, kMostOff) - ratio) / seconds;
+    ratio = std::max(1.0, ratio);
+  };
+  follow(size, squared(off.size), kSizeShare * off.own / off.count);
+  follow(lengths, off.rest, (off.count - 1.0) * off.own);
+}
+
+double likeness(const Build& one, const Build& other, const Repeatability& repeatability) {
+  const Difference off = difference(one, other);
+  if (!(off.count > 0)) return 0.0;
+  const double own_size = repeatability.size * kSizeShare * off.own / off.count;
+  const double own_length = repeatability.lengths * off.own;
+  return odds_of(squared(off.size), 1.0, own_size, 2.0 * squared(kOthersSize)) +
+         odds_of(off.rest, off.count - 1.0, own_length, 2.0 * squared(kOthersLength));
 }
 
 }  // namespace chorus::associate

@@ -41,8 +41,23 @@ struct Build {
 /// How long the person's build was in view [s]: the median over the lengths.
 [[nodiscard]] double sight_of(const Build& build);
 
+/// How much the builds of one person differ from one second in view to another with the sensors in
+/// use: ratios of variances to those of sensors that repeat lengths well, at least 1.  A sensor
+/// that guesses depth from size shows everybody larger or smaller by some percent for seconds.
+struct Repeatability {
+  /// Until the sensors have shown better, they are taken for bad ones: to take an id away from
+  /// somebody who stands where they were expected needs good measurements.
+  double size = 6.0;
+  double lengths = 6.0;  ///< Of the lengths at the same size.
+  double seconds = 3.0;  ///< How many seconds the ratios are a mean of, those at first included.
+
+  /// Learns from `now`, a second in view of somebody whose build is known to be `usual`.
+  void learn(const Build& now, const Build& usual);
+};
+
 /// Log likelihood ratio: both builds are of one person, against builds of any two people; 0 when
 /// they have no length in common.
-[[nodiscard]] double likeness(const Build& one, const Build& other);
+[[nodiscard]] double likeness(const Build& one, const Build& other,
+                              const Repeatability& repeatability);
 
 }  // namespace chorus::associate

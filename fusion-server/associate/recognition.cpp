@@ -12,6 +12,7 @@ constexpr std::size_t kMostMissingTracks = 64;
 constexpr double kGlance = 1.5;
 // With n times as many views as this, a fraction 1/n of the time is enough to recognise somebody.
 constexpr double kManyViews = 4.0;
+constexpr double kUsual = 2.0;        // [s] in view after which a build is the person's usual one
 constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
 // Prior log odds that a person found at the expected place is the lost one.
 constexpr double kContinuity = 1.5;
@@ -56,10 +57,11 @@ struct Likeliest {
   double odds = 0.0;
 };
 
-Likeliest likeliest_of(const Build& build, const std::vector<Missing>& missing) {
+Likeliest likeliest_of(const Build& build, const std::vector<Missing>& missing,
+                       const Repeatability& repeatability) {
   Likeliest best;
   for (const Missing& each : missing) {
-    const double odds = likeness(build, each.build);
+    const double odds = likeness(build, each.build, repeatability);
     if (!best.id || odds > best.odds) best = {each.id, odds};
   }
   return best;
@@ -86,7 +88,7 @@ bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& trac
   Track& track = candidate.track;
   const auto missing = missing_before(track.found, candidates, tracks);
   if (missing.empty()) return true;
-  const Likeliest best = likeliest_of(track.build, missing);
+  const Likeliest best = likeliest_of(track.build, missing, tracks.repeatability);
   const bool looked_at = is_looked_at(track.build, config);
   if (looked_at && best.odds > 0) {
     become(track, *best.id, candidates, tracks);
@@ -98,7 +100,7 @@ bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& trac
 
 /// Compares the build of a person lost and found with that of the lost person.
 void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
-  const double odds = kContinuity + likeness(*track.before, track.build);
+  const double odds = kContinuity + likeness(*track.before, track.build, tracks.repeatability);
   const bool looked_at = is_looked_at(track.build, config);
   track.named = !is_glance(track.build) || odds > kUnlikely;
   if ((is_glance(track.build) && odds < kImpossible) || (looked_at && odds < 0)) {
@@ -111,6 +113,14 @@ void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
     track.build.add(*std::exchange(track.before, std::nullopt));
     track.named = true;
   }
+}
+
+/// Learns from a person who stays in view how well the sensors repeat a build.
+void compare_seconds(Track& track, Repeatability& repeatability) {
+  if (sight_of(track.second) < 1.0) return;
+  if (!track.before && sight_of(track.build) >= kUsual)
+    repeatability.learn(track.second, track.build);
+  track.second = {};
 }
 
 }  // namespace
@@ -131,6 +141,7 @@ void recognise(std::vector<Candidate>& candidates, Tracks& tracks,
                const AssociationConfig& config) {
   for (Candidate& each : candidates) {
     if (each.sights.empty()) continue;
+    compare_seconds(each.track, tracks.repeatability);
     if (each.track.before) question(each.track, tracks, config);
     if (!each.track.named && !each.track.before && each.track.hits >= config.confirm_frames)
       each.track.named = name(each, candidates, tracks, config);

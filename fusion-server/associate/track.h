@@ -38,7 +38,8 @@ struct Track {
   Duration alone{0};  ///< How long the doubted person has been seen; see Admission::judge().
   /// How long sensors have seen through the place where the person is expected.
   Duration through{0};
-  Build build = {};  ///< Learned since the person was found, or found again.
+  Build build = {};   ///< Learned since the person was found, or found again.
+  Build second = {};  ///< The same, of the current second in view.
   /// Set if the person was lost and found: the build of the lost one; `lost` is when they were
   /// lost.  It has not been decided yet whether the two are the same person.
   std::optional<Build> before = {};
@@ -59,6 +60,7 @@ struct Tracks {
   Timestamp instant;  ///< The last instant that group() has processed.
   std::vector<Track> people;
   std::vector<Missing> missing = {};  ///< In the order in which they left.
+  Repeatability repeatability = {};
 };
 
 /// A track while its instant is being processed.

@@ -85,6 +85,7 @@ void question(Track& track, Timestamp instant, const AssociationConfig& config) 
     track.lost = track.seen;
   }
   if (track.before) track.build = {};
+  track.second = {};
 }
 
 }  // namespace
@@ -117,8 +118,10 @@ void update(Candidate& candidate, Timestamp instant, const AssociationConfig& co
   update_velocity(track, footprints_of(candidate.sights), *found, elapsed);
   question(track, instant, config);
   if (track.hits == 0) track.found = instant;
-  track.build.add(spans_of(candidate.sights, track.joints),
-                  track.hits == 0 ? 0.0 : std::clamp(elapsed, 0.0, kLongest));
+  const Spans spans = spans_of(candidate.sights, track.joints);
+  const double lasted = track.hits == 0 ? 0.0 : std::clamp(elapsed, 0.0, kLongest);
+  track.build.add(spans, lasted);
+  track.second.add(spans, lasted);
   track.core = *found;
   track.error = mean.error();
   track.seen = instant;

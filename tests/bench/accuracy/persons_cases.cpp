@@ -204,6 +204,8 @@ std::vector<PersonsCase> persons_cases() {
           behind_screen("crossing-2-hidden", crossing_two),
           behind_screen("booth-2", in_booth),
           {"crossing-2-hidden-C", "C", places_behind_screen(), crossing_two, {screen()}, kRendered},
+          {"crossing-2-hidden-D", "D", places_behind_screen(), crossing_two, {screen()}},
+          {"return-3-D", "D", ring(6), returning, {}, kMinute},
           {"crossing-2-pillar", "A", ring(6), crossing_two, {pillar()}},
           {"crossing-4", "A", ring(6), crossing_four, {}, kOfFour},
           {"crossing-4-B", "B", ring(6), crossing_four, {}, kOfFour},

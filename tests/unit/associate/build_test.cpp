@@ -26,6 +26,8 @@ Build build_of(double size, double time = 1.0, std::size_t views = 4) {
   return build;
 }
 
+constexpr Repeatability kWell{1.0, 1.0};
+
 TEST(Build, OfALargerPersonIsLargerByTheSameInAllLengths) {
   const Build usual = build_of(1.0);
   const Build tall = build_of(1.1);
@@ -67,21 +69,23 @@ TEST(Build, IsOfPointsAloneWhereThereAreAny) {
 }
 
 TEST(Likeness, TellsOneFromAnother) {
-  EXPECT_GT(likeness(build_of(1.0, 30.0), build_of(1.005)), 0.0);
-  EXPECT_LT(likeness(build_of(1.0, 30.0), build_of(1.05)), -4.0);
-  EXPECT_EQ(likeness(build_of(1.0), Build{}), 0.0);
+  EXPECT_GT(likeness(build_of(1.0, 30.0), build_of(1.005), kWell), 0.0);
+  EXPECT_LT(likeness(build_of(1.0, 30.0), build_of(1.05), kWell), -4.0);
+  EXPECT_EQ(likeness(build_of(1.0), Build{}, kWell), 0.0);
 }
 
 TEST(Likeness, SaysLessTheShorterAndTheFewerTheSights) {
   const Build known = build_of(1.0, 30.0);
-  EXPECT_LT(likeness(known, build_of(1.04, 1.0)), likeness(known, build_of(1.04, 0.1)));
-  EXPECT_LT(likeness(known, build_of(1.04, 1.0, 4)), likeness(known, build_of(1.04, 1.0, 1)));
+  EXPECT_LT(likeness(known, build_of(1.04, 1.0), kWell),
+            likeness(known, build_of(1.04, 0.1), kWell));
+  EXPECT_LT(likeness(known, build_of(1.04, 1.0, 4), kWell),
+            likeness(known, build_of(1.04, 1.0, 1), kWell));
 }
 
 TEST(Likeness, AGlimpseRulesNobodyOut) {
   const Build known = build_of(1.0, 30.0);
-  EXPECT_NEAR(likeness(known, build_of(1.1, 0.01, 1)), 0.0, 1.0);
-  EXPECT_LT(likeness(known, build_of(1.1, 30.0, 1)), -3.0);
+  EXPECT_NEAR(likeness(known, build_of(1.1, 0.01, 1), kWell), 0.0, 1.0);
+  EXPECT_LT(likeness(known, build_of(1.1, 30.0, 1), kWell), -3.0);
 }
 
 TEST(Build, AddsUpByTimeOfSight) {
@@ -91,6 +95,42 @@ TEST(Build, AddsUpByTimeOfSight) {
   EXPECT_NEAR(sight_of(both), 4.0, 1e-9);
   both.add(build_of(1.0, 600.0));
   EXPECT_NEAR(sight_of(both), 60.0, 1e-9);
+}
+
+/// Seconds in view of people whose size is `swing` more and less in turns.
+Repeatability after(int seconds, double swing) {
+  Repeatability learned;
+  for (int i = 0; i < seconds; ++i)
+    learned.learn(build_of(i % 2 == 0 ? 1.0 + swing : 1.0 - swing), build_of(1.0, 30.0));
+  return learned;
+}
+
+TEST(Repeatability, SensorsThatRepeatLengthsAreBelievedAfterAWhile) {
+  const Build known = build_of(1.0, 30.0);
+  const Build other = build_of(1.05);
+  EXPECT_GT(likeness(known, other, Repeatability{}), -2.0);
+  EXPECT_LT(likeness(known, other, after(30, 0.002)), -4.0);
+  EXPECT_GE(after(200, 0.0).size, 1.0);
+}
+
+TEST(Repeatability, WhereSizesSwingADifferenceInSizeSaysLittle) {
+  const Build known = build_of(1.0, 30.0);
+  const Repeatability swinging = after(30, 0.05);
+  EXPECT_GT(likeness(known, build_of(1.05), swinging), -1.0);
+  EXPECT_LT(likeness(known, build_of(1.05), swinging), likeness(known, build_of(1.0), swinging));
+  EXPECT_GT(swinging.size, 4.0 * swinging.lengths) << "only sizes swing, not proportions";
+}
+
+TEST(Repeatability, AnArmThatIsMeasuredBadlySaysNothingOfSize) {
+  Repeatability learned;
+  for (int i = 0; i < 30; ++i) {
+    Build now = build_of(1.0);
+    now.mean[3] += i % 2 == 0 ? 0.2 : -0.2;
+    now.mean[4] -= i % 2 == 0 ? 0.2 : -0.2;
+    learned.learn(now, build_of(1.0, 30.0));
+  }
+  EXPECT_GT(learned.lengths, 10.0);
+  EXPECT_LT(learned.size, 2.0);
 }
 
 }  // namespace

@@ -101,6 +101,15 @@ TEST(Recognition, OfTwoWhoLeftTheRightOneComesBack) {
   EXPECT_EQ(people[0].id, both[1].id);
 }
 
+TEST(Recognition, WhoIsShownLargerAndSmallerInTurnsKeepsTheIdOverAGap) {
+  RecognitionRoom room;
+  for (int i = 0; i < 12; ++i) room.see_for(1.0, {{0.0, i % 2 == 0 ? 1.05 : 0.95}});
+  room.see_for(0.5, {});
+  const auto people = room.see_for(2.0, {{0.0, 1.05}});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, kFirst);
+}
+
 TEST(Recognition, SomebodyElseGetsAnIdOfTheirOwnAndInheritsNone) {
   RecognitionRoom room;
   room.see_for(3.0, {{0.0}});
