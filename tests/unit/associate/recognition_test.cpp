@@ -103,9 +103,9 @@ TEST(Recognition, OfTwoWhoLeftTheRightOneComesBack) {
 
 TEST(Recognition, WhoIsShownLargerAndSmallerInTurnsKeepsTheIdOverAGap) {
   RecognitionRoom room;
-  for (int i = 0; i < 12; ++i) room.see_for(1.0, {{0.0, i % 2 == 0 ? 1.05 : 0.95}});
+  for (int i = 0; i < 12; ++i) room.see_for(1.0, {{0.0, i % 2 == 0 ? 1.1 : 0.9}});
   room.see_for(0.5, {});
-  const auto people = room.see_for(2.0, {{0.0, 1.05}});
+  const auto people = room.see_for(2.0, {{0.0, 1.1}});
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, kFirst);
 }
