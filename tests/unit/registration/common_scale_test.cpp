@@ -86,6 +86,20 @@ TEST(GuessedDepth, ChangesTheConfigurationOnlyIfNoSensorMeasuresDepth) {
   EXPECT_EQ(suited_to({}, {}), RegistrationConfig{});
 }
 
+/// Guessed depths fit worse, people are farther away, and places are less certain.
+TEST(GuessedDepth, AllowsMoreAndNeverLessThanWasConfigured) {
+  using Limit = double RegistrationConfig::*;
+  const std::vector<WalkTrack> walk{
+      guessed(watch(0, ring_place(0.0), {.length = 1, .noise = 0.0}))};
+  for (const Limit limit : {&RegistrationConfig::max_edge_rms, &RegistrationConfig::max_speed,
+                            &RegistrationConfig::max_distance, &RegistrationConfig::max_position}) {
+    RegistrationConfig config;
+    EXPECT_GT(suited_to(walk, config).*limit, 1.5 * config.*limit);
+    config.*limit = 100.0;
+    EXPECT_EQ(suited_to(walk, config).*limit, 100.0);
+  }
+}
+
 TEST(CommonScale, OfAKnownDistanceIsExact) {
   RegistrationConfig config;
   config.known_distances = {{sensor(2), sensor(0), true_distance(0, 2)}};

@@ -69,6 +69,18 @@ TEST(FloorFromBodies, CamerasOnOppositeSidesLeanThemApart) {
   EXPECT_FALSE(floor_from_bodies({}));
 }
 
+/// Tilted floors cross where the person stands, however short the walk is.
+TEST(FloorFromBodies, OfAnInstantIsAtTheFeetToo) {
+  const Eigen::Isometry3d opposite = ring_place(deg(210));
+  const WalkSpec instant{.length = 0.02, .noise = 0.0, .floor_in_world = std::nullopt};
+  const WalkTrack one = leaning(watch(0, kPlace, instant), deg(20));
+  const WalkTrack other = leaning(watch(0, opposite, instant), deg(20));
+  ASSERT_EQ(one.frames.size(), 1u);
+  const auto floor = floor_from_bodies({{&one, kPlace}, {&other, opposite}});
+  ASSERT_TRUE(floor);
+  EXPECT_NEAR(floor->offset, 0.0, 0.1);
+}
+
 /// A floor tilted by `degrees` about z, correct right below a sensor at x.
 PlacedFloor tilted_floor(double degrees, double x, double height_error = 0.0) {
   const double angle = deg(degrees);

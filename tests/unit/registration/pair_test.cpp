@@ -220,6 +220,21 @@ TEST(RegisterPair, TheIcpBaselineLeavesThePlaceAloneWhereItTakesOutATilt) {
   EXPECT_LT(difference(tilted->target_from_source, plain->target_from_source).position, mm(25));
 }
 
+TEST(RegisterPair, TheIcpBaselineTakesTheHeightFromTheFloors) {
+  RegistrationConfig baseline;
+  baseline.method = PairMethod::IcpOnly;
+  const WalkSpec spec{.length = 10};
+  const Eigen::Isometry3d source = ring_place(deg(45));
+  WalkTrack raised = watch(2, source, spec);
+  for (SensorFrame& frame : raised.frames) {
+    Eigen::Vector3d& neck = frame.bodies[0].skeleton[JointId::Neck].position;
+    neck += source.linear().transpose() * Eigen::Vector3d(0, 0.1, 0);
+  }
+  const auto edge = register_pair(watch(1, kTarget, spec), raised, baseline);
+  ASSERT_TRUE(edge) << edge.error().message;
+  EXPECT_NEAR((kTarget * edge->target_from_source).translation().y(), 1.8, mm(5));
+}
+
 TEST(RegisterPair, EmptyTracksAreAnErrorNotACrash) {
   for (const PairMethod method : {PairMethod::TimedRobust, PairMethod::IcpOnly}) {
     RegistrationConfig config;

@@ -57,6 +57,21 @@ TEST(PartnersOf, ThoseWhoShareTheLongestPartOfTheWalkArePartners) {
     EXPECT_TRUE(std::ranges::count(pairs, std::pair(sensor(300), sensor(i)))) << i;
 }
 
+/// s300 shares most with s301, which shares more with eight and more others.
+TEST(PartnersOf, TheBestPartnerIsChosenThoughItHasBetterOnes) {
+  auto walkers = crowd(20, 0, 10);
+  walkers.emplace(sensor(300), present(300, 9, 12));
+  walkers.emplace(sensor(301), present(301, 0, 12));
+  const auto pairs = partners_of(walkers);
+  EXPECT_TRUE(std::ranges::count(pairs, std::pair(sensor(300), sensor(301))));
+}
+
+TEST(PartnersOf, WhoJoinsInLaterAlsoHasAFewPartnersOnly) {
+  auto walkers = crowd(20, 0, 10);
+  walkers.emplace(sensor(300), present(300, 5, 15));
+  EXPECT_EQ(partners_with(partners_of(walkers), 300), 8u);
+}
+
 TEST(PartnersOf, GroupsThatHardlyMeetAreJoinedByAllTheirPairs) {
   auto walkers = crowd(10, 0, 10);
   for (int i = 300; i < 310; ++i) walkers.emplace(sensor(i), present(i, 9, 19));

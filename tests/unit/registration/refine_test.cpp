@@ -130,6 +130,26 @@ TEST(Refine, WhatThePriorKnowsIsKnownInTheCovariance) {
   EXPECT_LT(held.covariance(4, 4), free.covariance(4, 4));
 }
 
+/// Two pairs that say next to nothing: the height is as certain as the floors are, but only in the
+/// middle between the two; elsewhere the tilt adds to it.
+TEST(Refine, TheFloorsHeightIsKnownInTheMiddleOfTheWalk) {
+  std::vector<Pair> pairs;
+  for (const double x : {-1.0, 1.0}) {
+    const Eigen::Vector3d point(x, 1.0, 3.0);
+    pairs.push_back(pair_at(point, some_motion().inverse() * point));
+    pairs.back().sigma = 50.0;
+  }
+  RobustFit start = start_at(some_motion(), 2);
+  start.weights = {0.25, 0.25};
+  const Matrix6 covariance = refine(pairs, start, kTwoFloors, 1.0).covariance;
+  const auto height_at = [&](const Eigen::Vector3d& point) {
+    const Matrix6 shift = at_point(point);
+    return std::sqrt((shift * covariance * shift.transpose())(4, 4));
+  };
+  EXPECT_NEAR(height_at({0, 1, 3}), kTwoFloors.height, mm(1));
+  EXPECT_GT(height_at({0, 1, 1.5}), kTwoFloors.height + mm(2));
+}
+
 TEST(Refine, PairsThatGoTogetherCountOnce) {
   const auto inflation = [](const CloudSpec& spec) {
     return refined(pairs_of(some_motion(), spec), some_motion()).inflation;

@@ -152,6 +152,11 @@ TEST(Solve, OneSensorIsItsOwnWorld) {
   EXPECT_NEAR(only.world_from_sensor.translation().y(), 1.8, 1e-6);
 }
 
+TEST(Solve, SaysWhenItWasSolved) {
+  for (const Timestamp now : {kWalkStart, kWalkStart + std::chrono::minutes(3)})
+    EXPECT_EQ(solve(ring(1, {.length = 1}), now, {}).solved, now);
+}
+
 TEST(Solve, NothingSeenIsNoVerdict) {
   EXPECT_EQ(solve({}, kWalkStart, {}).verdict, Verdict::None);
   const Registration silent = solve({{sensor(1), {}}, {sensor(2), {}}}, kWalkStart, {});

@@ -103,6 +103,20 @@ TEST(WalkClocks, OfAPairAreToldByWayOfOthers) {
   EXPECT_NEAR(milliseconds_of(clocks.offsets.at(sensor(2)).added), -212, 15);
 }
 
+/// The stamps are ahead of the time of receipt, as those of a camera may be.
+TEST(WalkClocks, OfAFrameOrTwoHaveALeastAgeToo) {
+  for (const std::size_t frames : {1U, 2U, 3U}) {
+    auto walk = ring({Duration{0}, Duration{0}}, {.length = 1});
+    walk[1].frames.resize(frames);
+    Duration age = milliseconds(-40);
+    for (SensorFrame& frame : walk[1].frames) {
+      frame.received = frame.captured + age;
+      age += milliseconds(5);
+    }
+    EXPECT_EQ(clocks_of(walk, {}).offsets.at(sensor(2)).least_age, milliseconds(-40)) << frames;
+  }
+}
+
 TEST(BringInStep, MovesFramesAndBodies) {
   auto walk = ring({Duration{0}, milliseconds(50)});
   const Timestamp before = walk[1].frames[0].captured;

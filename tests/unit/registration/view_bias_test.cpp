@@ -15,9 +15,9 @@ constexpr double kSigma = 0.003;  // [m] of a coefficient
 struct BiasScene {
   std::vector<Eigen::Isometry3d> places;
   PointMeasurements seen;
-  Eigen::Vector3d x{0.2, 1.3, 0.1};
+  Eigen::Vector3d x;
 
-  BiasScene() {
+  explicit BiasScene(const Eigen::Vector3d& point = {0.2, 1.3, 0.1}) : x(point) {
     for (const double yaw : {0.0, deg(90)}) {
       Eigen::Isometry3d place(about_y(yaw));
       place.translation() = place.linear() * Eigen::Vector3d(0, 1.6, -3);
@@ -84,6 +84,28 @@ TEST(ViewBias, CancelsInPartWhereThePersonTurnsAround) {
   // which gives 2^2 = 4 for each: 4 (1 + 1) instead of 4 (1 + 2).
   const Eigen::MatrixXd constant = scene.scores(std::nullopt);
   EXPECT_LT((bias.scores() - 8.0 * constant).norm(), 1e-9 * constant.norm());
+}
+
+/// On the circle through both sensors and about the origin, both views turn by half of the angle by
+/// which the point moves.  If the way turns with them, the biases stay as they are.
+TEST(ViewBias, AddsUpWhereTheWayTurnsWithTheViews) {
+  const auto on_circle = [](double yaw) {
+    return BiasScene(about_y(yaw) * Eigen::Vector3d(0, 1.3, 3));
+  };
+  const BiasScene first = on_circle(0.0);
+  const BiasScene second = on_circle(deg(60));
+  const auto scores_of = [&](const std::optional<Eigen::Vector3d>& way,
+                             const std::optional<Eigen::Vector3d>& turned) {
+    ViewBias bias({first.places[0].translation(), first.places[1].translation()}, mm(3.0));
+    bias.add(first.seen, fuse_point(first.seen, first.places, kRatio), 1.0, first.x, way);
+    bias.add(second.seen, fuse_point(second.seen, second.places, kRatio), 1.0, second.x, turned);
+    return bias.scores();
+  };
+  const Eigen::Vector3d way(0.6, 0, -0.8);
+  const Eigen::MatrixXd constant = scores_of(std::nullopt, std::nullopt);
+  const Eigen::MatrixXd turning = scores_of(way, about_y(deg(30)) * way);
+  EXPECT_LT((turning - 3.0 * constant).norm(), 1e-9 * constant.norm());
+  EXPECT_GT((scores_of(way, way) - 3.0 * constant).norm(), 0.01 * constant.norm());
 }
 
 }  // namespace
