@@ -52,7 +52,7 @@ read_arguments() {
   [[ -z "$seconds" || "$seconds" =~ ^[0-9]+$ ]] || fail "--seconds needs a whole number, not '$seconds'"
   [[ "$port" =~ ^[0-9]+$ ]] || fail "--port needs a number, not '$port'"
   # A folder is named from where the script was called; the ones that ship with it are named from the repository.
-  [[ -z "$recording" || "$recording" = /* || ! -d "$called_from/$recording" ]] || recording=$called_from/$recording
+  [[ -z "$recording" || "$recording" = /* || ! -e "$called_from/$recording" ]] || recording=$called_from/$recording
   [[ ! -f "$recording" ]] || fail "'$recording' is a file: name the folder it is in"
   [[ -z "$recording" || -d "$recording" ]] || fail "there is no folder '$recording'"
   [[ -z "$recording" || -z "$cameras" ]] || fail "--cameras and --recording are two demos: choose one"

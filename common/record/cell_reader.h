@@ -32,8 +32,8 @@ struct CellQuery {
   SensorId only = {};  ///< The only one of a cell's raw streams to read; empty: all.
   bool fused = false;  ///< Also read the fused frames.
   /// True: a frame that repeats a time or goes back in time is Malformed, unless a recorded clock
-  /// model corrects its time.  Otherwise a late frame (numbered before the newest, by at most 1.5 s)
-  /// takes its place, and other such frames are left out and noted, as a fusion server does.
+  /// model corrects its time.  Otherwise a late frame (numbered before the newest, by at most 1.5
+  /// s) takes its place, and other such frames are left out and noted, as a fusion server does.
   bool strict = false;
   bool raw = true;  ///< False: read only the fused frames of a cell.
 };

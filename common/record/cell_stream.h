@@ -27,8 +27,8 @@ class CellStream {
   ~CellStream();
 
   /// The next item; none at the end.  Items come in log order, but late frames at their place, so a
-  /// sensor's frames are in order of capture.  Returns the same errors as read_cell(), when it meets
-  /// them.
+  /// sensor's frames are in order of capture.  Returns the same errors as read_cell(), when it
+  /// meets them.
   [[nodiscard]] Result<std::optional<SessionItem>> next();
 
   /// Call this after the end: returns everything in the recording except the items.

@@ -18,7 +18,7 @@ struct StreamCount {
   std::uint64_t failed = 0;      ///< Requests that were refused or not answered.
   std::uint64_t unreadable = 0;  ///< Answers that are not a frame.
   std::uint64_t last = 0;        ///< The highest number, since the device began to count.
-  std::string error;  ///< The last error, human-readable.
+  std::string error;             ///< The last error, human-readable.
 
   /// A frame that was overtaken by others counts as missed only until it comes.
   void take(std::uint64_t sequence);

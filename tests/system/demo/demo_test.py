@@ -22,8 +22,8 @@ RUN_S = 20           # first provisional registration after about 7 s
 START_WITHIN_S = 60  # loaded machines are slow
 
 
-def demo(port, *arguments):
-    return subprocess.Popen(["deploy/demo.sh", "--bin", str(BIN), "--port", str(port), *arguments], cwd=ROOT,
+def demo(port, *arguments, cwd=ROOT):
+    return subprocess.Popen([str(ROOT / "deploy/demo.sh"), "--bin", str(BIN), "--port", str(port), *arguments], cwd=cwd,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
 
 
@@ -159,6 +159,16 @@ class Demo(unittest.TestCase):
             output, _ = process.communicate(timeout=START_WITHIN_S)
             self.assertEqual(process.returncode, 1, arguments)
             self.assertIn("demo:", output)
+
+    def test_a_relative_path_is_that_of_the_caller(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "rec").mkdir()
+            (Path(folder) / "walk.mcap").write_bytes(b"")
+            for name, complaint in (("rec", f"no *.mcap in {folder}/rec"), ("walk.mcap", "is a file")):
+                process = demo(self.port, "--recording", name, cwd=folder)
+                output, _ = process.communicate(timeout=START_WITHIN_S)
+                self.assertEqual(process.returncode, 1, name)
+                self.assertIn(complaint, output)
 
 
 if __name__ == "__main__":
