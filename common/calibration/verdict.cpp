@@ -48,6 +48,13 @@ void find_gaps(const std::vector<const View*>& views, PictureSize size, double s
 
 void find_few(std::size_t views, std::size_t least, std::vector<std::string>& out) {
   if (views >= least) return;
+  if (views == 0) {
+    out.push_back(
+        "the board was found in none of them: --squares counts squares, one more each way than "
+        "inner corners; --board and --marker-bits must be those of the print; all of a chessboard "
+        "must be in the picture; a board printed white on black is not found");
+    return;
+  }
   out.push_back(fmt::format(
       "only {} different view{} of the board, at least {}: move it, turn it, hold it still for a "
       "moment each time",

@@ -155,7 +155,8 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   hindsight_.remember(std::move(answered));
   schedule_.answered(now);
   guard_.look(step.people, tick.instant, config_.watch);
-  strays_.look(step.snapshot.reports, step.people, tick.instant);
+  strays_.look({tick.instant, step.snapshot.reports, step.people, registration()},
+               config_.pipeline.association);
   displace_moved(tick.instant);
   return std::move(step.snapshot);
 }

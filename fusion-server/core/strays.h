@@ -10,19 +10,29 @@
 #include <string>
 #include <vector>
 
+#include "fusion-server/associate/association_config.h"
 #include "fusion-server/flow.h"
 
 namespace chorus::core {
 
+/// What the pipeline knows at one instant.
+struct Sights {
+  Timestamp instant;
+  const std::vector<SensorReport>& reports;  ///< Of the sensors that have a place.
+  const std::vector<Person>& people;         ///< The published ones.
+  const Registration& registration;
+};
+
 class Strays {
  public:
-  /// Takes the reports of the sensors that have a place, and the people of the same instant.
-  void look(const std::vector<SensorReport>& reports, const std::vector<Person>& people,
-            Timestamp instant);
+  /// `config` says where a sensor certainly sees people.
+  void look(const Sights& sights, const associate::AssociationConfig& config);
 
   /// Since when the sensor has seen somebody, but none of the people whom others see.  None before
-  /// it has done so for ten seconds, not counting those in which it saw nobody, or the others did
-  /// not; one view that is shared, or that makes a person of its own, ends it.
+  /// it has done so for ten seconds.  If it alone sees a published person, only instants count in
+  /// which either side misses the other's person where it certainly sees people: there may be two.
+  /// Seconds in which nobody is seen by it, or by the others, count neither way; one view of a
+  /// person whom others see too ends it.
   [[nodiscard]] std::optional<Timestamp> since(const SensorId& sensor) const;
 
   void forget() { apart_.clear(); }

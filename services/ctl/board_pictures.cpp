@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -62,14 +63,39 @@ class Search {
       if (files.size() == 1) return pass(done);
       out_.notes.push_back(to_string(done.error()) + "; left out");
     }
-    if (odd_sizes_ > 0)
-      out_.notes.push_back(fmt::format("{} pictures are not {} x {}, as the first is; left out",
-                                       odd_sizes_, out_.size.width, out_.size.height));
+    if (!groups_.empty()) take(groups_);
     return std::move(out_);
   }
 
  private:
+  /// The pictures of one size, and the views of the board in them.
+  struct Group {
+    calibration::PictureSize size;
+    std::size_t pictures = 0;
+    std::vector<calibration::View> views;
+  };
+
+  /// Takes the size in which the board was found most often; if in none, the most frequent one.
+  void take(std::vector<Group>& groups) {
+    const auto rank = [](const Group& group) {
+      return std::pair(group.views.size(), group.pictures);
+    };
+    Group& best = *std::ranges::max_element(groups, {}, rank);
+    std::size_t others = 0;
+    for (const Group& group : groups) others += &group == &best ? 0 : group.pictures;
+    out_.size = best.size;
+    out_.pictures = best.pictures;
+    out_.views = std::move(best.views);
+    if (others == 0) return;
+    out_.notes.push_back(
+        fmt::format("{} not {} x {}, as most of those with the board are; left out",
+                    others == 1 ? "1 picture is" : fmt::format("{} pictures are", others),
+                    out_.size.width, out_.size.height));
+  }
+
   Result<void> photo(const std::string& file) {
+    std::error_code failed;
+    if (!fs::exists(file, failed)) return fail(ErrorCode::NotFound, file, "there is no such file");
     const auto picture = camera::read_picture(file);
     if (!picture) return pass(picture);
     look(*picture, fs::path(file).filename().string());
@@ -108,27 +134,28 @@ class Search {
 
   void look(const camera::Picture& picture, std::string name) {
     const calibration::PictureSize size{picture.size.width, picture.size.height};
-    if (out_.pictures == 0) out_.size = size;
-    if (size != out_.size) {
-      ++odd_sizes_;
-      return;
-    }
-    ++out_.pictures;
+    auto group = std::ranges::find(groups_, size, &Group::size);
+    if (group == groups_.end()) group = groups_.insert(groups_.end(), {size, 0, {}});
+    ++group->pictures;
+    ++pictures_;
     auto corners = finder_.find(*picture.pixels);
-    if (!corners.empty() && out_.views.size() < kMaxViews)
-      out_.views.push_back({std::move(name), std::move(corners)});
+    if (corners.empty() || found_ >= kMaxViews) return;
+    ++found_;
+    group->views.push_back({std::move(name), std::move(corners)});
   }
 
   void tell(double share) const {
     if (!how_.progress) return;
     how_.progress(begin_ + step_ * share,
-                  fmt::format("the board in {} of {} pictures", out_.views.size(), out_.pictures));
+                  fmt::format("the board in {} of {} pictures", found_, pictures_));
   }
 
   const BoardSearch& how_;
   calibration::BoardFinder finder_;
   BoardViews out_;
-  std::size_t odd_sizes_ = 0;
+  std::vector<Group> groups_;
+  std::size_t pictures_ = 0;
+  std::size_t found_ = 0;
   double begin_ = 0.0;
   double step_ = 1.0;
 };

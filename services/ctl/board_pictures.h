@@ -29,8 +29,8 @@ struct BoardViews {
 };
 
 /// Examines every photo, and four pictures a second of a video or camera.  Fails when a folder has
-/// no photos, when no picture can be read, or when the only source fails.  A damaged photo, and
-/// pictures whose size differs from the first, are left out with a note.
+/// no photos, when no picture can be read, or when the only source fails.  A damaged photo is
+/// left out with a note, and so are pictures of another size than most of those with the board.
 [[nodiscard]] Result<BoardViews> look_for_board(const BoardSearch& search);
 
 }  // namespace chorus::ctl

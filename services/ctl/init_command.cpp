@@ -14,6 +14,7 @@
 #include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/discovery.h"
+#include "services/ctl/init_checks.h"
 #include "services/ctl/new_file.h"
 #include "services/ctl/written_certificates.h"
 #include "services/ctl/written_config.h"
@@ -24,6 +25,7 @@ namespace {
 constexpr std::uint16_t kSensorPort = 8081;
 constexpr std::uint16_t kFusionPort = 8080;
 constexpr const char* kSensorFile = "/etc/chorus/sensor.json";
+constexpr const char* kFolder = "/etc/chorus/";  // the units read their configurations there
 
 struct InitArguments {
   std::string service;
@@ -86,7 +88,7 @@ void ask_for(InitArguments& arguments) {
 }
 
 bool is_loopback(const std::string& address) {
-  return address.starts_with("127.") || address == "::1" || address == "localhost";
+  return address.starts_with("127.") || address == "::1";
 }
 
 /// The folder of this host's certificate; empty: without TLS.
@@ -111,9 +113,12 @@ Result<void> write_new(const std::string& file, const std::string& text) {
   return write_file(file, text, Readers::Services);
 }
 
-std::string shown_host() {
-  const std::string name = net::host_name();
-  return name.empty() ? "HOST" : name;
+/// The host's name in addresses for others.
+std::string shown_host(const std::string& tls) {
+  const std::string own = net::host_name();
+  const std::string name = tls.empty() ? own : certified_name(tls, own);
+  if (name.empty()) return "HOST";
+  return name.find(':') == std::string::npos ? name : "[" + name + "]";
 }
 
 /// A token may contain any character, but in a link "+" stands for a blank, and "&" and "%" have a
@@ -130,9 +135,14 @@ std::string percent_encoded(const std::string& text) {
 /// Prints the page to open.  A browser allows camera access over https, and on its own host over
 /// http as well.
 void tell_phone(const ServiceWishes& wishes, const std::string& url) {
+  if (is_loopback(wishes.address)) {
+    std::cerr << "On this computer, whose own camera it can be (a phone needs --listen 0.0.0.0):\n"
+              << "  " << url << "capture/\n";
+    return;
+  }
   std::cerr << "On the phone, which needs ca.crt:\n  " << url << "capture/"
             << (wishes.token.empty() ? "" : "#token=" + percent_encoded(wishes.token)) << "\n";
-  if (wishes.tls.empty() && !is_loopback(wishes.address)) {
+  if (wishes.tls.empty()) {
     std::cerr << "Without a certificate no browser gives it a camera: chorus init ca and chorus "
                  "init certificate, then this again.\n";
   }
@@ -140,11 +150,14 @@ void tell_phone(const ServiceWishes& wishes, const std::string& url) {
 
 void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
   const std::string& service = arguments.service;
-  std::cerr << fmt::format("{} written.  Next:\n  systemctl restart chorus-{}\n", arguments.out,
-                           service);
+  const bool of_the_unit = arguments.out == kFolder + service + ".json";
+  std::cerr << fmt::format("{} written.  Next:\n  {}\n", arguments.out,
+                           of_the_unit
+                               ? "systemctl restart chorus-" + service
+                               : fmt::format("chorus-{} --config {}", service, arguments.out));
   const std::string url =
       fmt::format("{}://{}:{}/", wishes.tls.empty() ? "http" : "https",
-                  is_loopback(wishes.address) ? "127.0.0.1" : shown_host(), wishes.port);
+                  is_loopback(wishes.address) ? "127.0.0.1" : shown_host(wishes.tls), wishes.port);
   if (service == "sensor" && arguments.sensor.device == "phone") tell_phone(wishes, url);
   if (service == "sensor") {
     std::cerr << fmt::format("On the fusion host:\n  chorus init fusion --sensor {}={}{}{}\n",
@@ -246,6 +259,7 @@ Result<ServiceWishes> write_fusion(InitArguments& arguments) {
     if (!output) return pass(output);
     wishes.outputs.push_back(*output);
   }
+  if (auto ok = check_names(wishes.sensors); !ok) return pass(ok);
   wishes.service = service_wishes(arguments, kFusionPort);
   if (auto ok = write_new(arguments.out, fusion_config(wishes)); !ok) return pass(ok);
   return wishes.service;
@@ -281,9 +295,10 @@ Result<int> run_init(InitArguments& arguments) {
     return fail(ErrorCode::InvalidArgument, arguments.certificate.hosts.front(),
                 "is not understood after \"" + arguments.service + "\"; see chorus init --help");
   }
-  if (arguments.out.empty()) arguments.out = "/etc/chorus/" + arguments.service + ".json";
+  if (arguments.out.empty()) arguments.out = kFolder + arguments.service + ".json";
   if (arguments.sensor.id.empty()) arguments.sensor.id = host_id();
   if (arguments.ask) ask_for(arguments);
+  if (auto ok = check_service(arguments.address, arguments.token); !ok) return pass(ok);
   const auto wishes =
       arguments.service == "sensor" ? write_sensor(arguments) : write_fusion(arguments);
   if (!wishes) return pass(wishes);

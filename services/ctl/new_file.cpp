@@ -71,6 +71,8 @@ Result<void> write_file(const std::string& file, const std::string& text, Reader
     return fail(ErrorCode::InvalidArgument, file,
                 "exists and is not overwritten: edit it, move it away, or give --out FILE");
   }
+  if (made < 0 && errno == ENOENT)
+    return cannot(file, ENOENT, ": its folder is not there; make it, or give --out FILE");
   if (made < 0) return cannot(file, errno, " (as root, or with --out FILE)");
   const bool written = (readers != Readers::Services || hand_over(made)) &&
                        give_mode(made, mode_for(readers)) && write_all(made, text);

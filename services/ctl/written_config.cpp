@@ -14,6 +14,7 @@
 #include "common/base/parse.h"
 #include "common/base/strong_id.h"
 #include "common/http/client.h"
+#include "common/net/allow_list.h"
 
 namespace chorus::ctl {
 namespace {
@@ -203,6 +204,14 @@ std::vector<std::string> parts_of(std::string_view text, char separator) {
   return parts;
 }
 
+bool has_port(std::string_view target) {
+  const std::size_t colon = target.rfind(':');
+  if (colon == std::string_view::npos || colon == 0) return false;
+  const auto port = parse_number<int>(target.substr(colon + 1));
+  constexpr int kHighest = 65535;
+  return port && *port >= 1 && *port <= kHighest;
+}
+
 }  // namespace
 
 Result<PolledWish> polled_wish(std::string_view text) {
@@ -236,9 +245,18 @@ Result<OutputWish> output_wish(std::string_view text) {
     return fail(ErrorCode::InvalidArgument, wish.name,
                 "say who may connect: " + wish.name + "=10.0.0.20,10.0.0.21");
   }
+  if (output->manner == Manner::Serves) {
+    if (const auto list = net::AllowList::parse(wish.peers); !list) return pass(list);
+  }
   if (wish.peers.empty() && output->manner == Manner::Sends) {
     return fail(ErrorCode::InvalidArgument, wish.name,
                 "say where to send: " + wish.name + "=10.0.0.20:PORT");
+  }
+  for (const std::string& peer : wish.peers) {
+    if (output->manner == Manner::Sends && !has_port(peer)) {
+      return fail(ErrorCode::InvalidArgument, wish.name,
+                  "\"" + peer + "\" names no port: write " + wish.name + "=" + peer + ":PORT");
+    }
   }
   return wish;
 }

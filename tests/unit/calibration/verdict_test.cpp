@@ -9,6 +9,7 @@ namespace chorus::calibration {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -38,7 +39,8 @@ TEST(Weaknesses, AnEmptyThirdIsNamed) {
 
 TEST(Weaknesses, FewViewsAreCounted) {
   EXPECT_THAT(weak(views_of({.count = 6})), Contains(HasSubstr("only 6 different views")));
-  EXPECT_THAT(missing_views({}, kSize), Contains(HasSubstr("only 0 different views")));
+  EXPECT_THAT(missing_views({}, kSize), ElementsAre(HasSubstr("--squares counts squares")))
+      << "to hold it still does not help";
   EXPECT_THAT(missing_views(views_of({.count = 1}), kSize),
               Contains(HasSubstr("only 1 different view of")));
 }

@@ -12,23 +12,45 @@ using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
-/// A sensor "near" sees one person throughout; what "far" sees is told instant by instant.
+/// A sensor "near" sees one person throughout; what "far" sees is told instant by instant.  Both
+/// look along +z, from the same place.
 struct TwoViews {
-  void run(Duration length, std::size_t bodies_of_far, bool far_shares, bool near_sees = true) {
-    const SensorId near = sensor_id("near");
-    const SensorId far = sensor_id("far");
-    for (const Duration end = t + length; t < end; t += std::chrono::milliseconds(100)) {
-      Person person{{1}, {}};
-      for (const auto& [sensor, sees] : {std::pair{near, near_sees}, std::pair{far, far_shares}}) {
-        if (sees) person.views.emplace_back().sensor = sensor;
-      }
-      strays.look({{near, Basis::Exact, 1}, {far, Basis::Exact, bodies_of_far}}, {person},
-                  kStart + t);
+  TwoViews() {
+    registration.sensors[near];
+    registration.sensors[far];
+  }
+
+  Person person_at(const Eigen::Vector3d& place, const std::vector<SensorId>& sensors) const {
+    Person person;
+    for (const SensorId& sensor : sensors) {
+      SensorView& view = person.views.emplace_back();
+      view.sensor = sensor;
+      view.skeleton = testing::standing_person(place);
     }
+    return person;
+  }
+
+  void run(Duration length, const std::vector<Person>& people, std::size_t bodies_of_far) {
+    for (const Duration end = t + length; t < end; t += std::chrono::milliseconds(100)) {
+      const std::vector<SensorReport> reports{{near, Basis::Exact, 1},
+                                              {far, Basis::Exact, bodies_of_far}};
+      strays.look({kStart + t, reports, people, registration}, {});
+    }
+  }
+
+  /// A person before both, whom they see or not.
+  void run(Duration length, std::size_t bodies_of_far, bool far_shares, bool near_sees = true) {
+    std::vector<SensorId> views;
+    if (near_sees) views.push_back(near);
+    if (far_shares) views.push_back(far);
+    run(length, {person_at({0, -1.5, 3}, views)}, bodies_of_far);
   }
 
   [[nodiscard]] bool told() const { return strays.since(sensor_id("far")).has_value(); }
 
+  const SensorId near = sensor_id("near");
+  const SensorId far = sensor_id("far");
+  Registration registration;
   Strays strays;
   Duration t{0};
 };
@@ -67,6 +89,20 @@ TEST(Strays, OneSharedViewEndsIt) {
   ASSERT_TRUE(two.told());
   two.run(std::chrono::milliseconds(100), 1, true);
   EXPECT_FALSE(two.told());
+}
+
+TEST(Strays, AGhostThatIsPublishedIsToldOfWhereEitherMissesTheOthersPerson) {
+  TwoViews two;
+  const Person ours = two.person_at({0, -1.5, 3}, {two.near});
+  two.run(seconds(11), {ours, two.person_at({1, -1.5, 3}, {two.far})}, 1);
+  EXPECT_TRUE(two.told());
+}
+
+TEST(Strays, TwoPeopleWhomTwoSensorsSeeEachInItsOwnPartOfTheRoomAreNoEvidence) {
+  TwoViews two;
+  const Person ours = two.person_at({0, -1.5, 3}, {two.near});
+  two.run(seconds(60), {ours, two.person_at({9, -1.5, 3}, {two.far})}, 1);
+  EXPECT_FALSE(two.told()) << "nobody looks where the other person is";
 }
 
 TEST(Strays, ALongPauseOfTheServerIsNotCounted) {

@@ -116,7 +116,8 @@ TEST(Init, OverwritesNothingAndKeepsTokensFromOthers) {
   const std::string file = (folder / "sensor.json").string();
   const Outcome first = run({"sensor", "--id", "cam-1", "--out", file});
   ASSERT_EQ(first.code, kExitOk) << first.error;
-  EXPECT_THAT(first.error, AllOf(HasSubstr("systemctl restart chorus-sensor"),
+  EXPECT_THAT(first.error, AllOf(HasSubstr("chorus-sensor --config " + file + "\n"),
+                                 Not(HasSubstr("systemctl")),  // a unit reads /etc/chorus
                                  HasSubstr("--sensor cam-1=http://")));
   const auto others = std::filesystem::perms::others_all;
   EXPECT_EQ(std::filesystem::status(file).permissions() & others, std::filesystem::perms::none);
@@ -142,6 +143,13 @@ TEST(Init, SaysWhatIsWrongWithAWish) {
   EXPECT_THAT(complaint({"fusion", "--output", "vprn=1"}), HasSubstr("there are vrpn"));
   EXPECT_THAT(complaint({"fusion", "--output", "vrpn"}), HasSubstr("who may connect"));
   EXPECT_THAT(complaint({"fusion", "--output", "dtrack="}), HasSubstr("where to send"));
+  EXPECT_THAT(complaint({"fusion", "--output", "vrpn=render"}), HasSubstr("render"));
+  EXPECT_THAT(complaint({"fusion", "--output", "vmc=10.0.0.1"}), HasSubstr("vmc=10.0.0.1:PORT"));
+  EXPECT_THAT(complaint({"fusion", "--output", "vmc=10.0.0.1:0"}), HasSubstr("no port"));
+  EXPECT_THAT(complaint({"fusion", "--sensor", "s1=http://a/", "--sensor", "s1=http://b/"}),
+              HasSubstr("named twice"));
+  EXPECT_THAT(complaint({"fusion", "--token", "short"}), HasSubstr("at least 12"));
+  EXPECT_THAT(complaint({"sensor", "--listen", "localhost"}), HasSubstr("127.0.0.1"));
   EXPECT_THAT(complaint({"sensor", "--device", "kinect"}), HasSubstr("none of bridge"));
   EXPECT_THAT(complaint({"sensor", "--device", "replay"}), HasSubstr("needs the file"));
   EXPECT_THAT(complaint({"sensor", "--id", "a b"}), HasSubstr("a b"));
@@ -215,6 +223,18 @@ TEST_F(InitTls, ServicesUseWhatIsThere) {
   EXPECT_TRUE(settings.at_start.secure);
   EXPECT_EQ(settings.live.sensors[0].trust, tls::Trust::load(at("t/ca.crt")).value());
   EXPECT_FALSE(settings_of(run({"fusion", "--out", "-", "--no-tls"}).out).live.identity);
+}
+
+TEST_F(InitTls, TheAddressThatIsPrintedIsOneOfTheCertificates) {
+  ASSERT_EQ(run({"ca", "--out", at("ca")}).code, kExitOk);
+  ASSERT_EQ(
+      run({"certificate", "localhost", "cam.example", "--authority", at("ca"), "--out", at("t")})
+          .code,
+      kExitOk);
+  EXPECT_THAT(run({"sensor", "--id", "s1", "--tls", at("t"), "--out", at("s.json")}).error,
+              HasSubstr("--sensor s1=https://cam.example:8081/"));
+  EXPECT_THAT(run({"fusion", "--tls", at("t"), "--out", at("f.json")}).error,
+              HasSubstr("https://cam.example:8080/viewer/"));
 }
 
 TEST_F(InitTls, MistakesSayWhatToDo) {

@@ -1,0 +1,60 @@
+#include "services/ctl/init_checks.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+
+#include "common/base/file.h"
+#include "common/net/asio.h"
+#include "common/tls/certificate.h"
+
+namespace chorus::ctl {
+namespace {
+
+constexpr std::size_t kShortestToken = 12;  // as service::read_http refuses it
+constexpr std::uintmax_t kMaxCertificate = 1u << 16;
+
+bool of_this_host_alone(const std::string& name) {
+  return name == "localhost" || name == "::1" || name.starts_with("127.");
+}
+
+}  // namespace
+
+Result<void> check_service(const std::string& address, const std::string& token) {
+  boost::system::error_code failed;
+  asio::ip::make_address(address, failed);
+  if (failed) {
+    return fail(ErrorCode::InvalidArgument, "--listen",
+                "\"" + address +
+                    "\" is no numeric address: 127.0.0.1 is this host alone, 0.0.0.0 the whole "
+                    "network");
+  }
+  if (!token.empty() && token.size() < kShortestToken) {
+    return fail(ErrorCode::InvalidArgument, "--token",
+                "needs at least 12 characters, such as `openssl rand -hex 16` makes; without it "
+                "one is made");
+  }
+  return {};
+}
+
+Result<void> check_names(const std::vector<PolledWish>& sensors) {
+  std::set<std::string> names;
+  for (const PolledWish& sensor : sensors) {
+    if (!names.insert(sensor.id).second)
+      return fail(ErrorCode::InvalidArgument, sensor.id,
+                  "is named twice; each sensor has an id "
+                  "of its own");
+  }
+  return {};
+}
+
+std::string certified_name(const std::string& tls_folder, const std::string& own) {
+  const auto pem = read_file(tls_folder + "/host.crt", kMaxCertificate);
+  if (!pem) return own;
+  const auto facts = tls::facts_of(*pem);
+  if (!facts || std::ranges::find(facts->names, own) != facts->names.end()) return own;
+  const auto other = std::ranges::find_if_not(facts->names, of_this_host_alone);
+  return other == facts->names.end() ? own : *other;
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,23 @@
+// What `chorus init` makes sure of before it writes: a service would refuse the configuration
+// otherwise, when it is started.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/ctl/written_config.h"
+
+namespace chorus::ctl {
+
+/// A numeric address to listen on, and a token that is long enough (empty: a new one is made).
+[[nodiscard]] Result<void> check_service(const std::string& address, const std::string& token);
+
+/// No two sensors of one name.
+[[nodiscard]] Result<void> check_names(const std::vector<PolledWish>& sensors);
+
+/// The name by which other hosts reach this one over TLS: `own` if the certificate in this folder
+/// is for it (or cannot be read), otherwise the first of the certificate's that is not only for
+/// this host itself; `own` again if there is none.
+[[nodiscard]] std::string certified_name(const std::string& tls_folder, const std::string& own);
+
+}  // namespace chorus::ctl
