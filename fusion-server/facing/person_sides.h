@@ -51,6 +51,8 @@ class PersonFilter {
 
   /// Advances the time; `blind`: no view shows left and right.
   void predict(double elapsed, bool blind, const PersonPrior& prior);
+  /// The held sides may have become wrong, with this probability.
+  void slip(double probability) { mix(kWrong, probability, probability); }
   void update(const Evidence& evidence);
   /// Swaps the hypotheses, because from now on the opposite sides are held.
   void turn_round();

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "common/base/units.h"
 #include "common/body/bones.h"
 
 namespace chorus::facing {
@@ -14,7 +16,8 @@ namespace {
 constexpr double kClear = 2.0;  // Log odds above which one view alone counts as certain.
 // Sum of the views' |log odds|; with less, no view shows left and right.
 constexpr double kBlind = 1.0;
-constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame count as one observation.
+constexpr double kInNoDoubt = deg(45);  // [rad]; spans that differ by less have the same sign.
+constexpr double kFrameTime = 0.033;    // [s]; the labels of one frame count as one observation.
 
 /// Everything that the model computes for one person at one instant.
 struct Instant {
@@ -56,14 +59,15 @@ Telling known_of(const SensorId& sensor, const SidesMemory& memory) {
   return known == memory.telling.end() ? Telling{} : known->second;
 }
 
-/// True if the view opposes the held sides. A view that clearly shows left and right is trusted;
-/// for an unclear one the last decision is kept. A sensor that tells front from rear seldom swaps
+/// True if the view opposes the held sides.  However narrow a view is, what it shows now counts for
+/// more than its last labels: a tracker that changes them draws the sides together meanwhile, and
+/// two opposite sensors change them together.  A sensor that tells front from rear seldom swaps
 /// left and right, so its view must show more clearly that it did.
 bool opposes(const SensorView& view, const Spans& spans, const Sides& sides,
              const SidesMemory& memory, const SidesConfig& config) {
   const double agree = usual_log_odds(known_of(view.sensor, memory), config.telling) +
                        shown_log_odds(spans, sides.spans);
-  if (std::abs(agree) > kClear) return agree < 0;
+  if (agree != 0.0) return agree < 0;
   const auto before = sides.views.find(view.sensor);
   return before != sides.views.end() && before->second.exchanged.held > 0.5;
 }
@@ -109,6 +113,28 @@ Spans followed(const Spans& before, const Spans& now, double share) {
   for (std::size_t i = 0; i < spans.size(); ++i)
     spans[i] = before[i] + share * (now[i] - before[i]);
   return spans;
+}
+
+/// The chance that `spans` follow the held ones with the wrong sign.  Held spans lag behind a
+/// person who turns, because trackers and smoothing do; at 90 deg either sign is as likely.  Nearly
+/// equal spans are in no doubt, so that nobody who stands still loses their sides in time.
+double misled(const Spans& spans, const Spans& held, double sigma) {
+  const double size = size_of(spans) * size_of(held);
+  if (!(size > kMinSpan * kMinSpan)) return 0.0;
+  const double cosine = std::clamp(agreement(spans, held) / size, -1.0, 1.0);
+  const double angle = std::acos(cosine);
+  if (angle < kInNoDoubt) return 0.0;
+  const double short_of_side = 0.5 * std::numbers::pi - angle;
+  return 1.0 / (1.0 + std::exp(std::numbers::pi * short_of_side / (sigma * sigma)));
+}
+
+/// The chance that the sides became wrong since the last instant because they were followed with
+/// the wrong sign.  A difference lasts for as long as the smoothing, so each instant has its share.
+double slipped_by_turning(const Instant& now, const Spans& spans, const Sides& sides,
+                          const SidesConfig& config) {
+  if (now.first) return 0.0;
+  const double share = now.elapsed / std::max(config.smoothing, now.elapsed);
+  return share * misled(spans, sides.spans, config.turn_sigma);
 }
 
 /// Advances the labels of a view by one step.
@@ -256,6 +282,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   step_views(now, person, spans, sides, memory, config);
   sides.walk.follow(person.views, instant, config.walking);
   sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
+  sides.filter.slip(slipped_by_turning(now, spans, sides, config));
   sides.filter.update(evidence_of(now, person, sides, spans, memory, config));
   if (must_turn(sides.filter, now.first, config)) {
     turn_round(now, sides, spans);

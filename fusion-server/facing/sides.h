@@ -28,6 +28,9 @@ struct SidesConfig {
   TellingPrior telling = {};
   LimbLimits limbs = {};
   double change_odds = 1.0;  ///< The held sides change if the log odds against them exceed this.
+  /// Standard deviation of the angle between the held spans and those on which the views agree, of
+  /// people who turn [rad].
+  double turn_sigma = deg(50);
   double smoothing = 0.1;    ///< Time constant with which the held spans follow the views [s].
   double learn_from = 0.95;  ///< Habits are learned while the sides are at least this probable.
   /// A person who was not seen for this long is forgotten.

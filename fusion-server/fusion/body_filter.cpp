@@ -69,9 +69,8 @@ class BodyFilter final : public Estimator {
     scale_square_.follow(sighted.scale_square(), passed);
     middle_ = middle_of(whole);
     FusedBody body = joint_by_joint(person.id, [&](JointId joint) {
-      return whole[index_of(joint)].placed
-                 ? fused(sighted, joint, instant.at, whole[index_of(joint)])
-                 : FusedJoint{};
+      return whole[index_of(joint)].placed ? fused(sighted, joint, instant.at, whole)
+                                           : FusedJoint{};
     });
     body.motion = motion_at(instant.at);
     return body;
@@ -120,8 +119,9 @@ class BodyFilter final : public Estimator {
   }
 
   [[nodiscard]] FusedJoint fused(const SightedBody& sighted, JointId joint, Timestamp instant,
-                                 const PlacedJoint& now) {
+                                 const PlacedBody& whole) {
     const std::size_t j = index_of(joint);
+    const PlacedJoint& now = whole[j];
     const bool determined = sighted.determined(j);
     FusedJoint fused = sighted.shown(joint);
     if (!determined) fused.joint.state = JointState::Inferred;
@@ -133,7 +133,7 @@ class BodyFilter final : public Estimator {
     } else {
       place.covariance += beyond_[j] * Eigen::Matrix3d::Identity();
     }
-    state(fused, place);
+    state(fused, place, turn_covariance(j, whole, sighted.turn_sigma()));
     if (fused.contributors != 0) contributed_[j] = instant;
     if (contributed_[j]) fused.age = seconds(instant - *contributed_[j]);
     return fused;
@@ -174,7 +174,7 @@ class BodyFilter final : public Estimator {
 
   /// Sets position and covariance.  Errors that all views have in common are added to the
   /// covariance, because no view's covariance contains them.
-  void state(FusedJoint& fused, const PlacedJoint& place) const {
+  void state(FusedJoint& fused, const PlacedJoint& place, const Eigen::Matrix3d& turned) const {
     const BodyModel& body = model();
     const double wider = body.agreement > 0 ? agreement_.value / body.agreement : 1.0;
     const double uneven = std::max(0.0, scale_square_.value - kUsualScale * kUsualScale);
@@ -182,7 +182,8 @@ class BodyFilter final : public Estimator {
     const double common = config_->common_sigma * config_->common_sigma +
                           body.proportion * body.proportion * uneven * reach;
     fused.joint.position = place.position;
-    state_covariance(fused, wider * place.covariance + common * Eigen::Matrix3d::Identity());
+    state_covariance(fused,
+                     wider * place.covariance + turned + common * Eigen::Matrix3d::Identity());
   }
 
   std::shared_ptr<const FusionConfig> config_;  ///< Shared by all copies.

@@ -93,6 +93,7 @@ void SightedBody::settle(const HeldBones& bones, const PlacedBody& expected,
     mend(held, model);
     place_all(expected, &held);
   }
+  turn_sigma_ = common_turn(misfits_, model);
 }
 
 void SightedBody::place_all(const PlacedBody& expected, const PlacedBody* start) {

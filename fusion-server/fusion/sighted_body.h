@@ -37,6 +37,8 @@ class SightedBody {
   /// because they were learned from the same views, which may agree on wrong lengths.
   [[nodiscard]] Eigen::Matrix3d stated(std::size_t joint) const;
   [[nodiscard]] const std::vector<Misfit>& misfits() const { return misfits_; }
+  /// common_turn() of the views [rad].
+  [[nodiscard]] double turn_sigma() const { return turn_sigma_; }
   /// True if the views alone determine the joint's position.
   [[nodiscard]] bool determined(std::size_t joint) const;
   /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last
@@ -88,6 +90,7 @@ class SightedBody {
   std::vector<Misfit> misfits_;
   std::array<Sights, kJointCount> sights_;
   PlacedBody placed_;
+  double turn_sigma_ = 0.0;
 };
 
 }  // namespace chorus::fusion

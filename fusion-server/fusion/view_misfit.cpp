@@ -105,6 +105,25 @@ double side_on_share(const SeenBody& seen, const Centres& at, const BodyModel& m
 
 }  // namespace
 
+double common_turn(std::span<const Misfit> misfits, const BodyModel& model) {
+  if (!(model.turn > 0)) return 0.0;
+  std::optional<double> least;
+  for (const Misfit& each : misfits) {
+    if (!(each.turn_variance > 0)) continue;
+    const double sigma = kLeastTurn + model.turn * each.side_on;
+    least = std::min(sigma, least.value_or(sigma));
+  }
+  return least.value_or(0.0);
+}
+
+Eigen::Matrix3d turn_covariance(std::size_t joint, const PlacedBody& body, double sigma) {
+  const PlacedJoint& axis = body[hanging().axis[joint]];
+  if (hanging().trunk[joint] || !axis.placed) return Eigen::Matrix3d::Zero();
+  const Eigen::Vector3d lever = body[joint].position - axis.position;
+  const Eigen::Vector3d way = sigma * Eigen::Vector3d(lever.z(), 0.0, -lever.x());
+  return way * way.transpose();
+}
+
 std::optional<Eigen::Vector3d> middle_of(const PlacedBody& body) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "common/body/skeleton.h"
 #include "fusion-server/fusion/body_model.h"
@@ -35,6 +36,17 @@ struct Misfit {
   double turn_variance = 0.0;   ///< [rad^2]
   double side_on = 0.0;         ///< 0 if seen frontally, 1 from the side; see BodyModel::turn_from.
 };
+
+/// Standard deviation of the turn of the body that no comparison of views can show [rad]: that of
+/// the view nearest to frontal.  It does not fall with the number of views, because opposite
+/// sensors see a body equally side-on and turn it the same way.  0 without views that have a
+/// misfit.
+[[nodiscard]] double common_turn(std::span<const Misfit> misfits, const BodyModel& model);
+
+/// What a turn of `sigma` [rad] about the spine means for a joint's position [m^2]; zero for joints
+/// of the spine.
+[[nodiscard]] Eigen::Matrix3d turn_covariance(std::size_t joint, const PlacedBody& body,
+                                              double sigma);
 
 /// Mean of the core joints that have a place; none without any.
 [[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const PlacedBody& body);

@@ -76,6 +76,7 @@ void read_facing(ConfigReader reader, facing::SidesConfig& out) {
   read_telling(reader.child("telling"), out.telling);
   read_limbs(reader.child("limbs"), out.limbs);
   reader.read("change_log_odds", out.change_odds, 0.0, kMaxLogOdds);
+  reader.read_deg("turn_sigma_deg", out.turn_sigma, 10.0, 90.0);
   reader.read("smoothing_s", out.smoothing, 0.0, 10.0);
   reader.read("learn_from", out.learn_from, 0.5, 1.0);
   reader.read_s("forget_s", out.forget, milliseconds(1), std::chrono::seconds(60));

@@ -274,6 +274,49 @@ TEST(Sides, ThatSlippedArePutRightBySensorsThatTellFrontFromRear) {
   EXPECT_FALSE(right_after_a_slip({{deg(130), deg(55)}}));
 }
 
+/// All joints beside the spine drawn towards it, as by a tracker that changes its labels.
+Skeleton<WorldSpace> drawn_together(Skeleton<WorldSpace> body, double share) {
+  for (const auto& [left, right] : kMirrorPairs) {
+    const Eigen::Vector3d middle = 0.5 * (body[left].position + body[right].position);
+    for (const JointId id : {left, right})
+      body[id].position = middle + share * (body[id].position - middle);
+  }
+  return body;
+}
+
+TEST(Sides, AreFollowedThroughAChangeOfLabelsOfTwoOppositeSensors) {
+  SidesMemory memory;
+  for (double heading = deg(60); heading < deg(180); heading += deg(200) * kSidesStep) {
+    const auto exact = body_at({0, 0, 0}, heading, kAtWork);
+    const bool changing = std::abs(heading - deg(120)) < deg(12);
+    const auto shown = drawn_together(exact, changing ? 0.05 : 1.0);
+    const bool changed = heading > deg(120);
+    Person person{PersonId{1},
+                  {view_from(1, 0, changed ? exchanged(shown) : shown),
+                   view_from(2, deg(180), changed ? shown : exchanged(shown))}};
+    resolve_sides(person, kStart + from_seconds(heading / deg(200)), memory, {});
+    for (const SensorView& view : person.views)
+      EXPECT_GT(agreement(spans_of(view.skeleton), spans_of(exact)), 0.0) << to_deg(heading);
+  }
+}
+
+TEST(Sides, AreLessCertainAfterALeapToTheSideThanAfterASlightTurn) {
+  const auto lost_by = [](double turn) {
+    SidesMemory memory;
+    const auto confidence = [&](int i, double heading) {
+      const auto exact = body_at({0, 0, 0}, heading, kAtWork);
+      Person person{PersonId{1}, {view_from(1, 0, exact), view_from(2, deg(60), exact)}};
+      resolve_sides(person, kStart + i * kFrame, memory, {});
+      return *person.sides_confidence;
+    };
+    for (int i = 0; i < 30; ++i) (void)confidence(i, 0);
+    const double before = confidence(30, 0);
+    return before - confidence(31, turn);
+  };
+  EXPECT_LT(lost_by(deg(30)), 0.001);
+  EXPECT_GT(lost_by(deg(85)), 0.05);
+}
+
 TEST(Sides, AreNotTurnedByAKickAcross) {
   SidesMemory memory;
   for (int i = 0; i < 60; ++i) {

@@ -127,6 +127,23 @@ TEST(BodyFilterViews, ABoneAloneMakesALostJointHardlySurer) {
   EXPECT_GT(lost.variance[index_of(WristLeft)], 0.9 * seen) << "its bone was not seen longer";
 }
 
+/// Sensors on both sides of a person turn the arms alike, so that no comparison shows it.
+TEST(BodyFilterViews, OfSomebodySeenFromTheSidesAloneArmsMayBeTurned) {
+  const auto ahead_variance = [](const std::vector<int>& sensors) {
+    Room room;
+    FusedBody body;
+    for (int i = 0; i < 10; ++i) {
+      std::vector<SensorView> views;
+      for (const int number : sensors) views.push_back(view_of(number, standing()));
+      body = room.at(i, std::move(views));
+    }
+    return body.skeleton[WristLeft].covariance.matrix()(2, 2);
+  };
+  const double frontal = ahead_variance({1, 3});
+  EXPECT_GT(ahead_variance({2, 4}), 2.0 * frontal);
+  EXPECT_LT(ahead_variance({1, 2, 4}), 1.5 * frontal);
+}
+
 TEST(BodyFilterViews, SomebodyUnseenIsSaidToBeAnywhereSoon) {
   Room room;
   const double seen = room.settled(standing()).variance[index_of(SpineMid)];
