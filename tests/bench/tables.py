@@ -27,7 +27,10 @@ class Rows:
             document = json.loads(path.read_text())
             self.builds.add(document["git"])
             for row in document["rows"]:
-                self.found.setdefault((row["case"], row["metric"]), {})[row["baseline"]] = row
+                beside = self.found.setdefault((row["case"], row["metric"]), {})
+                if row["baseline"] in beside:
+                    raise SystemExit(f"tables: {path} measures {row['case']} again, which another file has; keep one of them in the folder")
+                beside[row["baseline"]] = row
 
     def cases(self, pattern):
         names = {case for case, _ in self.found if re.fullmatch(pattern, case)}
