@@ -19,8 +19,9 @@ namespace fs = std::filesystem;
 /// A frame may arrive this much after a newer one of its sensor and still take its place, as in a
 /// fusion server (align::HistoryLimits).
 constexpr Duration kLatest = std::chrono::milliseconds(1500);
-/// Most items that wait for late frames, whatever the log times say.
-constexpr std::size_t kMostHeld = 16'384;
+/// Most items that wait for late frames, whatever the log times say: 64 sensors deliver 2880 in
+/// kLatest.
+constexpr std::size_t kMostHeld = 4096;
 
 /// Recognises fused frames by their space, which our documents state at the beginning.
 bool says_world_space(std::string_view json) {

@@ -68,6 +68,7 @@ class BodyFilter final : public Estimator {
     agreement_.follow(sighted.disagreement(whole), passed);
     scale_square_.follow(sighted.scale_square(), passed);
     middle_ = middle_of(whole);
+    if (!sighted.misfits().empty()) turn_sigma_ = sighted.turn_sigma();
     FusedBody body = joint_by_joint(person.id, [&](JointId joint) {
       return whole[index_of(joint)].placed ? fused(sighted, joint, instant.at, whole)
                                            : FusedJoint{};
@@ -133,7 +134,7 @@ class BodyFilter final : public Estimator {
     } else {
       place.covariance += beyond_[j] * Eigen::Matrix3d::Identity();
     }
-    state(fused, place, turn_covariance(j, whole, sighted.turn_sigma()));
+    state(fused, place, turn_covariance(j, whole, turn_sigma_));
     if (fused.contributors != 0) contributed_[j] = instant;
     if (contributed_[j]) fused.age = seconds(instant - *contributed_[j]);
     return fused;
@@ -200,7 +201,8 @@ class BodyFilter final : public Estimator {
   Habit agreement_{kFirstAgreement};
   Habit scale_square_;
   std::optional<Eigen::Vector3d> middle_;  ///< Middle of the trunk.
-  double yaw_ = 0.0;                       ///< Yaw of the shoulders, to within kPlay [rad].
+  double turn_sigma_ = 0.0;  ///< SightedBody::turn_sigma() when somebody last saw them.
+  double yaw_ = 0.0;         ///< Yaw of the shoulders, to within kPlay [rad].
   std::optional<Timestamp> last_;
 };
 

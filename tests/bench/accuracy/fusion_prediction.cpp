@@ -102,7 +102,7 @@ void go_blind(Fusing fusing, const Course& course, std::size_t from, const Fused
   for (std::size_t i = from + 1; i < course.instants.size(); ++i) {
     const Duration blind = course.instants[i] - course.instants[from];
     const FusedBody body = fusing.at(unseen, course.instants[i]);
-    for (const int ms : {500, 1000}) {
+    for (const int ms : {100, 500, 1000}) {
       const Duration asked = std::chrono::milliseconds(ms);
       const Duration before = course.instants[i - 1] - course.instants[from];
       if (blind < asked || before >= asked) continue;
