@@ -77,6 +77,10 @@ template <class T>
   return true;
 }
 
+/// What is said of any other name.
+inline constexpr std::string_view kNoSpace = "is none of SensorSpace and WorldSpace";
+inline constexpr std::string_view kNoState = "is none of Tracked, Inferred and NotTracked";
+
 [[nodiscard]] std::optional<SpaceKind> space_named(std::string_view name);
 [[nodiscard]] std::optional<JointState> state_named(std::string_view name);
 

@@ -50,8 +50,8 @@ class Reading {
     integer(at, object, "slot", facts_[at].slot);
     integer(at, object, "capturedNanoseconds", facts_[at].captured_ns);
     text(at, object, "source", facts_[at].source);
-    named(at, object, "space", facts_[at].space, space_named);
-    named(at, object, "state", facts_[at].state, state_named);
+    named(at, object, "space", facts_[at].space, {space_named, kNoSpace});
+    named(at, object, "state", facts_[at].state, {state_named, kNoState});
     std::optional<std::string> captured;
     text(at, object, "captured", captured);
     if (!captured) return;
@@ -144,14 +144,20 @@ class Reading {
     out = found->get<std::string>();
   }
 
-  template <class T, class Find>
+  template <class T>
+  struct Names {
+    std::optional<T> (*find)(std::string_view);
+    std::string_view otherwise;  ///< What is said of any other name.
+  };
+
+  template <class T>
   void named(std::size_t at, const json& object, std::string_view key, std::optional<T>& out,
-             Find find) {
+             const std::type_identity_t<Names<T>>& names) {
     std::optional<std::string> name;
     text(at, object, key, name);
     if (!name) return;
-    out = find(*name);
-    if (!out) complain(at, key, "is none of the names this property may have");
+    out = names.find(*name);
+    if (!out) complain(at, key, std::string(names.otherwise));
   }
 
   void list(std::size_t at, const json& object, std::string_view key,
@@ -172,7 +178,9 @@ class Reading {
 }  // namespace
 
 Result<FrameResource> read_json_frame(std::string_view text) {
-  const auto json = parse_json(text);
+  auto json = parse_json(text);
+  if (!json && text.find("NaN") != std::string_view::npos)
+    json.error().message += "; JSON has no NaN: leave out a joint that is not known";
   if (!json) return pass(json);
   auto facts = Reading().run(*json);
   if (!facts) return pass(facts);

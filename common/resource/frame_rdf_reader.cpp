@@ -236,9 +236,9 @@ class Collector {
       case Property::JointName:
         return store_text(facts.joint_name, object);
       case Property::Space:
-        return store_named(facts.space, object, space_named);
+        return store_named(facts.space, object, space_named, kNoSpace);
       case Property::State:
-        return store_named(facts.state, object, state_named);
+        return store_named(facts.state, object, state_named, kNoState);
       default:
         return {};
     }
@@ -291,10 +291,10 @@ class Collector {
   }
 
   template <class T, class Find>
-  static std::string_view store_named(std::optional<T>& property, const TermView& object,
-                                      Find find) {
+  static std::string_view store_named(std::optional<T>& property, const TermView& object, Find find,
+                                      std::string_view otherwise) {
     const auto value = find(individual(object));
-    if (!value) return "is none of the names this property may have";
+    if (!value) return otherwise;
     return set_once(property, *value) ? std::string_view() : kTwice;
   }
 

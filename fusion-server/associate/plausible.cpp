@@ -39,7 +39,8 @@ std::string_view implausible(const Skeleton<SensorSpace>& body, const BodyLimits
   double reach = 0.0;
   for (const Eigen::Vector3d& position : seen) reach = std::max(reach, (position - middle).norm());
   if (!(middle.norm() <= limits.max_range))
-    return "a body is left out: it is farther away than association.max_range_m";
+    return "a body is left out: it is farther away than association.max_range_m; lengths are "
+           "in metres: are these millimetres?";
   if (reach > limits.max_reach) return "a body is left out: it is larger than a person";
   if (seen.size() >= kManyJoints && reach < limits.min_reach)
     return "a body is left out: it is smaller than a person";

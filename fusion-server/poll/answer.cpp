@@ -81,13 +81,19 @@ Result<std::shared_ptr<const resource::FrameResource>> read_frame_event(std::str
   return std::make_shared<const resource::FrameResource>(std::move(*frame));
 }
 
-std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response) {
-  if (response.status != http::status::kOk || response.body.size() > kMaxFloorBytes)
-    return std::nullopt;
-  const auto format = format_of(without_parameters(header(response, "content-type")));
-  if (!format) return std::nullopt;
+Result<std::optional<FloorPlane>> read_floor_answer(const http::ClientResponse& response) {
+  if (response.status != http::status::kOk) return std::nullopt;
+  if (response.body.size() > kMaxFloorBytes)
+    return fail(ErrorCode::TooLarge, "floor-plane", "is longer than any floor plane");
+  const std::string_view type = without_parameters(header(response, "content-type"));
+  const auto format = format_of(type);
+  if (!format) {
+    return fail(ErrorCode::Unsupported, "floor-plane",
+                "the content type is \"" + std::string(type.substr(0, 64)) +
+                    "\", where a sensor sends text/turtle or application/json");
+  }
   const auto floor = resource::read_floor_plane(response.body, *format);
-  if (!floor) return std::nullopt;
+  if (!floor) return fail(floor.error().code, "floor-plane", to_string(floor.error()));
   return *floor;
 }
 

@@ -29,8 +29,10 @@ struct FrameAnswer {
 [[nodiscard]] Result<std::shared_ptr<const resource::FrameResource>> read_frame_event(
     std::string_view text, const SensorId& expected);
 
-/// Reads the answer of /floor-plane; none when it is not a floor plane.
-[[nodiscard]] std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response);
+/// Reads the answer of /floor-plane; none when the sensor has none (any status but 200).  The error
+/// says what is wrong with a document that is no floor plane.
+[[nodiscard]] Result<std::optional<FloorPlane>> read_floor_answer(
+    const http::ClientResponse& response);
 
 /// Reads the answer of /clock, in JSON: what the host says of its own clock; none when the answer
 /// is not such a document.

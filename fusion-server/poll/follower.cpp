@@ -187,7 +187,9 @@ void Follower::take(Result<http::ClientResponse> response, const Send& asked) {
   take_clock(*response);
   switch (asked.resource) {
     case Resource::FloorPlane: {
-      floor_ = read_floor_answer(*response);
+      const auto floor = read_floor_answer(*response);
+      floor_ = floor.value_or(std::nullopt);
+      floor_error_ = floor ? "" : to_string(floor.error());
       return feed(FloorAnswered{response->status < http::status::kInternal});
     }
     case Resource::Clock: {
@@ -290,7 +292,7 @@ void Follower::hand_on(const Arrival& arrival) {
 void Follower::publish_state() {
   const std::scoped_lock lock(mutex_);
   report_.state = fsm_.state();
-  report_.last_error = fsm_.last_error();
+  report_.last_error = fsm_.last_error().empty() ? floor_error_ : fsm_.last_error();
   report_.failures = fsm_.failures();
   report_.early = early_;
   report_.stale = stale_;

@@ -77,6 +77,7 @@ class Follower : public std::enable_shared_from_this<Follower> {
   bool rested_ = false;
   Timestamp received_{};
   std::optional<FloorPlane> floor_;
+  std::string floor_error_;  ///< Why the last answer of /floor-plane was none.
   std::optional<NtpStatus> host_;
   std::optional<Arrival> answered_;  ///< The frame in the answer or event that is being handled.
   std::deque<Arrival> held_;  ///< Frames held back while the clock is in doubt; a few at most.

@@ -393,7 +393,7 @@ Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
   std::vector<WalkTrack> in_step = walk;
   bring_in_step(in_step, clocks);
   Registration found = solve_with(unless_open(estimate, clocks), in_step, now, config);
-  found.clocks = clocks.offsets;
+  found.clocks = offsets_of_placed(clocks, found);
   return with_scale(std::move(found), in_step, config);
 }
 

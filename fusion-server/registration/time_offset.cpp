@@ -237,4 +237,11 @@ PairEstimator unless_open(PairEstimator estimate, const WalkClocks& clocks) {
   };
 }
 
+std::map<SensorId, ClockOffset> offsets_of_placed(const WalkClocks& clocks,
+                                                  const Registration& found) {
+  auto offsets = clocks.offsets;
+  std::erase_if(offsets, [&](const auto& each) { return !found.sensors.contains(each.first); });
+  return offsets;
+}
+
 }  // namespace chorus::registration

@@ -48,4 +48,9 @@ void bring_in_step(std::vector<WalkTrack>& walk, const WalkClocks& clocks);
 /// `estimate`, changed to refuse pairs whose clock offset is undetermined.
 [[nodiscard]] PairEstimator unless_open(PairEstimator estimate, const WalkClocks& clocks);
 
+/// The offsets of the sensors that have a place.  A walk in which a sensor contradicts the others,
+/// because it followed somebody else, says nothing of its clock.
+[[nodiscard]] std::map<SensorId, ClockOffset> offsets_of_placed(const WalkClocks& clocks,
+                                                                const Registration& found);
+
 }  // namespace chorus::registration

@@ -54,7 +54,8 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
   out.counter({"chorus_frames_missed_total", "Gaps in the sensor's own sequence."},
               number(s.missed), labels);
   out.counter(
-      {"chorus_frames_refused_total", "Frames that went back in time or came from the future."},
+      {"chorus_frames_refused_total",
+       "Frames left out because of their time; unreadable ones count as failures of polling."},
       number(s.refused), labels);
   add_fates(out, s);
   out.counter({"chorus_poll_failures_total", "Requests without a usable answer."},

@@ -143,6 +143,12 @@ void RegistrationResources::end_proposal() {
   std::erase(progress_.awaits, core::kDecide);
 }
 
+/// Nothing that was said of other places is shown with these, until the pipeline speaks of them.
+void RegistrationResources::forget_needs() {
+  progress_.awaits.clear();
+  progress_.alarms.clear();
+}
+
 http::ActionResult RegistrationResources::forget() {
   const std::scoped_lock lock(mutex_);
   end_newest();
@@ -175,6 +181,7 @@ Result<http::ActionResult> RegistrationResources::undo() {
     return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
   const std::uint64_t version = registration_.version + 1;
   end_proposal();
+  forget_needs();
   std::swap(registration_, *progress_.earlier);
   if (progress_.earlier->sensors.empty()) progress_.earlier.reset();
   registration_.version = version;
@@ -191,6 +198,7 @@ Result<http::ActionResult> RegistrationResources::accept() {
   const std::uint64_t version = registration_.version + 1;
   progress_.earlier = std::exchange(registration_, std::move(progress_.proposal->registration));
   end_proposal();
+  forget_needs();
   registration_.version = version;
   control_.decide(true, ++asked_);
   show();

@@ -58,6 +58,7 @@ class RegistrationResources {
   void show();
   void end_newest();
   void end_proposal();
+  void forget_needs();
 
   service::Serving serving_;
   RegistrationControl control_;

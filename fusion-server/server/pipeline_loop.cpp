@@ -303,7 +303,7 @@ void PipelineLoop::complain(const SensorStatus& sensor) {
   std::string& told = told_[sensor.id];
   const bool news = sensor.state == "live" && !sensor.last_error.empty();
   if (news && sensor.last_error != told) {
-    log::warn("sensor frames left out",
+    log::warn("sensor sends what is left out",
               {{"sensor", sensor.id.str()}, {"reason", sensor.last_error}});
   }
   if (news) told = sensor.last_error;

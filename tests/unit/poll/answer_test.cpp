@@ -1,6 +1,7 @@
 // How a sensor's answers are interpreted, honest ones or not.
 #include "fusion-server/poll/answer.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/resource/floor_plane_resource.h"
@@ -9,8 +10,10 @@
 namespace chorus::poll {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::kStart;
 using testing::sensor_id;
+using ::testing::StartsWith;
 
 resource::FrameResource answered_frame(const std::string& source) {
   const auto pose = testing::ring_sensor(0, 6);
@@ -151,20 +154,30 @@ TEST(PlaceInTime, ShiftsCaptureTimesOfFrameAndBodiesAndAddsTheFloor) {
   EXPECT_EQ(placed.received, kStart);
 }
 
-TEST(FloorAnswer, ReadsAPlaneAndIgnoresAnythingElse) {
+TEST(FloorAnswer, ReadsAPlane) {
   const FloorPlane floor{Eigen::Vector3d(0, 0.8, 0.6), 1.25};
   const auto node = resource::floor_plane_node(floor, resource::SpaceKind::Sensor);
   for (const auto format : {resource::Format::Turtle, resource::Format::Json}) {
     const auto read =
         read_floor_answer(answer(200, std::string(media_type(format)), write(node, format)));
-    ASSERT_TRUE(read) << media_type(format);
-    EXPECT_NEAR((read->normal - floor.normal).norm(), 0, 1e-4);
-    EXPECT_NEAR(read->offset, 1.25, 1e-4);
+    ASSERT_TRUE(read && *read) << media_type(format);
+    EXPECT_NEAR(((*read)->normal - floor.normal).norm(), 0, 1e-4);
+    EXPECT_NEAR((*read)->offset, 1.25, 1e-4);
   }
-  EXPECT_FALSE(read_floor_answer(answer(404, "application/problem+json", "{}")));
-  EXPECT_FALSE(read_floor_answer(answer(200, "text/turtle", "nonsense")));
-  EXPECT_FALSE(read_floor_answer(
-      answer(200, "application/json", R"({"normalX":0,"normalY":0,"normalZ":0,"offset":1})")));
+  const auto none = read_floor_answer(answer(404, "application/problem+json", "{}"));
+  EXPECT_TRUE(none && !*none) << "a sensor may have none";
+}
+
+TEST(FloorAnswer, SaysWhatIsWrongWithAnythingElse) {
+  const auto wrong = [](const char* type, std::string body) {
+    const auto read = read_floor_answer(answer(200, type, std::move(body)));
+    return read ? std::string("taken") : to_string(read.error());
+  };
+  EXPECT_THAT(wrong("text/turtle", "nonsense"), StartsWith("floor-plane: "));
+  EXPECT_THAT(wrong("text/html", "<p>"), HasSubstr("text/html"));
+  EXPECT_THAT(wrong("application/json", R"({"normalX":0,"normalY":0,"normalZ":0,"offset":1})"),
+              StartsWith("floor-plane: "));
+  EXPECT_THAT(wrong("application/json", std::string(100'000, ' ')), HasSubstr("longer"));
 }
 
 TEST(ExchangeOf, NeedsTheHeader) {

@@ -41,6 +41,19 @@ constexpr double kNear = 10.0;  // [ms]
 
 double milliseconds_of(Duration duration) { return 1e3 * seconds(duration); }
 
+TEST(WalkClocks, OfASensorThatContradictsTheOthersAreNotBelieved) {
+  auto walk = ring({Duration{0}, milliseconds(20), milliseconds(-30)});
+  for (SensorFrame& frame : walk[2].frames) {  // it follows somebody who stands still and turns
+    frame.bodies = walk[0].frames.front().bodies;
+    for (BodyFrame& body : frame.bodies) body.captured = frame.captured;
+  }
+  const Registration found = solve(walk, kWalkStart, {});
+  ASSERT_TRUE(found.sensors.contains(sensor(2)));
+  ASSERT_FALSE(found.sensors.contains(sensor(3)));
+  EXPECT_TRUE(found.clocks.contains(sensor(2)));
+  EXPECT_FALSE(found.clocks.contains(sensor(3)));
+}
+
 TEST(WalkClocks, AreTakenAsTheyAreWhenTheyAreKnown) {
   const auto clocks = clocks_of(ring({Duration{0}, milliseconds(212)}, {}, 0.001), {});
   EXPECT_TRUE(clocks.offsets.empty());

@@ -73,7 +73,7 @@ const std::vector<Damage> kHeadDamages{
     {"no source", [](Json& f) { f.erase("source"); }, "ch:source", "missing"},
     {"bad source", [](Json& f) { f["source"] = "a b"; }, "ch:source", ""},
     {"no space", [](Json& f) { f.erase("space"); }, "ch:space", "missing"},
-    {"other space", [](Json& f) { f["space"] = "OuterSpace"; }, "ch:space", "none of the names"},
+    {"other space", [](Json& f) { f["space"] = "OuterSpace"; }, "ch:space", "none of SensorSpace"},
     {"sensors no list", [](Json& f) { f["sensors"] = "s1"; }, "ch:sensors", "no array"},
     {"sensor no text", [](Json& f) { f["sensors"] = {1}; }, "ch:sensors", "no string"},
     {"bad sensor",
@@ -184,6 +184,22 @@ TEST(FrameReader, RefusesADocumentThatSpeaksOfTooManyThings) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::TooLarge);
   EXPECT_NE(refused.error().message.find("4096 things"), std::string::npos);
+}
+
+TEST(FrameReader, SaysWhatToDoWithNaNAndWithOtherNames) {
+  std::string text = good().dump();
+  text.replace(text.find(":1.5"), 4, ":NaN");
+  EXPECT_NE(read_frame(text, Format::Json).error().message.find("leave out a joint"),
+            std::string::npos);
+  Json other = good();
+  head(other)["state"] = "tracked";
+  const std::string expected = "is none of Tracked, Inferred and NotTracked";
+  EXPECT_EQ(read(other).error().message, expected);
+  const auto frame = read(good());
+  ASSERT_TRUE(frame);
+  std::string turtle = write(*frame, Format::Turtle);
+  turtle.replace(turtle.find("ch:Tracked"), 10, "ch:Seen");
+  EXPECT_EQ(read_frame(turtle, Format::Turtle).error().message, expected);
 }
 
 TEST(FrameReader, ForgivesWhatChangesNothing) {

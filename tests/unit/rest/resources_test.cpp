@@ -244,6 +244,7 @@ TEST_F(Registering, AProposalIsShownWithItsNumbersAndAcceptedOrDeclined) {
   next.sensors[sensor_id("s2")] = Extrinsics{};
   progress_.proposal = Proposal{41, next, {{sensor_id("s1"), 0.04, 0.02, 0.12, 0.05}}};
   progress_.awaits = {core::kDecide, "sensor s3 has no place yet"};
+  progress_.alarms = {"s1 was moved"};
   publish();
   EXPECT_NE(shown().find("new places wait for your decision"), std::string::npos);
   for (const char* text : {"\"presentRadius\": 0.04", "\"expectedRadius\": 0.02", "\"moves\": 0.12",
@@ -261,6 +262,8 @@ TEST_F(Registering, AProposalIsShownWithItsNumbersAndAcceptedOrDeclined) {
   EXPECT_EQ(shown().find("\"proposal\""), std::string::npos);
   EXPECT_EQ(shown().find("wait for your decision"), std::string::npos) << shown();
   EXPECT_NE(shown().find("\"earlier\""), std::string::npos);
+  EXPECT_EQ(shown().find("sensor s3 has no place yet"), std::string::npos) << "of the old places";
+  EXPECT_EQ(shown().find("s1 was moved"), std::string::npos);
   EXPECT_EQ(asked_, "start 41 for 30 to propose #1; decline #2; accept #3; ");
 }
 
