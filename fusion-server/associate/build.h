@@ -49,7 +49,7 @@ struct Repeatability {
   /// somebody who stands where they were expected needs good measurements.
   double size = 6.0;
   double lengths = 6.0;  ///< Of the lengths at the same size.
-  double seconds = 3.0;  ///< How many seconds the ratios are a mean of, those at first included.
+  double seconds = 1.5;  ///< How many seconds the ratios are a mean of, those at first included.
 
   /// Learns from `now`, a second in view of somebody whose build is known to be `usual`.
   void learn(const Build& now, const Build& usual);

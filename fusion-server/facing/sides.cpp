@@ -62,21 +62,23 @@ Telling known_of(const SensorId& sensor, const SidesMemory& memory) {
 /// True if the view opposes the held sides.  However narrow a view is, what it shows now counts for
 /// more than its last labels: a tracker that changes them draws the sides together meanwhile, and
 /// two opposite sensors change them together.  A sensor that tells front from rear seldom swaps
-/// left and right, so its view must show more clearly that it did.
-bool opposes(const SensorView& view, const Spans& spans, const Sides& sides,
+/// left and right, so its view must show more clearly that it did.  A flat figure lacks the part of
+/// its spans along the line of sight, so that of a narrow one the last decision is kept.
+bool opposes(const SensorView& view, bool flat, const Spans& spans, const Sides& sides,
              const SidesMemory& memory, const SidesConfig& config) {
   const double agree = usual_log_odds(known_of(view.sensor, memory), config.telling) +
                        shown_log_odds(spans, sides.spans);
-  if (agree != 0.0) return agree < 0;
+  if (std::abs(agree) > (flat ? kClear : 0.0)) return agree < 0;
   const auto before = sides.views.find(view.sensor);
   return before != sides.views.end() && before->second.exchanged.held > 0.5;
 }
 
-void look_at_views(Instant& now, const Person& person, const Sides& sides,
-                   const SidesMemory& memory, const SidesConfig& config) {
+void look_at_views(Instant& now, const Person& person, std::span<const Figure> flat,
+                   const Sides& sides, const SidesMemory& memory, const SidesConfig& config) {
   for (std::size_t v = 0; v < person.views.size(); ++v) {
+    const bool is_flat = std::ranges::find(flat, v, &Figure::view) != flat.end();
     now.agree.push_back(agreement_log_odds(now.views[v], sides.spans));
-    now.exchanged.push_back(opposes(person.views[v], now.views[v], sides, memory, config));
+    now.exchanged.push_back(opposes(person.views[v], is_flat, now.views[v], sides, memory, config));
   }
 }
 
@@ -265,7 +267,7 @@ void remember(const Instant& now, const Person& person, const Spans& spans, Side
 }  // namespace
 
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
-                   const SidesConfig& config) {
+                   const SidesConfig& config, std::span<const Figure> flat) {
   if (!config.resolve || person.views.empty()) return;
   Instant now{instant, 0.0, true, all_spans(person), {}, {}, {}};
   auto before = recall(memory, person.id, instant, config);
@@ -275,7 +277,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
           ? std::move(*before)
           : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, {}};
   now.elapsed = seconds(instant - sides.seen);
-  look_at_views(now, person, sides, memory, config);
+  look_at_views(now, person, flat, sides, memory, config);
   Spans spans = joined(now);
   spans = followed(sides.spans, spans, trust_in(spans, sides.spans));
   keep_lost(spans, sides.spans);

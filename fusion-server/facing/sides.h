@@ -9,11 +9,13 @@
 #pragma once
 
 #include <map>
+#include <span>
 
 #include "fusion-server/facing/labels.h"
 #include "fusion-server/facing/limbs.h"
 #include "fusion-server/facing/person_sides.h"
 #include "fusion-server/facing/posture.h"
+#include "fusion-server/facing/stand_in.h"
 #include "fusion-server/facing/telling.h"
 #include "fusion-server/facing/walking.h"
 
@@ -66,8 +68,9 @@ struct SidesMemory {
 /// Swaps left and right in the views that have them wrong, calls mend_limbs(), sets each view's
 /// `facing` to that of the agreed body if that is known, sets the person's sides_confidence, and
 /// updates `memory`. Does nothing without config.resolve or without views. A swapped view loses its
-/// orientations, because they describe a body that faces the sensor.
+/// orientations, because they describe a body that faces the sensor.  `flat`: the views that are
+/// flat figures.
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
-                   const SidesConfig& config);
+                   const SidesConfig& config, std::span<const Figure> flat = {});
 
 }  // namespace chorus::facing

@@ -131,7 +131,7 @@ void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memor
     if (person.carried) continue;
     const auto track = std::ranges::find(memory.tracks.people, person.id, &associate::Track::id);
     const auto figures = facing::stand_in(person, track->core);
-    facing::resolve_sides(person, instant, memory.sides, config);
+    facing::resolve_sides(person, instant, memory.sides, config, figures);
     facing::back_to_rays(person, figures);
   }
 }

@@ -47,7 +47,7 @@ TEST(ReadRecordings, TellWhatWasDamagedAndLeftOut) {
   const auto cell = read_recordings({file}, &told);
   ASSERT_THAT(cell, IsOk());
   EXPECT_THAT(told.str(), HasSubstr("note: walk.mcap: the end is missing"));
-  EXPECT_THAT(told.str(), HasSubstr("note: s1: left out 1 frames"));
+  EXPECT_THAT(told.str(), HasSubstr("note: s1: left out 1 frame whose capture time"));
   EXPECT_THAT(notes_of(*cell),
               ElementsAre(HasSubstr("the end is missing"), HasSubstr("left out 1")));
 }

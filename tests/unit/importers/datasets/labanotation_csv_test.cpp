@@ -120,7 +120,7 @@ TEST(LabanotationCsv, BoundsItsMemory) {
   few.limits.max_frames = 1;
   EXPECT_THAT(read_labanotation_csv(file, few), FailsWith(ErrorCode::Malformed));
   EXPECT_THAT(read_labanotation_csv(folder.path() / "none.csv"), FailsWith(ErrorCode::NotFound));
-  EXPECT_THAT(read_labanotation_csv(folder.path()), FailsWith(ErrorCode::NotFound));
+  EXPECT_THAT(read_labanotation_csv(folder.path()), FailsWith(ErrorCode::InvalidArgument));
   const std::string commas(1u << 20, ',');
   EXPECT_THAT(read_labanotation_csv(folder.write("commas.csv", commas)),
               FailsWith(ErrorCode::Malformed));
