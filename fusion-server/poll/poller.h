@@ -43,8 +43,8 @@ struct PolledFrame {
 struct PollReport {
   PolledSensor sensor;
   SensorState state = SensorState::Connecting;
-  std::string
-      last_error;  ///< What is wrong at present: also with the floor plane of a live sensor.
+  /// What is wrong at present, also with the floor plane of a live sensor.
+  std::string last_error;
   bool streaming = false;  ///< True while its frames come by event stream instead of polling.
   std::optional<Timestamp> newest;  ///< Capture time of the newest frame, by our clock.
   double rate_hz = 0.0;             ///< Frames per second that arrived in the last two seconds.

@@ -134,10 +134,10 @@ TABLES = {
     }),
     "fusion-honesty": (FUSED, {
         "all": honesty(),
-        "1 view, rest": honesty("_one_view_rest"),
-        "1 view, moving": honesty("_one_view_moving"),
-        "2 views, rest": honesty("_two_views_rest"),
-        "2 views, moving": honesty("_two_views_moving"),
+        "1 view, rest": honesty("_1_view_rest"),
+        "1 view, moving": honesty("_1_view_moving"),
+        "2 views, rest": honesty("_2_views_rest"),
+        "2 views, moving": honesty("_2_views_moving"),
         "more, rest": honesty("_more_views_rest"),
         "more, moving": honesty("_more_views_moving"),
     }),
@@ -193,7 +193,7 @@ def table(name, rows):
     if name not in TABLES:
         raise SystemExit(f"tables: there is no table '{name}'; there are {', '.join(TABLES)}")
     pattern, columns = TABLES[name]
-    cases = rows.cases(pattern)
+    cases = [case for case in rows.cases(pattern) if any(cell(rows, case) for cell in columns.values())]
     if not cases:
         raise SystemExit(f"tables: no file has a case of the table '{name}'")
     columns = {title: cell for title, cell in columns.items() if any(cell(rows, case) for case in cases)}
