@@ -77,6 +77,16 @@ def beside(metric, baseline):
     return cell
 
 
+def share_of(metric, baseline):
+    """Ours over the baseline's, where each has a row of its own."""
+
+    def cell(rows, case):
+        own, other = rows.row(case, metric), rows.row(case, metric, baseline)
+        return number(own["value"] / other["value"]) if own and other and other["value"] else ""
+
+    return cell
+
+
 def theirs(metric, baseline):
     def cell(rows, case):
         row = rows.row(case, metric, baseline)
@@ -160,9 +170,9 @@ TABLES = {
     "fusion-prediction": (r"prediction-.*", {
         "now, mm": ours("now_mm", spread=False),
         "50 ms ahead, mm": ours("ahead_50ms_mm", spread=False),
-        "of holding the pose": beside("ahead_50ms_mm", "hold"),
+        "of holding the pose": share_of("ahead_50ms_mm", "hold"),
         "100 ms ahead, mm": ours("ahead_100ms_mm", spread=False),
-        "of holding": beside("ahead_100ms_mm", "hold"),
+        "of holding": share_of("ahead_100ms_mm", "hold"),
         "unseen 0.5 s, mm": ours("blind_500ms_mm", spread=False),
         "unseen 1 s, mm": ours("blind_1000ms_mm", spread=False),
         "NEES now": ours("now_nees", spread=False),
