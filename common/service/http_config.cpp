@@ -28,8 +28,7 @@ void read_names(ConfigReader& config, http::ServerConfig& out) {
 
 /// Complains about a token that somebody could guess.
 void check_length(ConfigReader& config, std::string_view key, const std::string& token) {
-  constexpr std::size_t kShortest = 12;
-  if (token.size() < kShortest)
+  if (token.size() < kShortestToken)
     config.complain(key, "needs at least 12 characters, such as `openssl rand -hex 16` makes");
 }
 

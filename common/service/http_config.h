@@ -1,6 +1,7 @@
 // The section "http" of a configuration, the same for every service.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,6 +11,9 @@
 #include "common/tls/credentials.h"
 
 namespace chorus::service {
+
+/// Shorter tokens are refused: somebody could guess them.
+inline constexpr std::size_t kShortestToken = 12;
 
 /// Reads the section; an absent key keeps the value in `out`, because each service has its own
 /// default port.

@@ -6,12 +6,12 @@
 
 #include "common/base/file.h"
 #include "common/net/asio.h"
+#include "common/service/http_config.h"
 #include "common/tls/certificate.h"
 
 namespace chorus::ctl {
 namespace {
 
-constexpr std::size_t kShortestToken = 12;  // as service::read_http refuses it
 constexpr std::uintmax_t kMaxCertificate = 1u << 16;
 
 bool of_this_host_alone(const std::string& name) {
@@ -29,7 +29,7 @@ Result<void> check_service(const std::string& address, const std::string& token)
                     "\" is no numeric address: 127.0.0.1 is this host alone, 0.0.0.0 the whole "
                     "network");
   }
-  if (!token.empty() && token.size() < kShortestToken) {
+  if (!token.empty() && token.size() < service::kShortestToken) {
     return fail(ErrorCode::InvalidArgument, "--token",
                 "needs at least 12 characters, such as `openssl rand -hex 16` makes; without it "
                 "one is made");
