@@ -30,7 +30,7 @@ class Session : public ::testing::Test {
   explicit Session(BridgeSettings settings = {}) : rig(std::move(settings)) {}
 
   [[nodiscard]] Result<Heard> hear(const std::string& message) { return session.hear(message); }
-  /// The answer of a clock `ahead` of ours, with a delay of 2 ms in each direction.
+  /// The answer of a clock `ahead` of ours, with a delay of 1 ms in each direction.
   [[nodiscard]] Result<Heard> answer_clock(Duration ahead) {
     const Timestamp asked = rig.clock->now();
     rig.pass(milliseconds(2));

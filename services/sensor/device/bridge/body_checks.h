@@ -1,4 +1,4 @@
-// Refuses bodies that cannot be meant as they are sent: the usual mistakes of pushing programs.
+// Refuses bodies that cannot be meant as they are sent: the usual mistakes of pushers.
 #pragma once
 
 #include <optional>

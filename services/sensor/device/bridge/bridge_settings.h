@@ -15,8 +15,8 @@ struct BridgeSettings {
   bool page = false;             ///< Serves /capture/ (capture_page.h).
   double max_rate_hz = 120.0;    ///< Frames beyond this rate are dropped.
   std::size_t max_message_bytes = 256 * 1024;
-  double max_bytes_per_s = 4e6;  ///< A program that sends more is disconnected.
-  /// Largest number of programs that may be connected at once; only one of them pushes.
+  double max_bytes_per_s = 4e6;  ///< A pusher that sends more is disconnected.
+  /// Largest number of pushers that may be connected at once; only one of them pushes.
   std::size_t max_pushers = 4;
   /// A pusher that pushes no frame for this long makes room for another one.
   Duration yields_after = std::chrono::seconds(2);

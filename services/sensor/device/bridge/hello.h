@@ -1,4 +1,4 @@
-// What a program says about itself before it pushes frames (proto/bridge.md, section 2).
+// What a pusher says about itself before it pushes frames (proto/bridge.md, section 2).
 #pragma once
 
 #include <optional>

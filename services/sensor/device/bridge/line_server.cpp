@@ -38,7 +38,7 @@ std::string bye(const Error& error) {
       .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// The connection of one program.  Everything runs on the server's thread.
+/// The connection of one pusher.  Everything runs on the server's thread.
 class LineConnection : public std::enable_shared_from_this<LineConnection> {
  public:
   LineConnection(LocalSocket socket, std::size_t max_line_bytes)

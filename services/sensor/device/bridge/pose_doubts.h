@@ -1,5 +1,5 @@
-// Notices what a program probably does wrong although each of its messages could be right: nothing
-// is refused for it, but the program is told.  No IO; not thread-safe.
+// Notices what a pusher probably does wrong although each of its messages could be right: nothing
+// is refused for it, but the pusher is told.  No IO; not thread-safe.
 #pragma once
 
 #include <array>

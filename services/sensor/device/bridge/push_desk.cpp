@@ -101,7 +101,7 @@ std::uint64_t PushDesk::step_of(const PushedFrame& frame) const {
 }
 
 /// True if a frame captured at this time may follow the last one.  SensorService has the same rule,
-/// but here the pushing program gets an error.
+/// but here the pusher gets an error.
 bool PushDesk::advances(Timestamp captured) const {
   if (!last_captured_ || captured > *last_captured_) return true;
   if (*last_captured_ - captured > kMaxRepeat) return true;
@@ -124,7 +124,7 @@ Result<void> PushDesk::take(Seat seat, PushedFrame frame, const Hello& hello) {
   capture.frame.received = now();
   capture.frame.bodies = std::move(frame.bodies);
   capture.frame.floor = frame.floor ? frame.floor : hello.floor;
-  // The floor is that of one program: another may stand elsewhere, and this one may have taken its
+  // The floor is that of one pusher: another may stand elsewhere, and this one may have taken its
   // own back by a new hello.
   capture.begins_anew = !holder_->last_frame || (holder_->hello_had_floor && !hello.floor);
   holder_->hello_had_floor = hello.floor.has_value();

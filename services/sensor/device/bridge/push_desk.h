@@ -1,8 +1,8 @@
-// Receives pushed frames: one program at a time holds the sensor, and its frames go to the device's
+// Receives pushed frames: one pusher at a time holds the sensor, and its frames go to the device's
 // thread.  Also reports a human-readable state.  Thread-safe, no IO.
 //
-// A program holds the sensor from its hello until it leaves.  If it has pushed no frame for
-// `yields_after`, another program may take over.
+// A pusher holds the sensor from its hello until it leaves.  If it has pushed no frame for
+// `yields_after`, another pusher may take over.
 #pragma once
 
 #include <chrono>
@@ -25,16 +25,16 @@ namespace chorus::bridge {
 using SteadyTime = std::chrono::steady_clock::time_point;
 using SteadyNow = std::function<SteadyTime()>;
 
-/// What the desk knows about a program.
+/// What the desk knows about a pusher.
 struct Pusher {
   std::string name;
   std::string layout;
   std::string via;      ///< "WebSocket", "HTTP POST" or "local socket".
-  std::string address;  ///< The program's address; empty for a local socket.
+  std::string address;  ///< The pusher's address; empty for a local socket.
 };
 
 struct PushStatus {
-  std::string state;   ///< "waiting" (for a program), "silent" or "live".
+  std::string state;   ///< "waiting" (for a pusher), "silent" or "live".
   std::string reason;  ///< Human-readable: why the state is not live.
   std::optional<Pusher> pusher;
   Timestamp since{};          ///< When the pusher took the sensor.
@@ -56,7 +56,7 @@ struct DeskOptions {
 
 class PushDesk {
  public:
-  using Seat = std::uint64_t;  ///< A new number for each program that takes the sensor; never 0.
+  using Seat = std::uint64_t;  ///< A new number for each pusher that takes the sensor; never 0.
 
   explicit PushDesk(DeskOptions options);
 
@@ -69,19 +69,19 @@ class PushDesk {
   /// Counts a new connection.  Unavailable when there are too many, or just after a flood.
   [[nodiscard]] Result<void> connect();
   void disconnect();
-  /// Call this when a program was disconnected for flooding: for a second, no new connection is
+  /// Call this when a pusher was disconnected for flooding: for a second, no new connection is
   /// accepted.
   void shut_for_a_moment();
 
-  /// Gives the sensor to this program.  Conflict while another program is pushing; the error names
-  /// that program.
+  /// Gives the sensor to this pusher.  Conflict while another pusher is pushing; the error names
+  /// that pusher.
   [[nodiscard]] Result<Seat> sit_down(const Pusher& pusher);
   [[nodiscard]] bool sits(Seat seat) const;
   void leave(Seat seat, std::string_view why);
 
   /// Takes a frame whose times are by this host's clock.  Refuses it when its capture time does not
   /// advance, unless a clock was set: that is assumed when the time steps back by more than a
-  /// second, or by less and the next frame continues from there.  Conflict when another program
+  /// second, or by less and the next frame continues from there.  Conflict when another pusher
   /// holds the sensor.
   [[nodiscard]] Result<void> take(Seat seat, PushedFrame frame, const Hello& hello);
   void note_refusal(Seat seat, const Error& error);
@@ -116,7 +116,7 @@ class PushDesk {
   Handover<Capture> queue_;
   mutable std::mutex mutex_;  ///< Guards everything below.
   std::optional<Holder> holder_;
-  std::string departed_;  ///< Human-readable: how the last program left.
+  std::string departed_;  ///< Human-readable: how the last pusher left.
   Seat last_seat_ = 0;
   std::size_t connections_ = 0;
   SteadyTime shut_until_{};

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr auto kHelloWithin = std::chrono::seconds(5);
-// Longest time without a message from the program; its answers to our questions for the time count,
+// Longest time without a message from the pusher; its answers to our questions for the time count,
 // too.
 constexpr auto kSilentFor = std::chrono::seconds(30);
 constexpr auto kClockEvery = std::chrono::seconds(1);
@@ -60,7 +60,7 @@ class PushDialogue final : public http::Dialogue {
   PushSession session_;
   SteadyTime begun_;
   SteadyTime heard_;
-  std::optional<SteadyTime> asked_;  ///< When we last asked the program for its time.
+  std::optional<SteadyTime> asked_;  ///< When we last asked the pusher for its time.
   /// When the last complaint was sent.  There is at most one per second; errors in between are only
   /// counted.
   std::optional<SteadyTime> complained_;

@@ -1,4 +1,4 @@
-// Reads one message of a pushing program (proto/bridge.md).  No IO, no state.
+// Reads one message of a pusher (proto/bridge.md).  No IO, no state.
 #pragma once
 
 #include <cstdint>

@@ -53,7 +53,7 @@ http::DocumentPtr status_document(const PushDesk& desk) {
   return json_document(json, std::to_string(to_unix_ns(desk.now())));
 }
 
-/// Serves programs that push by POST.  Keeps the session of the last one, so that its clock and its
+/// Serves pushers that push by POST.  Keeps the session of the last one, so that its clock and its
 /// frame count continue from one request to the next.  Used on the server's thread.
 class PostBox {
  public:
@@ -88,7 +88,7 @@ std::string_view next_line(std::string_view& text) {
   return {};
 }
 
-/// Handles the first line of each request, which must be a hello.  A hello of another program
+/// Handles the first line of each request, which must be a hello.  A hello of another pusher
 /// begins a new session.
 Result<void> PostBox::greet(std::string_view line) {
   const auto read = read_push_message(line, nullptr);

@@ -1,4 +1,4 @@
-// `/push` takes frames by WebSocket or POST; GET shows which program pushes and what is wrong.
+// `/push` takes frames by WebSocket or POST; GET shows which pusher pushes and what is wrong.
 #pragma once
 
 #include <memory>

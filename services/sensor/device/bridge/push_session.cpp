@@ -10,7 +10,7 @@ namespace {
 // Leaves room for clock answers, and for frames beyond the rate.
 constexpr double kMessagesPerFrame = 4.0;
 constexpr int kFewExchanges = 8;
-// Many programs stamp in whole milliseconds; that rounding must not look like a contradiction.
+// Many pushers stamp in whole milliseconds; that rounding must not look like a contradiction.
 constexpr Duration kCoarseStamps = std::chrono::milliseconds(1);
 // The fusion server's limits for the times of sensors (proto/README.md, section 4).
 constexpr Duration kOldest = std::chrono::seconds(10);

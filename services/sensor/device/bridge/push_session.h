@@ -1,4 +1,4 @@
-// One pushing program, from its hello on.  Reads its messages, estimates its clock, and passes its
+// One pusher, from its hello on.  Reads its messages, estimates its clock, and passes its
 // frames to the desk.  No IO; not thread-safe.
 #pragma once
 
@@ -30,18 +30,18 @@ class PushSession {
   PushSession(const PushSession&) = delete;
   PushSession& operator=(const PushSession&) = delete;
 
-  /// Handles one message.  An error is sent to the program; lost() says whether it may continue
+  /// Handles one message.  An error is sent to the pusher; lost() says whether it may continue
   /// after that.
   [[nodiscard]] Result<Heard> hear(std::string_view message);
-  /// True when the program has sent too much, has been replaced, or has sent no hello that was
+  /// True when the pusher has sent too much, has been replaced, or has sent no hello that was
   /// accepted.
   [[nodiscard]] bool lost() const { return lost_; }
-  /// Human-readable: why the program leaves.
+  /// Human-readable: why the pusher leaves.
   void leave_because(std::string why) { why_ = std::move(why); }
 
   [[nodiscard]] const std::optional<Hello>& hello() const { return hello_; }
-  /// Call this after asking for the pusher's time. Until the program's first answer, but for a
-  /// second at most, frames are left out.
+  /// Call this after asking for the pusher's time.  Frames are then left out until the pusher's
+  /// first answer, but for a second at most.
   void expect_clock();
   /// True when the pusher should be asked for its time again soon: there have been too few answers,
   /// or they contradict each other.
