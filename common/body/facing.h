@@ -18,8 +18,8 @@ namespace chorus {
 /// Horizontal angle of the neck off the optical axis; none when the neck is not seen.
 [[nodiscard]] std::optional<double> bearing_angle(const Skeleton<SensorSpace>& body);
 
-/// The bearing of whichever joint on the centre axis is farthest off the optical axis; none when
-/// none of them is seen.
+/// Of the joints on the body's centre axis, the bearing that is farthest off the optical axis; none
+/// when none of these joints is seen.
 [[nodiscard]] std::optional<double> axis_bearing_angle(const Skeleton<SensorSpace>& body);
 
 /// Distance from the sensor to the neck [m]; none when the neck is not seen.

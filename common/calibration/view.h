@@ -27,8 +27,8 @@ struct PictureSize {
 };
 
 /// At most `most` views, as different from each other as possible in position, size and tilt of the
-/// board; in the original order.  Of views that hardly differ, as of a board that is not moved, one
-/// is taken.
+/// board; in the original order.  Only one is taken of views that hardly differ, for example while
+/// the board is held still.
 [[nodiscard]] std::vector<View> varied_views(const std::vector<View>& views, PictureSize size,
                                              std::size_t most);
 

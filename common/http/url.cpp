@@ -24,7 +24,7 @@ bool is_plain(std::string_view text) {
   return true;
 }
 
-/// True if `text` begins with `scheme` and is longer.
+/// True if `text` begins with `scheme`, in upper or lower case, and is longer.
 bool begins_with(std::string_view text, std::string_view scheme) {
   return text.size() > scheme.size() && equal_ignoring_case(text.substr(0, scheme.size()), scheme);
 }

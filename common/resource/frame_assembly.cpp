@@ -14,7 +14,7 @@
 namespace chorus::resource {
 namespace {
 
-/// A document states each time in two forms, which may differ by rounding, but not by more.
+/// A document states each time in two forms.  Rounding may make them differ by this much.
 constexpr Duration kTimeTolerance = std::chrono::milliseconds(1);
 
 tl::unexpected<Error> refuse(const SubjectFacts& subject, std::string_view property,

@@ -21,7 +21,8 @@ constexpr std::size_t kFewest = 8;
 constexpr double kNearest = 0.3;
 constexpr double kFarthest = 50.0;
 constexpr double kHuber = 1.5;  // Threshold of Huber's loss [standard deviations].
-// Joints farther off their rays are left out of the last pass of the fit [standard deviations].
+// Joints farther off their rays than this are left out of the last pass of the fit [standard
+// deviations].
 constexpr double kCut = 4.0;
 // Factor on the standard deviation of the shape for inferred joints.
 constexpr double kInferred = 2.0;

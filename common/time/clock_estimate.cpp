@@ -17,7 +17,7 @@ constexpr std::int64_t kMaxNs = 9'000'000'000'000'000'000;
 constexpr double kTolerance = 50e-6;  // Stamps may contradict each other by this much [s].
 // Number of exchanges that count; older ones are forgotten gradually.
 constexpr double kMostCounted = 1000.0;
-// Factor on the error of the smallest delays, which is about the mean excess delay divided by the
+// The error of the smallest delays is about this, times the mean excess delay, divided by the
 // number of exchanges.
 constexpr double kScatter = 4.0;
 

@@ -14,10 +14,9 @@ constexpr double kGlance = 1.5;
 constexpr double kManyViews = 4.0;
 constexpr double kUsual = 2.0;        // [s] in view after which a build is the person's usual one
 constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
-// Prior log odds that a person found at the expected place is the lost one.
+// Prior log odds that a person found after a gap, at the expected place, is the one from before it.
 constexpr double kContinuity = 1.5;
-// Log odds below which a person who was lost and found is not published while the builds are
-// compared.
+// Log odds below which a person found after a gap is not published while the builds are compared.
 constexpr double kUnlikely = -0.5;
 // A newcomer not recognised within this time plus config.recognise is taken for a new person.
 constexpr Duration kNoBones = std::chrono::seconds(2);
@@ -98,7 +97,7 @@ bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& trac
   return looked_at || new_to_all || track.seen - track.found > kNoBones + config.recognise;
 }
 
-/// Compares the build of a person lost and found with that of the lost person.
+/// Compares the builds from before and after the gap, of a person who was found again.
 void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
   const double odds = kContinuity + likeness(*track.before, track.build, tracks.repeatability);
   const bool looked_at = is_looked_at(track.build, config);

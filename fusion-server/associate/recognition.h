@@ -2,9 +2,9 @@
 //
 // While people are missing, a newcomer is not published until it is decided whether the newcomer is
 // one of them: usually after AssociationConfig::recognise in view, sooner if many sensors see the
-// newcomer or the builds differ too much. A person who was lost and found keeps the id while the
-// builds are compared. If the builds show that they are different people, the id goes back to the
-// lost one.
+// newcomer or the builds differ too much.  A person who is found again after a gap keeps the id
+// while the builds before and after the gap are compared.  If they are the builds of two people,
+// the person found gets a new id, and the one from before the gap becomes missing under the old id.
 #pragma once
 
 #include "fusion-server/associate/association_config.h"

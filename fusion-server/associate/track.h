@@ -28,10 +28,11 @@ struct Track {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
   /// The bodies that sensors showed when the person was last seen.
   std::vector<Footprint> footprints = {};
-  /// Number of consecutive instants at the spot of another track, one that would be kept in a
-  /// merger, without a common sensor.
+  /// For how many instants in a row another track, which a merger would keep, has been on the same
+  /// spot without a sensor that sees both.
   int shadowed = 0;
-  Located joints;  ///< Positions of the joints when last seen; known while cameras show rays.
+  /// Positions of the joints when the person was last seen; empty if no view then was a ray body.
+  Located joints;
   bool admitted = false;  ///< True if the track may be published; it stays true.
   /// True once a sensor has looked at the person's place without seeing the person.
   bool doubted = false;
@@ -40,8 +41,8 @@ struct Track {
   Duration through{0};
   Build build = {};   ///< Learned since the person was found, or found again.
   Build second = {};  ///< The same, of the current second in view.
-  /// Set if the person was lost and found: the build of the lost one; `lost` is when they were
-  /// lost.  It has not been decided yet whether the two are the same person.
+  /// Set while it is not decided whether the person found after a gap is the one from before it:
+  /// the build from before the gap.  `lost` is when the gap began.
   std::optional<Build> before = {};
   Timestamp lost = {};
   /// True if the id is settled: the person is not one of those missing, or was recognised as one.

@@ -77,7 +77,7 @@ void update_velocity(Track& track, std::vector<Footprint> prints, const Eigen::V
   track.footprints = std::move(prints);
 }
 
-/// Notes that a person found after a gap has to be compared with the lost one.
+/// After a gap: notes that the build now has to be compared with the build from before the gap.
 void question(Track& track, Timestamp instant, const AssociationConfig& config) {
   if (track.hits == 0 || instant - track.seen <= config.question) return;
   if (!track.before && sight_of(track.build) >= kKnown) {

@@ -13,7 +13,8 @@ constexpr const char* kWait = "wait=5";
 constexpr std::chrono::milliseconds kAfterFailure{250};
 // Pause for a resource that cannot wait: it answers with 304 at once, or has no ETag.
 constexpr std::chrono::milliseconds kAfterNothing{10};
-// A number that is farther below the newest one is no late frame: the device counts from the start.
+// A number that is farther below the newest one than this is no late frame: the device counts from
+// the start again.
 constexpr std::uint64_t kLateWithin = 100;
 
 }  // namespace

@@ -14,7 +14,7 @@ const Extrinsics* place_in(const Registration& registration, const SensorId& sen
   return found == registration.sensors.end() ? nullptr : &found->second;
 }
 
-/// None if the covariance is not known, as of registrations from a file.
+/// None if the covariance is not known, for example because the registration is from a file.
 std::optional<double> radius_of(const Registration& registration, const SensorId& sensor) {
   const Extrinsics* place = place_in(registration, sensor);
   if (place == nullptr) return std::nullopt;

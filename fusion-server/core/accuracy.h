@@ -1,4 +1,4 @@
-// How well a solve places each sensor, alone and beside the registration in use.
+// How well a solve places each sensor, by itself and compared with the registration in use.
 #pragma once
 
 #include <vector>

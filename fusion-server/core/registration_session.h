@@ -62,8 +62,8 @@ class RegistrationSession {
   /// Adds a frame; one without bodies only shows that nobody is in view.
   void add(const SensorFrame& frame);
 
-  /// The kind of solve of walk() that should run now; a solve that is due is returned only once.
-  /// After Final the session no longer collects.
+  /// Which solve should run now on what walk() gives; none if none is due.  Each solve is returned
+  /// once.  After Final the session no longer collects.
   [[nodiscard]] std::optional<SolveKind> due();
   [[nodiscard]] bool final_due() const noexcept { return collecting_ && elapsed_ >= target_; }
   /// Takes the duration of the last solve; the next provisional one waits at least three times as

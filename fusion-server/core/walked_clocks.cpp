@@ -10,11 +10,11 @@ constexpr Duration kBeforeTrust = std::chrono::seconds(3);
 constexpr Duration kSilence = std::chrono::seconds(1);
 // A frame may be younger than all before by less than this through chance.
 constexpr Duration kJitter = std::chrono::milliseconds(20);
-constexpr Duration kSetBack =
-    std::chrono::milliseconds(100);  // a link may delay frames by less for seconds
-constexpr int kBelieved = 3;         // younger frames in a row
-// A smaller change of the correction is not applied.  The clock offsets found from a walk are
-// accurate to twice this.
+// A link may delay frames by less than this for seconds.
+constexpr Duration kSetBack = std::chrono::milliseconds(100);
+constexpr int kBelieved = 3;  // younger frames in a row
+// A change of the correction that is smaller than this is not applied.  The clock offsets found
+// from a walk are accurate to twice this.
 constexpr Duration kWorthIt = std::chrono::milliseconds(2);
 
 /// The walk's clock offset, plus the change of the least age since the walk.

@@ -15,7 +15,7 @@ struct Standing {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< Sensor to neck; d of Eq. (1).
   double facing = std::numeric_limits<double>::quiet_NaN();    ///< phi of Eq. (2).
   double bearing = std::numeric_limits<double>::quiet_NaN();   ///< alpha of Eq. (3), of the neck.
-  /// The bearing of the joint on the centre axis that is farthest off the optical axis.
+  /// Of the joints on the body's centre axis, the bearing that is farthest off the optical axis.
   double axis_bearing = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -1,7 +1,7 @@
 // Hidden Markov model of one person's sides (docs/papers/sides.md): two bits for the person and one
 // for each view.
 //
-//   sign       whether the held sides are the true ones or the opposite
+//   sign       whether the held sides (see labels.h) are the true ones or the opposite
 //   backwards  whether the person walks backwards
 //   exchanged  one per view: whether this sensor has exchanged left and right (labels.h)
 //

@@ -14,9 +14,9 @@ namespace chorus::facing {
 namespace {
 
 constexpr double kClear = 2.0;  // Log odds above which one view alone counts as certain.
-// Sum of the views' |log odds|; with less, no view shows left and right.
+// If the sum of the views' |log odds| is less than this, no view shows left and right.
 constexpr double kBlind = 1.0;
-constexpr double kInNoDoubt = deg(45);  // [rad]; spans that differ by less have the same sign.
+constexpr double kInNoDoubt = deg(45);  // Spans that differ by less than this have the same sign.
 constexpr double kFrameTime = 0.033;    // [s]; the labels of one frame count as one observation.
 
 /// Everything that the model computes for one person at one instant.

@@ -5,7 +5,7 @@
 namespace chorus::facing {
 namespace {
 
-// A longer step does not have a single speed.
+// Longest step between two instants to which a single speed is given.
 constexpr Duration kMaxStep = std::chrono::milliseconds(300);
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace chorus::fusion {
 namespace {
 
 constexpr double kRests = 0.5;        // [s] mean time that a point stays at rest, or in motion
-constexpr double kSetsOff = 4.0;      // [s] the same of a point that nobody sees
+constexpr double kSetsOff = 4.0;      // [s] mean time of either, of a point that nobody sees
 constexpr double kLeastShare = 1e-3;  // smallest probability of a model: neither is ever excluded
 constexpr double kReach = 3.5;        // [standard deviations] farther measurements are clipped
 constexpr double kDimensions = 3.0;

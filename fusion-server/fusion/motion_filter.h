@@ -28,7 +28,7 @@ struct PointMotion {
 
 class MotionFilter {
  public:
-  /// After a longer time without measurements the filter starts over.
+  /// After a time longer than this without measurements, the filter starts anew.
   static constexpr Duration kForgotten = std::chrono::milliseconds(1000);
 
   struct Densities {

@@ -19,7 +19,7 @@ inline constexpr double kFirstSpeed = 1.0;
 /// Accepts measurements at any times, in order.
 class PointFilter {
  public:
-  /// After a longer time without measurements the filter starts over.
+  /// After a time longer than this without measurements, the filter starts anew.
   static constexpr Duration kForgotten = std::chrono::milliseconds(500);
 
   explicit PointFilter(double density) : density_(density) {}  ///< [m^2 / s^3]

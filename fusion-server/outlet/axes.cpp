@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kMetresPerFoot = 0.3048;
-// Sine of the middle angle beyond which the other two axes coincide.
+// Beyond this sine of the middle angle, the other two axes are taken to coincide.
 constexpr double kGimbal = 1.0 - 1e-12;
 
 Axes axes(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& z,

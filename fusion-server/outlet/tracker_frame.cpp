@@ -14,7 +14,7 @@ namespace chorus::outlet {
 namespace {
 
 constexpr Duration kMaxPrediction = std::chrono::milliseconds(50);
-/// After a longer gap, the velocities start over.
+/// After a gap longer than this, the velocities are computed anew.
 constexpr Duration kMaxStep = std::chrono::milliseconds(250);
 /// Exponential smoothing of the velocities: the weight of the newest difference.
 constexpr double kNewest = 0.5;

@@ -173,7 +173,8 @@ std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
   return listed;
 }
 
-/// Removes bodies without joints, as of a person whom only single rays have shown for a while.
+/// Removes bodies without joints.  Such a body belongs, for example, to a person whom only one
+/// camera without depth has seen for a while.
 void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Person>& people) {
   const auto of_rays = [](const SensorView& view) { return has_rays_alone(view.skeleton.joints); };
   std::erase_if(bodies, [&](const FusedBody& body) {

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kMaxWalkers = 60'000;  // This many bodies need 100 MB.
 // Frames with several people are used for the floor only, because they show where the feet are.
 constexpr std::size_t kMaxSeveral = 10'000;
-/// A longer gap does not count as time in which a person was seen.
+/// A gap longer than this does not count as time in which a person was seen.
 constexpr Duration kNextSight = std::chrono::seconds(1);
 
 }  // namespace

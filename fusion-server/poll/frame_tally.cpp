@@ -7,9 +7,10 @@ namespace {
 
 constexpr Duration kWindow = std::chrono::seconds(2);
 constexpr Duration kMinSpan = std::chrono::milliseconds(500);
-/// After a longer pause, the rate starts over.
+/// After a pause longer than this, the rate is 0; it is computed anew once frames come again.
 constexpr Duration kPause = std::chrono::seconds(1);
-/// Missing frames of half a minute; after a longer gap, counting starts over.
+/// As many frames as come in half a minute at 30 Hz.  A larger gap in the sequence means that the
+/// sensor started again: its frames do not count as missed.
 constexpr std::uint64_t kMaxGap = 900;
 
 constexpr std::size_t kAges = 32;

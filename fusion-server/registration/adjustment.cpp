@@ -19,13 +19,13 @@ constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its c
 constexpr int kIterations = 40;
 // Each with a new scale for Tukey's weights; the first with the points as seen, then whitened.
 constexpr int kRounds = 3;
-// The errors of joints are taken to last no longer [s]; see docs/decisions/0078.
+// Longest time that the errors of joints are taken to last [s]; see docs/decisions/0078.
 constexpr double kLongestMemory = 0.6;
-// [rad], [m]: an iteration that moves no sensor by more ends the last round.
+// The last round ends with an iteration that moves no sensor by more than this [rad], [m].
 constexpr double kSettled = 1e-6;
-// [rad], [m]; the same for the rounds before, after which the scale is computed again.
+// Each earlier round ends with an iteration that moves no sensor by more than this [rad], [m].
 constexpr double kNearly = 1e-4;
-// With more terms, only a part of the points is used for the bias.
+// With more terms than this, only a part of the points is used for the bias.
 constexpr std::size_t kBiasTerms = 1'000'000;
 constexpr double kRidge = 1e-6;  // keeps the equations solvable where nothing is measured
 // Sigma with which the master's yaw and its position on the floor are held [rad], [m].
@@ -260,7 +260,8 @@ PlaceEquations equations_of(Adjustment& adjustment) {
   return equations;
 }
 
-/// Inverse information, with separate variance factors along the floor and upwards.
+/// The inverse of the information.  Yaw and position on the floor have one variance factor, tilt
+/// and height another.
 Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
   PlaceEquations equations = walk_equations(adjustment);
   Eigen::VectorXd shrink(adjustment.size());

@@ -18,8 +18,9 @@ constexpr double kFeetAbove = 0.60;    // [m] feet that stay higher than this co
 constexpr double kLowestShare = 0.10;  // percentile of the feet's heights that counts as the floor
 constexpr double kViewIsVertical =
     0.05;  // if the horizontal part of the viewing direction is smaller, the yaw is kept
-constexpr double kFarTilt = deg(1.5);      // floors that deviate more from the median are left out
-constexpr double kFarHeight = 0.05;        // [m] the same for heights
+// Floors whose tilt or height deviates more than this from the median are left out.
+constexpr double kFarTilt = deg(1.5);
+constexpr double kFarHeight = 0.05;        // [m]
 constexpr double kFootJointHeight = 0.05;  // [m] height of the lowest foot joint above the sole
 
 constexpr std::array kFeet{JointId::AnkleLeft, JointId::AnkleRight, JointId::FootLeft,

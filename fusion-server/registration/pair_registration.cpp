@@ -263,8 +263,9 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& cloud) {
   return sum / static_cast<double>(std::max<std::size_t>(1, cloud.size()));
 }
 
-/// Applies the floor's height, pitch and roll afterwards (the paper's "floor plane estimation
-/// compensates").  The centre of the clouds stays where ICP has put it, whatever tilt is removed.
+/// Removes height, pitch and roll from the result of ICP, because both spaces are levelled already
+/// (the paper's "floor plane estimation compensates").  `middle`, the centre of the source's cloud,
+/// stays where ICP has put it on the floor.
 Eigen::Isometry3d on_the_floor(const Eigen::Isometry3d& level_from_level,
                                const Eigen::Vector3d& middle) {
   Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();

@@ -8,7 +8,7 @@ namespace chorus::registration {
 namespace {
 
 constexpr std::size_t kAllPairs = 12;  // up to this many sensors, all pairs are tried
-// With more sensors, each one chooses this many partners.
+// With more than kAllPairs sensors, each one chooses this many partners.
 constexpr std::size_t kPartners = 8;
 // Two sensors that saw the person in the same bin count as having seen the person together.
 constexpr auto kBin = std::chrono::seconds(1);

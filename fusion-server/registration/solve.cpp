@@ -160,8 +160,8 @@ struct Placed {
   Matrix6 covariance = Matrix6::Zero();
 };
 
-/// Levels the world again.  Where no floor was measured, little holds it while sensors are
-/// adjusted.
+/// Levels the world again.  Where no floor was measured, the world may have tilted while sensors
+/// were adjusted.
 void level_by_bodies(const Work& work, const Places& places, std::map<SensorId, Placed>& all) {
   const auto floor = floor_by_bodies(work, places);
   if (!floor) return;

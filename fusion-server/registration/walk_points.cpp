@@ -17,7 +17,7 @@ constexpr Duration kFrame = std::chrono::milliseconds(33);
 constexpr double kAside = 0.3;
 // A point that moves less than this has no direction [m].
 constexpr double kLeastWay = 0.06;
-// Two points of a slot farther apart are not successive [s].
+// Two points of a slot that are farther apart than this are not successive [s].
 constexpr double kSuccessive = 0.5;
 // The largest correlation of successive errors.
 constexpr double kMostAlike = 0.98;

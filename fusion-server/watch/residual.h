@@ -19,7 +19,8 @@ struct Residual {
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();
   double distance = 0.0;   ///< Horizontal distance from the sensor to the person [m].
   double direction = 0.0;  ///< Direction from the sensor to the person: atan2(x, z) in world [rad].
-  double front = 0.0;      ///< Angle from the direction to the sensor to the person's front [rad].
+  /// The person's yaw away from facing this sensor, positive about +y [rad].
+  double front = 0.0;
 };
 
 /// The middle of a person's trunk, median over the views; none if no view shows it.

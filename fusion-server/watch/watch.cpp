@@ -13,7 +13,7 @@ constexpr Duration kEvery = milliseconds(90);    // successive frames have nearl
 constexpr Duration kBlock = milliseconds(500);   // length of a block
 constexpr Duration kStale = milliseconds(1500);  // a block that takes longer is given up
 constexpr std::size_t kLeast = 3;                // fewest residuals in a block
-constexpr Duration kBreak = milliseconds(400);   // after a longer gap, a person starts over
+constexpr Duration kBreak = milliseconds(400);   // after a gap longer than this, a person is new
 constexpr double kSmoothing = 0.5;               // [s]
 constexpr double kWalking = 0.25;                // [m/s]
 /// The largest shift must exceed the others by this factor, because a moved sensor also shifts the

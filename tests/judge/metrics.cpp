@@ -32,12 +32,12 @@ double usual_step(const Answers& answers) {
   return chorus::median(std::move(steps));
 }
 
-/// A joint seen at two successive instants.
+/// How far a joint that is seen at two successive instants moved between them.
 struct Step {
   std::size_t joint = 0;
-  double dt = 0.0;  ///< [s]
-  Eigen::Vector3d stated;
-  Eigen::Vector3d exact;
+  double dt = 0.0;         ///< Time between the instants [s].
+  Eigen::Vector3d stated;  ///< According to the answers [m].
+  Eigen::Vector3d exact;   ///< In truth [m].
 };
 
 template <class Visit>

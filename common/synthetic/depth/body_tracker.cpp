@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostTracks = 6;    // As a Kinect v2.
 constexpr std::size_t kMostPoints = 400;  // Number of a person's points that the fit uses.
-// With fewer points of a body, the frame counts as poor for it.
+// With fewer points of a body than this, the frame counts as poor for it.
 constexpr std::size_t kFewPoints = 40;
 constexpr std::size_t kNewPoints = 120;  // Least number of points of a new person.
 constexpr int kRounds = 4;

@@ -9,7 +9,8 @@ namespace chorus::synthetic::depth {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-constexpr double kEdge = 0.10;  // Neighbouring pixels whose depths differ by more form an edge [m].
+// Neighbouring pixels whose depths differ by more than this form an edge [m].
+constexpr double kEdge = 0.10;
 
 struct Patch {
   int left, right, top, bottom;  ///< Pixels, right and bottom exclusive.

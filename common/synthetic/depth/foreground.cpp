@@ -11,7 +11,7 @@ constexpr double kFloorBand = 0.05;  // Everything lower counts as floor [m].
 constexpr double kHighest = 2.4;     // Nobody reaches higher [m].
 // Largest difference of depth between neighbouring pixels of one surface [m].
 constexpr double kJoined = 0.10;
-// A pixel with fewer neighbours (of eight) on its surface is stray.
+// A pixel is stray if fewer of its eight neighbours than this are on its surface.
 constexpr int kLeastNeighbours = 3;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 

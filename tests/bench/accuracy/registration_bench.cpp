@@ -336,7 +336,7 @@ void measure_ablations(Report& report, const std::string& profile) {
   measure(report, ablation);
 }
 
-/// What `--only` can ask for beside the cases.
+/// What `--only` can ask for in addition to the cases.
 struct Part {
   std::string_view name;
   std::vector<std::string> profiles;

@@ -30,7 +30,7 @@ class TlsRawClient {
     return seal_.write(text) == tls::Seal::Step::Done && raw_.say(seal_.take_output());
   }
 
-  /// Reads until `text` arrives, or the end; returns everything unread.
+  /// Reads until `text` arrives or the stream ends; returns what was read.
   std::string hear_until(std::string_view text) {
     std::string all;
     std::array<char, 4096> room;

@@ -274,7 +274,8 @@ TEST(Sides, ThatSlippedArePutRightBySensorsThatTellFrontFromRear) {
   EXPECT_FALSE(right_after_a_slip({{deg(130), deg(55)}}));
 }
 
-/// All joints beside the spine drawn towards it, as by a tracker that changes its labels.
+/// The body with the joints of both sides drawn towards the spine, as by a tracker that changes its
+/// labels.
 Skeleton<WorldSpace> drawn_together(Skeleton<WorldSpace> body, double share) {
   for (const auto& [left, right] : kMirrorPairs) {
     const Eigen::Vector3d middle = 0.5 * (body[left].position + body[right].position);

@@ -51,7 +51,8 @@ TEST(PointsAndRays, TwoRaysMakeAJointWithItsContributors) {
 }
 
 TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
-  // Two sensors are needed: what a single source states counts as already fused.
+  // Two sensors are needed: a single view that states all covariances is taken for a body that
+  // somebody else has fused already.
   const auto person = [](double along, double across) {
     const Eigen::Vector3d sigma(across, across, along);
     Person seen{PersonId{1}, {}};

@@ -83,7 +83,7 @@ TEST(BlockScores, OfSomeParametersLeaveTheOthersOut) {
     blocks.add(Eigen::MatrixXd::Identity(2, 2), Eigen::Vector2d(i % 2 == 0 ? 1.0 : -1.0, 0.0));
   }
   constexpr std::array<Eigen::Index, 1> kOther{1};
-  // Four scores of 1, over an information of 4: 4 * 1 / 4, divided by 1 - 4 (1 / 4)^2.
+  // Four blocks with g_b = +-1 and H_b = 1, so H = 4: v = (4 * 1 / 4) / (1 - 4 (1 / 4)^2).
   EXPECT_NEAR(blocks.factor(kOnly, {}), 1.0 / 0.75, 1e-6);
   EXPECT_LT(blocks.factor(kOther, {}), 1e-3);
 }

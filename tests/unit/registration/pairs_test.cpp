@@ -197,7 +197,7 @@ TEST(TrailOf, LeavesOutBodiesThatNeverMove) {
   for (std::size_t i = 0; i < half / 2; ++i)
     walk.frames[i].bodies.erase(walk.frames[i].bodies.begin());
   const Trail trail = trail_of(walk, JointChoice::Core);
-  // Beside the statue the person counts; the statue alone does not.
+  // The person counts although the statue is in view; the statue alone does not.
   EXPECT_EQ(trail.frames.size(), walk.frames.size() - half / 2);
   for (const TrailFrame& frame : trail.frames) EXPECT_EQ(frame.body, BodyId{1});
 }

@@ -86,8 +86,8 @@ class Room : public ::testing::Test {
     return view;
   }
 
-  /// Makes the view one of a camera that guesses depth, and says so: it errs by 0.5 m, some seconds
-  /// one way and some the other.
+  /// Turns the view into that of a camera that guesses depth: points move along their rays by up to
+  /// 0.5 m, slowly to and fro, and their covariances state that the depth is hardly known.
   void guess(SensorView& view) const {
     const double off = 0.5 * std::sin(0.2 * seconds_of(now_ - kStart));
     for (Joint& joint : view.skeleton.joints) {

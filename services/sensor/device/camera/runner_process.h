@@ -60,9 +60,9 @@ class RunnerProcess {
 
   std::string name_;  ///< Name in messages.
   pid_t pid_ = -1;
-  int input_ = -1;  ///< Our end of the process's standard input; of its output and error below.
-  int output_ = -1;
-  int errors_ = -1;
+  int input_ = -1;   ///< Our end of the pipe to the process's standard input.
+  int output_ = -1;  ///< Our end of the pipe from its standard output.
+  int errors_ = -1;  ///< Our end of the pipe from its standard error.
   bool ended_ = false;
   int status_ = 0;
   std::string heard_;  ///< Output that has not been returned yet.
