@@ -1,9 +1,9 @@
 // Reads JSON with // comments into a plain struct and reports every mistake.
 //
 //   auto root = ConfigReader::parse(text, "deploy/config/fusion.json");
-//   root->read("port", config.port);
+//   root->read("port", config.port, 0, 65535);
 //   auto quality = root->child("quality");
-//   quality.read("best_distance_m", config.quality.best_distance);
+//   quality.read("best_distance_m", config.quality.best_distance, 0.5, 8.0);
 //   if (auto ok = root->finish(); !ok) return pass(ok);   // unknown keys, wrong types, ranges
 //
 // An absent key leaves the default unchanged.  finish() reports all problems at once: unknown keys

@@ -1,8 +1,8 @@
 // Errors: why an operation failed.  They are for operations that are expected to fail sometimes.
 //
 // An Error holds what went wrong (code), where (context: a URI, a config key path, a joint, a file
-// and line) and what to change (message: a full, human-readable sentence).  Every code maps to one
-// HTTP status.
+// and line), and the reason or what to change (message: human-readable, to be read after the
+// context: "walk.mcap: is a folder").  Every code maps to one HTTP status.
 #pragma once
 
 #include <string>

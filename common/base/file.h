@@ -10,8 +10,8 @@
 
 namespace chorus {
 
-/// The file's bytes.  NotFound when the file does not exist, TooLarge when it has more than
-/// max_bytes; a pipe is read to its end.
+/// The file's bytes; a pipe is read to its end.  NotFound when the file does not exist, TooLarge
+/// when it has more than max_bytes, Io when it is a folder or cannot be read.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::uintmax_t max_bytes);
 

@@ -27,8 +27,8 @@ struct Url {
   bool secure = false;  ///< https
 };
 
-/// Parses http://host[:port][/path][?query], or https:// with 443 as the default port; anything
-/// else is InvalidArgument.
+/// Parses http://host[:port][/path][?query], or https:// with 443 as the default port.  A fragment
+/// ("#...") is dropped; anything else is InvalidArgument.
 [[nodiscard]] Result<Url> parse_url(std::string_view text);
 
 /// "https://host:port/path", with `target` as the path.

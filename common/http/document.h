@@ -68,7 +68,8 @@ class Document {
 
   /// Chooses a representation by RFC 9110 12.5.1; without an Accept, the first variant of the
   /// profile. NotAcceptable, with a list of the available types, if none is acceptable; NotFound
-  /// for an unknown profile.  Coding::Gzip compresses where that is worth it, once for all clients.
+  /// for an unknown profile; Internal if the variant cannot be rendered.  Coding::Gzip compresses
+  /// where that is worth it, once for all clients.
   [[nodiscard]] Result<const Rendered*> choose(std::string_view accept,
                                                std::string_view profile = {},
                                                Coding coding = Coding::Identity) const;

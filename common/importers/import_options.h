@@ -37,7 +37,7 @@ inline constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 inline constexpr BodyId kOnlyBody{1};
 
 struct ImportOptions {
-  std::optional<SensorId> sensor;   ///< None: sensor_named_after(file).
+  std::optional<SensorId> sensor;   ///< For a single input only.  None: sensor_named_after(file).
   std::optional<FloorPlane> floor;  ///< In sensor space; put into every frame.
   /// If not empty, one for each input; `floor` is then ignored.
   std::vector<FloorPlane> floors = {};
@@ -47,14 +47,15 @@ struct ImportOptions {
   ImportLimits limits;
 };
 
-/// "data/Ges01_wavehand.csv" -> Ges01_wavehand; characters other than [A-Za-z0-9_-] become '-'.
+/// "data/Ges01_wavehand.csv" -> Ges01_wavehand.  Characters other than [A-Za-z0-9_-] become '-',
+/// and what follows the first 64 characters is cut off.
 [[nodiscard]] Result<SensorId> sensor_named_after(const std::filesystem::path& file);
 
 /// The sensor in the options, if set; otherwise sensor_named_after(file).
 [[nodiscard]] Result<SensorId> sensor_for(const std::filesystem::path& file,
                                           const ImportOptions& options);
 
-/// Reads "a,b,c,d" as the plane a x + b y + c z + d = 0 in sensor space, normal up.
+/// Reads "a,b,c,d" as the plane a x + b y + c z + d = 0 in sensor space; the normal is turned up.
 [[nodiscard]] Result<FloorPlane> parse_floor(std::string_view text);
 
 }  // namespace chorus::importers

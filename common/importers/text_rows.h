@@ -20,7 +20,8 @@ inline constexpr std::string_view kBlanks = " \t\r";
 /// The text without the blanks at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text, std::string_view blanks = kBlanks);
 
-/// Reads a whole file; refuses one that is larger than max_bytes, missing, or not a regular file.
+/// Reads a whole file; refuses one that is larger than max_bytes, missing, not a regular file,
+/// packed with gzip, or a recording (MCAP).
 [[nodiscard]] Result<std::string> read_bounded(const std::filesystem::path& file,
                                                std::uintmax_t max_bytes);
 

@@ -25,9 +25,9 @@ struct FrameRecording {
   std::vector<SensorFrame> frames;
 };
 
-/// Writes a recording; replaces `path` only after the whole file has been written.  A frame without
-/// a floor plane is read back with that of the frame before it, the first one with
-/// `recording.floor`.
+/// Writes a recording; replaces `path` only after the whole file has been written.  Malformed if
+/// the frames go back in time or repeat a capture time.  A frame without a floor plane is read back
+/// with that of the frame before it, the first one with `recording.floor`.
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 

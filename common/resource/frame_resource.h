@@ -57,9 +57,9 @@ struct FrameResource {
 inline constexpr double kRayTolerance = 0.01;
 
 /// Writes the default (compact) profile.  A joint whose position is not finite or not plausible is
-/// written as not tracked, without a position; such an orientation, variance or covariance is left
-/// out.  Turtle and JSON come from templates; tests prove that their output is isomorphic to the
-/// Serd writer's.
+/// written as not tracked, without a position.  Such a variance or covariance is left out, and so
+/// is an orientation that is zero or not finite; one of a wrong length is normalised.  Turtle and
+/// JSON come from templates; tests prove that their output is isomorphic to the Serd writer's.
 [[nodiscard]] std::string write(const FrameResource& frame, Format format, const Place& place = {});
 
 /// Writes the full ARVIDA pattern (proto/README.md, profile "arvida") in Turtle or N-Triples.
@@ -78,7 +78,7 @@ inline constexpr double kRayTolerance = 0.01;
 [[nodiscard]] Result<FrameResource> read_frame(std::string_view bytes, Format format);
 
 /// Convert between a sensor's frame and its resource.  `received` is not on the wire, so the reader
-/// supplies it.
+/// supplies it; neither are `floor` and `clock_sigma`, so a frame that was read has none.
 [[nodiscard]] FrameResource to_resource(const SensorFrame& frame);
 [[nodiscard]] SensorFrame to_sensor_frame(const FrameResource& frame, SensorId sensor,
                                           Timestamp received);

@@ -37,7 +37,7 @@ struct ClockEstimate {
 inline constexpr double kUnknownClock = 0.5;
 
 /// Standard deviation of a corrected stamp [s], assuming that the error is uniform within its
-/// bound.
+/// bound; kUnknownClock without an estimate.
 [[nodiscard]] double clock_sigma(const std::optional<ClockEstimate>& estimate);
 
 struct ClockFilterLimits {

@@ -17,7 +17,8 @@ enum class Method {
   Mean,      ///< Unweighted mean of the seen joints.
   BestView,  ///< Only the view of highest weight; of equal ones, that with more tracked joints.
   InverseVariance,  ///< Anisotropic inverse variance along and across the line of sight, robust.
-  BestSkeleton,     ///< One view alone; switches only after `hysteresis`.  Has memory.
+  BestSkeleton,     ///< One view alone.  While it lasts, a better one takes over only after
+                    ///< `hysteresis`.  Has memory.
   JointCounting,    ///< Only the view with the most tracked joints.
   Substitution,     ///< The best skeleton, untracked joints from other views.  Has memory.
   OttoKalman,       ///< A Kalman filter per joint with Otto's weights in R.  Has memory.
@@ -33,7 +34,8 @@ struct FusionConfig {
   double zero_weight_floor = 0.02;
   NoiseModel noise;  ///< For sensors without an entry of their own.
   std::map<SensorId, NoiseModel> sensor_noise;
-  /// InverseVariance and BodyFilter add this to the covariance that they state.
+  /// InverseVariance and BodyFilter add this to the covariance that they state, for views that
+  /// state none themselves.
   PoseError pose_error;
   double common_sigma = 0.004;  ///< Error common to all sensors [m]; added to stated variances.
   /// Threshold of the robust loss [standard deviations]: of InverseVariance, of PointsAndRays, and
@@ -47,8 +49,8 @@ struct FusionConfig {
   /// joint's last position limits its depth when only one ray shows it.
   Duration kalman_coast = std::chrono::milliseconds(300);
 
-  /// PointsAndRays, BodyFilter: if rays alone leave a joint's position less certain than this [m],
-  /// it counts as open.
+  /// PointsAndRays, BodyFilter: rays alone do not determine a joint if they leave its position less
+  /// certain than this [m].
   double max_sigma = 0.15;
   BodyModel body;  ///< Parameters of BodyFilter.
 

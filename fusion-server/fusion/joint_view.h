@@ -34,7 +34,7 @@ struct FusedJoint {
 };
 
 /// One joint in every view of a person that measured a point for it; rays are left out.  Weights
-/// that are NaN become zero.
+/// are limited to [0, 1]; NaN becomes zero.
 [[nodiscard]] std::vector<JointView> joint_views_of(JointId joint, const Person& person,
                                                     const std::vector<SensorId>& sensors,
                                                     const ErrorModel& errors);

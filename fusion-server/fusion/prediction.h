@@ -9,8 +9,8 @@
 namespace chorus::fusion {
 
 /// The body `ahead` later; the body itself if `ahead` is not positive.  Without FusedBody::motion,
-/// nothing is known of velocities: the pose stays as it is and its covariance grows as if they were
-/// kFirstSpeed.
+/// nothing is known of velocities: the pose stays as it is, and its covariance grows as if the
+/// standard deviation of each velocity were kFirstSpeed.
 [[nodiscard]] FusedBody predicted(const FusedBody& body, Duration ahead);
 
 }  // namespace chorus::fusion

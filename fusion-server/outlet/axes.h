@@ -1,7 +1,8 @@
 // Axes and units of all output protocols.  Only this file converts them.
 //
-// Ours: world, right-handed, metres, +y up, +z in the master sensor's viewing direction (towards
-// the far wall), Hamilton quaternions.  docs/guide/outputs.md describes the wire formats.
+// Ours: world, right-handed, metres, +y up, +z in the master sensor's viewing direction unless
+// `chorus origin` has turned the world, Hamilton quaternions.  docs/guide/outputs.md describes the
+// wire formats.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -42,9 +42,9 @@ struct OutletTiming {
   std::shared_ptr<const Clock> clock;
 };
 
-/// Passes frames to the outlet on a thread of its own.  When the outlet is two frames behind, the
-/// oldest frame is dropped and counted; the pipeline never waits.  An exception from the outlet is
-/// logged and counted as failed; only that frame is lost.
+/// Passes frames to the outlet on a thread of its own.  When two frames wait for the outlet and
+/// another comes, the older of the two is dropped and counted; the pipeline never waits.  An
+/// exception from the outlet is logged and counted as failed; only that frame is lost.
 class OutletSink final : public Sink {
  public:
   OutletSink(std::unique_ptr<Outlet> outlet, OutletTiming timing);

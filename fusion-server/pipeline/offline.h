@@ -32,9 +32,10 @@ struct OfflineInput {
 /// Takes each snapshot; an error stops the fusion.
 using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 
-/// Registers the sensors from the first minutes in which one person is seen alone. If some sensors
-/// have no place after that, it uses further such minutes, until all have a place, the recordings
-/// end, or the frames need too much memory. Conflict, with reasons, when no registration is found.
+/// Registers the sensors from the first two minutes in which one person is seen alone.  If some
+/// sensors have no place after that, it uses two more such minutes at a time, until all have a
+/// place, the recordings end, or the frames need too much memory.  Conflict, with reasons, when no
+/// registration is found; InvalidArgument when there are no frames.
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 

@@ -24,8 +24,8 @@ struct PipelineConfig {
   facing::SidesConfig sides;
   fusion::FusionConfig fusion;
   SeatingConfig seating;
-  /// The sensors that can deliver; others with a place are as if they had none.  None given: all
-  /// with a place.
+  /// The sensors that are polled.  Of the sensors with a place, only these are in
+  /// Snapshot::sensors.  Not set: all with a place are.
   std::optional<std::set<SensorId>> polled = {};
 
   bool operator==(const PipelineConfig&) const = default;

@@ -12,8 +12,8 @@
 
 namespace chorus::registration {
 
-/// All frames of one sensor during the walk, in capture order.  Where their clock_sigma is more
-/// than a millisecond or two, the offset is estimated from the walk (time_offset.h).
+/// All frames of one sensor during the walk, in capture order.  Where the median of their
+/// clock_sigma is 2 ms or more, the clock offset is estimated from the walk (time_offset.h).
 struct WalkTrack {
   SensorId sensor;
   std::vector<SensorFrame> frames;
@@ -40,6 +40,8 @@ struct KnownDistance {
   bool operator==(const KnownDistance&) const = default;
 };
 
+/// If all sensors guess depth, solve() replaces the limits that such sensors cannot keep
+/// (suited_to() in guessed_depth.h).
 struct RegistrationConfig {
   PairMethod method = PairMethod::TimedRobust;
   JointChoice joints = JointChoice::Core;
@@ -48,10 +50,11 @@ struct RegistrationConfig {
   /// for a single camera that infers depth from the person's size.  If all sensors are such cameras
   /// and this is the default, 20 is used instead (guessed_depth.h).
   double along_ratio = 2.0;
-  Duration max_gap = std::chrono::milliseconds(60);  ///< Widest bracket for a correspondence.
-  double min_distance = 0.5;                         ///< [m]
-  double max_distance = 6.0;                         ///< [m]
-  double max_speed = 2.5;                            ///< No pairs while the person is faster [m/s].
+  /// Longest time between two frames from which a correspondence is interpolated.
+  Duration max_gap = std::chrono::milliseconds(60);
+  double min_distance = 0.5;   ///< No pairs while the person is nearer to either sensor [m].
+  double max_distance = 6.0;   ///< No pairs while the person is farther from either sensor [m].
+  double max_speed = 2.5;      ///< No pairs while the person is faster [m/s].
   std::size_t min_pairs = 60;  ///< With fewer correspondences there is no edge.
   double min_spread = 0.25;    ///< Narrower walks are refused [m].
   double max_edge_rms = 0.15;  ///< With larger residuals there is no edge [m].

@@ -107,7 +107,7 @@ class PipelineLoop {
   Counters counters_;
   Histogram age_;  ///< Time from instant to publication [s].
   Timestamp status_at_{};
-  Duration gathering_;  ///< At least this long apart, frames are taken.
+  Duration gathering_;  ///< Least time from taking frames to taking the next ones.
   std::chrono::steady_clock::time_point gathered_at_{};
   std::uint64_t displaced_ = 0;  ///< FusionCore::displaced() when it was last stored.
   std::uint64_t obeyed_ = 0;     ///< Ticket of the last command carried out.
