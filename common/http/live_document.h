@@ -16,8 +16,9 @@ class LiveDocument {
   /// Null until the first publish; until then the resource answers 503 with Retry-After.
   [[nodiscard]] DocumentPtr current() const;
   void publish(DocumentPtr next);
-  /// Publishes a document that `make` makes when it is first asked for.  Of what comes often and is
-  /// rarely read, such as the frames of every sensor.  `make` must not use this LiveDocument.
+  /// Publishes a document that `make` makes when it is first asked for.  Meant for what comes often
+  /// and is rarely read, such as the frames of every sensor.  `make` must not use this
+  /// LiveDocument.
   void publish_lazily(std::function<DocumentPtr()> make);
 
   /// `on_change` is called after each publish on the publisher's thread, so it should do no more

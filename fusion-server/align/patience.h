@@ -14,10 +14,10 @@ class Patience {
   /// `histories`: of all sensors that take part.
   Patience(const std::map<SensorId, const History*>& histories, const AlignConfig& config);
 
-  /// `config` with the patience for this sensor: the full patience or, if this sensor is unsteady
-  /// compared with the others, what the others usually need, except where each of at most two
-  /// cameras is needed for a body. (On a busy machine the delays of all sensors vary, and none is
-  /// unsteady.)
+  /// `config` with the patience for this sensor, normally the full patience.  A sensor that is
+  /// unsteady compared with the others gets only what the others usually need.  (On a busy machine
+  /// the delays of all sensors vary, and none is unsteady.)  An exception are one or two cameras
+  /// without depth and no other sensor: each of them is needed for a body.
   [[nodiscard]] AlignConfig of(const History& history) const;
 
   /// How much longer than `config.patience` an instant may wait because most of the sensors are
@@ -27,8 +27,8 @@ class Patience {
  private:
   AlignConfig config_;
   Duration patience_;        ///< The patience for steady sensors.
-  Duration common_;          ///< Median over the sensors of how long an instant usually waits for
-                             ///< each.
+  Duration common_;          ///< How long an instant usually waits for a sensor: the median over
+                             ///< the sensors.
   Duration steady_;          ///< A sensor with a wider spread is unsteady.
   bool all_needed_ = false;  ///< True if there are at most two sensors, and both show rays only.
 };

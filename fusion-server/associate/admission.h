@@ -28,12 +28,14 @@ class Admission {
   Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
             Duration elapsed, const AssociationConfig& config);
 
-  /// Sets `admitted` in three cases: several sensors see the track, and fewer than twice as many
-  /// miss it; or the track is confirmed, and no sensor that looks there has missed it; or it has
-  /// been seen for config.alone otherwise, mostly by one sensor alone. That time runs n times
-  /// slower while this sensor has n new bodies that only it sees. The time stops while the sensor
-  /// misses a published person whom several others see where it looks (the body is then taken for
-  /// that person, misplaced), and while seen_through() is true.
+  /// Sets `admitted` in three cases:
+  ///   - several sensors see the track, and fewer than twice as many miss it;
+  ///   - the track is confirmed, and no sensor that looks there has ever missed it;
+  ///   - otherwise, the track has been seen for config.alone, mostly by one sensor alone.
+  /// The time for config.alone runs n times slower while this sensor has n unpublished bodies that
+  /// only it sees.  It stops while seen_through() is true.  It also stops while several other
+  /// sensors see a published person where this sensor looks, and this one does not: its body is
+  /// then taken for that person, misplaced.
   void judge(Track& track) const;
 
   /// True if sensors on different sides look at `place` and see nobody there who could be the

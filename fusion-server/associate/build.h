@@ -41,15 +41,15 @@ struct Build {
 /// How long the person's build was in view [s]: the median over the lengths.
 [[nodiscard]] double sight_of(const Build& build);
 
-/// How much the builds of one person differ from one second in view to another with the sensors in
-/// use: ratios of variances to those of sensors that repeat lengths well, at least 1.  A sensor
-/// that guesses depth from size shows everybody larger or smaller by some percent for seconds.
+/// How badly the sensors in use repeat a person's build from one second in view to the next.  Each
+/// ratio, at least 1, is that of a variance to the variance of sensors that repeat lengths well.  A
+/// sensor that guesses depth from size shows everybody larger or smaller by some percent for
+/// seconds.  The ratios start high, because it needs good measurements to take an id away from
+/// somebody who stands where they were expected.
 struct Repeatability {
-  /// Until the sensors have shown better, they are taken for bad ones: to take an id away from
-  /// somebody who stands where they were expected needs good measurements.
-  double size = 6.0;
-  double lengths = 6.0;  ///< Of the lengths at the same size.
-  double seconds = 1.5;  ///< How many seconds the ratios are a mean of, those at first included.
+  double size = 6.0;     ///< Ratio for the size of the body.
+  double lengths = 6.0;  ///< Ratio for the lengths at the same size.
+  double seconds = 1.5;  ///< Seconds in view that the ratios average; at first, what they start as.
 
   /// Learns from `now`, a second in view of somebody whose build is known to be `usual`.
   void learn(const Build& now, const Build& usual);

@@ -38,7 +38,7 @@ class MeanPlace {
  public:
   void add(const Eigen::Vector3d& place, const PlanError& error);
   [[nodiscard]] bool empty() const { return count_ == 0.0; }
-  /// Requires a place.
+  /// Call this only after a place was added.
   [[nodiscard]] Eigen::Vector3d place() const;
   /// Zero if no place had an error.
   [[nodiscard]] PlanError error() const;

@@ -36,7 +36,8 @@ using TakeFrame =
                                              std::chrono::milliseconds listen,
                                              const TakeFrame& take);
 
-/// What make_take() needs of each_fused_frame().
+/// Reads all fused frames of `source`, as each_fused_frame() does, in the form that make_take()
+/// takes.
 [[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
                                                     std::chrono::milliseconds listen);
 

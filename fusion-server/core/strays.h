@@ -29,10 +29,10 @@ class Strays {
   void look(const Sights& sights, const associate::AssociationConfig& config);
 
   /// Since when the sensor has seen somebody, but none of the people whom others see.  None before
-  /// it has done so for ten seconds.  If it alone sees a published person, only instants count in
-  /// which either side misses the other's person where it certainly sees people: there may be two.
-  /// Seconds in which nobody is seen by it, or by the others, count neither way; one view of a
-  /// person whom others see too ends it.
+  /// it has done so for ten seconds.  One view of a person whom others see, too, ends it; time in
+  /// which this sensor or all others see nobody does not count.  While this sensor alone sees a
+  /// published person, there may be two people.  Then only those instants count in which each side
+  /// misses a person of the other side whom it would certainly see.
   [[nodiscard]] std::optional<Timestamp> since(const SensorId& sensor) const;
 
   void forget() { apart_.clear(); }
