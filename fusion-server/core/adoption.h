@@ -26,10 +26,11 @@ extern const char* const kContradicted;
 [[nodiscard]] bool should_replace(const Registration& current, const Registration& candidate,
                                   SolveKind kind);
 
-/// The current places, plus those of sensors that only the candidate places well or, at the end of
-/// a walk, that only it places at all; they are moved into the world of the held ones. NotFound:
-/// there is no such sensor, or one of the two registrations is refused or empty. Conflict, with
-/// kContradicted: the walk contradicts the places of the held sensors relative to one another.
+/// The current places, with the candidate's place for each sensor that only the candidate places
+/// well.  At the end of a walk, also for each sensor that only the candidate places at all.  Places
+/// from the candidate are moved into the world of the held sensors.  NotFound: there is no such
+/// sensor, or one of the two registrations is refused or empty.  Conflict, with kContradicted: the
+/// walk contradicts the places of the held sensors relative to one another.
 [[nodiscard]] Result<Registration> extended(const Registration& current,
                                             const Registration& candidate, SolveKind kind);
 

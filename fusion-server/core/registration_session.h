@@ -21,9 +21,9 @@ namespace chorus::core {
 struct SessionConfig {
   bool automatic = true;  ///< Sessions start by themselves when a sensor that sees a body has no
                           ///< place yet.
-  Adoption adoption = Adoption::AtOnce;        ///< Of sessions that clients start without saying.
+  Adoption adoption = Adoption::AtOnce;        ///< For sessions whose client does not choose one.
   Duration target = std::chrono::seconds(30);  ///< Length of walk until the final solve.
-  Duration first_solve = std::chrono::seconds(6);  ///< The same until the first provisional one.
+  Duration first_solve = std::chrono::seconds(6);  ///< Length of walk until the first solve.
   Duration solve_every = std::chrono::seconds(2);
   /// A longer pause with nobody in view does not count as walking.
   Duration max_pause = std::chrono::milliseconds(500);

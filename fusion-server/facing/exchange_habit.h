@@ -14,12 +14,13 @@ namespace chorus::facing {
 
 /// The prior for an unknown sensor.  It rarely swaps the sides of a person who faces it; beyond 75
 /// deg it swaps them, and swaps them back, with equal rates at every angle.  The rates are low, so
-/// labels that merely stay as they are prove almost nothing.
+/// labels that merely stay as they are prove almost nothing.  `..._out`: rate of becoming wrong;
+/// `..._back`: rate of becoming right again.
 struct HabitPrior {
-  double front_out = 0.002;  ///< [1/s] up to 45 deg.
-  double front_back = 0.1;   ///< [1/s]
-  double side_out = 0.005;   ///< [1/s] from 45 to 75 deg.
-  double side_back = 0.05;   ///< [1/s]
+  double front_out = 0.002;  ///< Up to 45 deg [1/s].
+  double front_back = 0.1;   ///< Up to 45 deg [1/s].
+  double side_out = 0.005;   ///< From 45 to 75 deg [1/s].
+  double side_back = 0.05;   ///< From 45 to 75 deg [1/s].
   double rear = 0.05;        ///< Both rates beyond 75 deg [1/s].
   /// The prior of `front_out` and `side_out` counts as this much observed time [s].
   double facing_time = 60.0;

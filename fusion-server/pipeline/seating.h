@@ -24,7 +24,7 @@ struct SeatingConfig {
 /// higher slot, and moves to the lowest of the reserved ones to which nobody returns: the newcomer
 /// may be the same person with a new id, several times over, and a protocol with one slot would
 /// otherwise show nobody any more.  When the clock is set back by more than the time for which
-/// slots are reserved, seating starts over, as association does.
+/// slots are reserved, seating begins anew, as association does.
 class Seating {
  public:
   /// Sets FusedBody::slot of each body; bodies beyond kMaxBodies get none.  `keep`: how long an

@@ -56,7 +56,7 @@ struct FrameAnswered {
   Duration rest{0};
 };
 struct FloorAnswered {
-  bool known = true;  ///< False after a server error, as while the sensor has no plane yet.
+  bool known = true;  ///< False after a server error, for example while the sensor has no plane.
 };
 struct KeptAnswered {
   bool there = false;  ///< True if the earlier frame was returned; it is then delivered.
