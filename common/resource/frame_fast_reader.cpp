@@ -125,7 +125,7 @@ class Template : TemplateText {
     return origin(joint);
   }
 
-  /// Which sensors the joint came from, their shares, and for how long there has been none.
+  /// The joint's contributors, their shares, and for how long there has been no contributor.
   bool origin(JointResource& joint) {
     if (text(" ;\n  ch:contributor ") && !subset(frame_.sensors, ", ", joint.contributors))
       return false;

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kRounds = 3;
 constexpr int kFirstWeighings = 5;  // re-weightings of a joint's views, starting from their mean
-// [rad]; noise alone has a view turned by so much.
+// A turn of a view that may be due to noise alone.
 constexpr double kSlightTurn = deg(5);
-constexpr int kWeighings = 2;  // the same, starting from the body held by its bones
+constexpr int kWeighings = 2;  // re-weightings that start from the body held by its bones
 
 Eigen::Matrix3d round_covariance(double variance) { return variance * Eigen::Matrix3d::Identity(); }
 

@@ -222,8 +222,8 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   // Sequences grow across restarts (no output is faster than 1 kHz), so that a cache never takes
   // /frames/{seq} or an ETag of an earlier run for ours.
   options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
-  // Ids of sessions grow too (none is shorter than a second), so that no client follows a session
-  // of another run.
+  // Ids of sessions grow across restarts, too, because no session is shorter than a second.  So no
+  // client follows a session of another run.
   options.core.first_session = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000'000);
   options.core.first_person = first_person(store);
   options.registration = std::move(initial.registration);

@@ -30,7 +30,7 @@ struct ColdScript {
   synthetic::Ring ring = {};  ///< The person comes in between two of its sensors.
 };
 
-/// Makes such a person, who is called with the time since 1970.
+/// Makes such a person, as a function of the time since 1970.
 [[nodiscard]] synthetic::Person cold_starter(const ColdScript& script);
 
 }  // namespace chorus::bench

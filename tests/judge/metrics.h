@@ -13,7 +13,8 @@
 
 namespace chorus::bench {
 
-/// One instant: the body that a method reports for a person, and the truth at the time it states.
+/// One instant: the body that a method reports for a person, and the truth at the time that the
+/// method states.
 struct Answer {
   Timestamp instant;
   Skeleton<WorldSpace> body;  ///< No joint is seen: the method reported nothing.

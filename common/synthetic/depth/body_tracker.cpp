@@ -42,7 +42,7 @@ constexpr double kBorder = 6.0;
 // Limits of a person's height [m].
 constexpr double kLeastHeight = 1.4;
 constexpr double kMostHeight = 2.05;
-// The height grows by this share of its difference to the seen height per frame.
+// In each frame the height grows by this share of what it lacks to the seen height.
 constexpr double kGrowth = 0.2;
 constexpr int kGrowing = 60;  // Frames in which the height is learned.
 // Points this near to the head node count for the height [m].
@@ -128,7 +128,8 @@ void learn_height(FittedBody& body, const std::vector<SurfacePoint>& points) {
   if (top > body.height) body.height += kGrowth * (std::min(top, kMostHeight) - body.height);
 }
 
-/// Swaps left and right of a body that seems to face away from the sensor, so that it faces it.
+/// If the body seems to face away from the sensor, swaps left and right, so that it faces the
+/// sensor.
 void believe_it_faces_us(FittedBody& body) {
   const auto facing = facing_angle(joints_of(body.now, body.height));
   if (!facing || std::abs(*facing) <= kExchange) return;

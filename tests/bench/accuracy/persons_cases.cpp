@@ -175,7 +175,7 @@ void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) 
   });
 }
 
-/// True if the person's views together fit better with left and right swapped.
+/// True if the person's views together are closer to the truth with left and right swapped.
 bool is_exchanged(const Person& person, const Skeleton<WorldSpace>& exact) {
   LabelledError sum;
   for (const SensorView& view : person.views) {

@@ -71,7 +71,7 @@ std::size_t kinds(const Colours& colours) {
 std::multiset<std::string> lines_of(const Graph& graph) {
   const std::set<Triple> triples(graph.begin(), graph.end());
   Colours colours = first_colours(triples);
-  // Once a round tells no more blank nodes apart, no further one does.
+  // If one round does not distinguish further blank nodes, later rounds do not either.
   for (std::size_t before = 0, now = kinds(colours); now > before; now = kinds(colours)) {
     before = now;
     colours = refine(triples, colours);

@@ -7,7 +7,7 @@
 namespace chorus::facing {
 namespace {
 
-/// The labels of one sensor, which a person faces.
+/// The labels of one sensor for a person who faces it.
 struct LabelWatch {
   std::optional<Exchanged> exchanged = {};
 
