@@ -23,7 +23,7 @@ struct Demands {
 [[nodiscard]] std::vector<std::string> weaknesses(const Calibration& calibration,
                                                   const Demands& demands = {});
 
-/// The weaknesses of views that are too few for a calibration.
+/// weaknesses() where there are too few views for a calibration.
 [[nodiscard]] std::vector<std::string> missing_views(const std::vector<View>& views,
                                                      PictureSize size, const Demands& demands = {});
 

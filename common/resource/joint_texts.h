@@ -41,12 +41,14 @@ constexpr JointTexts around_names(std::string_view before, std::string_view betw
   return texts;
 }
 
-/// Turtle: what follows the IRI of a body in the links to its joints, and where they are described.
+/// Turtle: what follows the IRI of a body, first in the links to its joints, then at the beginning
+/// of each joint's description.
 inline constexpr JointTexts kTurtleLinks = around_names("-", ">");
 inline constexpr JointTexts kTurtleHeads =
     around_names("-", "> a ch:Joint ;\n  ch:jointName \"", "\" ;\n");
 
-/// JSON: what surrounds the IRI of a body where a joint is described; kLinkedTypes: in JSON-LD.
+/// JSON: at the beginning of each joint's description, what comes before the IRI of the body and
+/// what comes after it; the latter is kPlainTypes in JSON and kLinkedTypes in JSON-LD.
 inline constexpr JointTexts kJsonOpenings = around_names("\"", "\":{\"@id\":\"");
 inline constexpr JointTexts kPlainTypes = around_names("#", "\",\"@type\":\"Joint\",");
 inline constexpr JointTexts kLinkedTypes = around_names("-", "\",\"@type\":\"Joint\",");

@@ -26,14 +26,16 @@ constexpr std::array<Span, kSpans> kSpanTable{{
     {{JointId::KneeLeft, JointId::AnkleLeft}, {JointId::KneeRight, JointId::AnkleRight}},
 }};
 
-// Standard deviations [ln m].  Within one person, from one period in view to another: kOwnLength
-// whatever the number of views, kOwnInOneView in addition for a single view (a tracker's error
-// depends on its point of view); Repeatability says how much more it is with the sensors in use.
-// Between people: kOthersSize of their size, kOthersLength of their
-// lengths at the same size.  Fitted on simulated sensors with seeds from 1001 on.
+// Standard deviations [ln m], fitted on simulated sensors with seeds from 1001 on.  Repeatability
+// says by how much the first two have to be increased for the sensors in use.
+//
+// Of one person's length from one period in view to another, whatever the number of views.
 constexpr double kOwnLength = 0.010;
+// The same in addition for each single view: a tracker's error depends on its point of view.
 constexpr double kOwnInOneView = 0.036;
+// Of the sizes of different people.
 constexpr double kOthersSize = 0.050;
+// Of the lengths of different people of the same size.
 constexpr double kOthersLength = 0.020;
 // Variance of the mean over all lengths, relative to its value if the errors were independent.
 constexpr double kSizeShare = 0.5;

@@ -91,9 +91,9 @@ std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
   return fit->target_from_source;
 }
 
-/// Makes the place's chain and error start at our master instead of the candidate's: they lead
-/// there from the first sensor of the chain that our registration places.  Its error may count
-/// twice.
+/// Makes the place's chain and error start at our master instead of the candidate's.  The new chain
+/// is that of the first sensor on the old chain that our registration places, continued by the rest
+/// of the old chain.  A part of the error may count twice.
 void lead_from_master(const Registration& current, Extrinsics& place) {
   if (place.chain.empty() || place.chain.front() == current.master) return;
   // The last sensor is the one to be placed; what we knew of it no longer holds.

@@ -117,7 +117,7 @@ void say_session(const Situation& s, Walker walker, std::vector<std::string>& ou
     out.push_back(fmt::format("keep walking: {:.0f} s more",
                               std::ceil(std::max(0.0, s.session->target - s.session->elapsed))));
   }
-  // What several people do together shows nothing, wherever they walk.
+  // While several people are in view, the walk shows nothing, wherever they go.
   if (walker != Walker::Crowd) say_uncovered(s, out);
   say_in_vain(s, out);
 }

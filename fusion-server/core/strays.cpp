@@ -11,8 +11,9 @@
 namespace chorus::core {
 namespace {
 
-/// Longer than a reflection or a chair is taken for a person by chance, and than a person walks
-/// through the part of a room that only this sensor sees.
+/// A sensor takes a reflection or a chair for a person for a shorter time than this, unless it does
+/// so always.  A person also needs less time to walk through a part of the room that only one
+/// sensor sees.
 constexpr Duration kLongApart = std::chrono::seconds(10);
 /// After a longer pause of the pipeline nothing is known of the time between.
 constexpr Duration kLongestStep = std::chrono::milliseconds(500);

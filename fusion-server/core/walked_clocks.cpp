@@ -25,9 +25,9 @@ Duration followed(const ClockOffset& clock, const std::optional<Duration>& least
 }
 
 /// Whether the host's own estimate, which has this standard deviation, is better alone than with
-/// the offset added.  The offset corrects the estimate as it was during the walk.  One that has
-/// improved since then has moved, by about the root of the lost variance, which the offset does not
-/// contain.
+/// the offset added.  The offset corrects the estimate as it was during the walk.  If the estimate
+/// has improved since then, it has also moved, by about the root of the variance that it has lost,
+/// and the offset does not correct that.
 bool outdone(const ClockOffset& clock, double clock_sigma) {
   if (!exchanges_time(clock_sigma) || !exchanges_time(seconds(clock.stated))) return false;
   const double own = clock_sigma * clock_sigma;

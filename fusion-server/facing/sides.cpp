@@ -63,7 +63,7 @@ Telling known_of(const SensorId& sensor, const SidesMemory& memory) {
 /// more than its last labels: a tracker that changes them draws the sides together meanwhile, and
 /// two opposite sensors change them together.  A sensor that tells front from rear seldom swaps
 /// left and right, so its view must show more clearly that it did.  A flat figure lacks the part of
-/// its spans along the line of sight, so that of a narrow one the last decision is kept.
+/// its spans along the line of sight, so the last decision is kept while the figure is narrow.
 bool opposes(const SensorView& view, bool flat, const Spans& spans, const Sides& sides,
              const SidesMemory& memory, const SidesConfig& config) {
   const double agree = usual_log_odds(known_of(view.sensor, memory), config.telling) +
@@ -118,8 +118,9 @@ Spans followed(const Spans& before, const Spans& now, double share) {
 }
 
 /// The chance that `spans` follow the held ones with the wrong sign.  Held spans lag behind a
-/// person who turns, because trackers and smoothing do; at 90 deg either sign is as likely.  Nearly
-/// equal spans are in no doubt, so that nobody who stands still loses their sides in time.
+/// person who turns, because trackers and smoothing do; at 90 deg either sign is as likely.  For
+/// nearly equal spans the chance is zero: otherwise the sides of a person who stands still would
+/// become uncertain over time.
 double misled(const Spans& spans, const Spans& held, double sigma) {
   const double size = size_of(spans) * size_of(held);
   if (!(size > kMinSpan * kMinSpan)) return 0.0;
@@ -130,8 +131,9 @@ double misled(const Spans& spans, const Spans& held, double sigma) {
   return 1.0 / (1.0 + std::exp(std::numbers::pi * short_of_side / (sigma * sigma)));
 }
 
-/// The chance that the sides became wrong since the last instant because they were followed with
-/// the wrong sign.  A difference lasts for as long as the smoothing, so each instant has its share.
+/// The chance that, since the last instant, the sides became wrong because the held spans followed
+/// the views with the wrong sign.  The held spans lag behind for the whole smoothing time, so each
+/// instant counts only for its part of that time.
 double slipped_by_turning(const Instant& now, const Spans& spans, const Sides& sides,
                           const SidesConfig& config) {
   if (now.first) return 0.0;

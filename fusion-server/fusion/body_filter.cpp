@@ -113,7 +113,8 @@ class BodyFilter final : public Estimator {
       if (!body[j].placed) body[j] = expected[j];
     }
     PlacedBody whole = hold_bones(body, lengths_.held(model()));
-    // Somebody unseen walks elsewhere as a whole: their bones make no joint surer.
+    // Nobody knows where an unseen body has gone as a whole, so its bones make no joint more
+    // certain.
     for (std::size_t j = 0; unseen && j < kJointCount; ++j)
       whole[j].covariance = body[j].covariance;
     return whole;
@@ -195,7 +196,8 @@ class BodyFilter final : public Estimator {
   Handover handover_;
   MotionFilters filters_;
   std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last determined [m^2].
-  /// What was stated of it beyond that, per axis [m^2]: nobody becomes surer by not looking.
+  /// What was stated in addition to that, per axis [m^2].  It is kept while nobody sees the joint,
+  /// because the stated error must not shrink then.
   std::array<double, kJointCount> beyond_{};
   std::array<std::optional<Timestamp>, kJointCount> contributed_;  ///< When a sensor last did.
   Habit agreement_{kFirstAgreement};

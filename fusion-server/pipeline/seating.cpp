@@ -49,7 +49,7 @@ void Seating::move_up(std::size_t front) {
   }
 }
 
-/// To a lower slot; only slots below that are still of interest.
+/// Moves a person to a lower slot.  From then on, only slots below that one are awaited.
 void Seating::move(std::size_t from, std::size_t to) {
   seats_[to] = std::exchange(seats_[from], std::nullopt);
   auto& awaited = seats_[to]->stands_in_for;

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
-// Each with a new scale for Tukey's weights; the first with the points as seen, then whitened.
+// Each round has a new scale for Tukey's weights.  The first takes the points as seen, the others
+// whitened.
 constexpr int kRounds = 3;
 // Longest time that the errors of joints are taken to last [s]; see docs/decisions/0078.
 constexpr double kLongestMemory = 0.6;
@@ -335,7 +336,8 @@ Adjusted adjusted(Adjustment& adjustment) {
 }
 
 /// True if no sensor ends far from where its chain put it.  Chains are robust, so a sensor that
-/// moves farther was misled by wrong views; but they are as wrong as the depths they are made of.
+/// moves farther was misled by wrong views.  But a chain is as wrong as the depths that it is made
+/// of, so the limit grows with `along_ratio`.
 bool near(const Places& start, const Places& end, double along_ratio) {
   const double farthest = kFarthest * std::max(2.0, along_ratio);
   return std::ranges::all_of(start, [&](const auto& each) {
@@ -355,8 +357,9 @@ void whiten(Adjustment& adjustment) {
   whiten(adjustment.points, memory);
 }
 
-/// Iterates with the points as seen, then with what is new in each, with Tukey's scale read before
-/// each round, so that the end does not depend on how good the start was.  False if it was stopped.
+/// Iterates with the points as seen, then with what is new in each.  Tukey's scale is computed anew
+/// before each round, so that the end does not depend on how good the start was.  False if it was
+/// stopped.
 bool settle(Adjustment& adjustment, const Stopped& stopped) {
   for (int round = 0; round < kRounds; ++round) {
     if (round == 1) whiten(adjustment);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kEnoughVotes = 2000;  // joints; the frames of one sensor are alike
 
-// From the two real takes of docs/benchmarks/registration.md, which name what they do not show.
+// From the two real takes in docs/benchmarks/registration.md, which also says what they do not
+// show.
 constexpr double kGuessedAlong = 20.0;
 constexpr double kCameraBias = mm(12);  // of joints that a network finds in pictures
 // As in tests/data/pose2sim_mediapipe/fusion.json, which gives the reasons.

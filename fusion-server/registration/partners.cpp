@@ -100,7 +100,7 @@ Pairs chosen_among(const Overlaps& overlaps) {
   pairs.merge(between(groups_of(links, overlaps.size())));
   for (std::size_t i = 0; i < overlaps.size(); ++i) {
     for (std::size_t j = i + 1; j < overlaps.size(); ++j) {
-      if (overlaps[i][j] == 0) pairs.insert({i, j});  // which costs little: see partners_of()
+      if (overlaps[i][j] == 0) pairs.insert({i, j});  // trying it costs little: see partners_of()
     }
   }
   return pairs;

@@ -49,7 +49,8 @@ void ViewBias::add(const PointMeasurements& measurements, const FusedPoint& fuse
     view.y() = 0.0;
     if (view.norm() < kLevel) continue;
     const Terms terms = terms_of(view, walking);
-    // The bias of two sights in succession is the same.
+    // A measurement may be the difference of two sights in succession.  Their bias is the same, so
+    // the difference contains only `lever` of it.
     const Eigen::Matrix3d axes = weight * measurements[i].lever * axes_of(view.normalized());
     const Eigen::Matrix3d share = fused.covariance * fused.information[i] * axes;
     for (std::size_t j = 0; j < measurements.size(); ++j) {

@@ -15,9 +15,9 @@ namespace chorus::ctl {
 /// No two sensors of one name.
 [[nodiscard]] Result<void> check_names(const std::vector<PolledWish>& sensors);
 
-/// The name by which other hosts reach this one over TLS: `own` if the certificate in this folder
-/// is for it (or cannot be read), otherwise the first of the certificate's that is not only for
-/// this host itself; `own` again if there is none.
+/// The name by which other hosts reach this one over TLS.  It is `own` if the certificate in this
+/// folder contains it or cannot be read.  Otherwise it is the first name in the certificate that
+/// other hosts can use, too; if there is none, `own` after all.
 [[nodiscard]] std::string certified_name(const std::string& tls_folder, const std::string& own);
 
 }  // namespace chorus::ctl

@@ -40,7 +40,8 @@ struct OriginArguments {
   bool json = false;
 };
 
-/// Watches the person who stands there, on one connection: each frame once, as it comes.
+/// Watches the person who stands where the origin is to be, on one connection: each frame once, as
+/// it comes.
 class StanceWatch {
  public:
   StanceWatch(const http::Url& server, tls::Trust trust)

@@ -1,4 +1,4 @@
-// The clock of a sensor as `chorus record` keeps it: what the host's own answers told.
+// The clock of a sensor as `chorus record` keeps it: the estimate from the host's own answers.
 #include "fusion-server/client/recorded_clock.h"
 
 #include <gtest/gtest.h>

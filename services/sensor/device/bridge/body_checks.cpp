@@ -10,8 +10,8 @@
 namespace chorus::bridge {
 namespace {
 
-// No camera sees a person from so far away [m], but one at 2 m in millimetres or centimetres seems
-// to be farther.
+// No camera sees a person from this far away [m].  A distance of 2 m in millimetres or centimetres
+// is above this limit.
 constexpr double kFarthestBody = 100.0;
 constexpr std::size_t kFewPixels = 3;  // Fewer say little about a picture.
 constexpr double kCorner = 2.0;        // Normalised landmarks may lie a little outside [px].

@@ -17,8 +17,8 @@ namespace chorus::bridge {
 /// measure some wrongly.
 [[nodiscard]] Result<void> check_distance(const Skeleton<SensorSpace>& skeleton, const At& at);
 
-/// Refuses a body of which several joints are the sensor's own place, as SDKs send it for joints
-/// that they do not see.  A single one may be the origin of a tracker's own.
+/// Refuses a body of which several joints are at the sensor's origin: SDKs send that for joints
+/// that they do not see.  A single joint there may be the origin of the tracker's own coordinates.
 [[nodiscard]] Result<void> check_origin(const Skeleton<SensorSpace>& skeleton, const At& at);
 
 /// The places of the landmarks in `pixels`, which has been read without an error [px].

@@ -17,7 +17,8 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kMaxName = 64;
 constexpr Bounds kShare{0.0, 1.0};
-// No camera for people hangs so high [m]; one at 1.6 m seems to, in millimetres or centimetres.
+// No camera that sees people hangs this high [m].  A height of 1.6 m in millimetres or centimetres
+// is above this limit.
 constexpr double kHighest = 100.0;
 
 struct Direction {
