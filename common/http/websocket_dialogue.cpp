@@ -14,8 +14,8 @@ namespace {
 constexpr std::chrono::milliseconds kLook{250};
 // How long the client may take for its own close frame.
 constexpr std::chrono::seconds kGoodbye{2};
-// So many times the longest message is read of one that is too long.  If the connection were closed
-// with bytes unread, the client would lose what it was told last.
+// Of a message that is too long, up to this many times the permitted length is still read.  If the
+// connection were closed with bytes unread, the client would lose what it was told last.
 constexpr int kMaxReadOn = 8;
 
 class DialogueConnection final : public Connection {

@@ -52,8 +52,8 @@ WebSocketStream::WebSocketStream(net::Stream from, const WebSocketOptions& optio
   patience.keep_alive_pings = true;
   auto& stream = beast_->stream;
   stream.set_option(patience);
-  // read_on() has the limit, so that a last word can still be said; what claims to be much longer
-  // is refused at once.
+  // The limit itself is applied by read_on(), so that the client can still be told the reason.
+  // Beast refuses a message at once if it is more than kReadOn times as long.
   stream.read_message_max(kReadOn * options.max_message);
   stream.text(true);
   stream.auto_fragment(false);  // In pieces of 4 KiB a message would cost three times the CPU time.

@@ -189,7 +189,7 @@ class JsonFrame {
     if (joint.state != JointState::NotTracked) put_origin_of(origin);
   }
 
-  /// Writes which sensors the joint came from, their shares, or for how long there has been none.
+  /// Writes the joint's contributors and their shares, or for how long it has had no contributor.
   void put_origin_of(const JointResource& joint) {
     if (!sensors_.empty()) {
       pen_.put(",\"contributors\":");

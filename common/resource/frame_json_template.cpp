@@ -109,7 +109,7 @@ class JsonTemplate : TemplateText {
     return origin(joint) && text("}");
   }
 
-  /// Which sensors the joint came from, their shares, and for how long there has been none.
+  /// Reads the joint's contributors, their shares, and for how long it has had no contributor.
   bool origin(JointResource& joint) {
     if (text(",\"contributors\":[") && !contributors(joint.contributors)) return false;
     if (text(",\"shares\":[")) {

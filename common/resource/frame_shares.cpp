@@ -68,7 +68,7 @@ std::optional<Shares> ShareList::read(std::optional<std::span<const double>> lis
   return in_proportion(*list, contributors);
 }
 
-/// Of another writer, with other decimals, or rounded so that they do not quite make 1.
+/// Shares from a list by another writer, which may have more decimals or not quite add up to 1.
 Shares ShareList::in_proportion(std::span<const double> list, std::uint64_t contributors) const {
   ShareTally tally;
   auto share = list.begin();

@@ -198,7 +198,7 @@ class TurtleFrame {
     if (joint.state != JointState::NotTracked) put_origin_of(origin);
   }
 
-  /// Writes which sensors the joint came from, their shares, or for how long there has been none.
+  /// Writes the joint's contributors and their shares, or for how long it has had no contributor.
   void put_origin_of(const JointResource& joint) {
     const std::uint64_t known = sensors_.size() >= kMaxSensors
                                     ? ~std::uint64_t{0}

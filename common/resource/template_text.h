@@ -20,8 +20,8 @@
 
 namespace chorus::resource {
 
-/// True for quaternions whose length is about 1, as is that of nearly all.  Term by term: norm()
-/// loads two terms at once, and waits until they are stored.
+/// True for quaternions whose length is about 1; nearly all are such.  The terms are added one by
+/// one, because norm() would load two at once and wait until they are stored.
 inline bool nearly_unit(const Eigen::Quaterniond& q) {
   const double squared = q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w();
   return squared > 0.9 && squared < 1.1;

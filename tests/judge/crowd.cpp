@@ -41,7 +41,7 @@ WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
 struct Placing {
   double yaw = 0.0;    ///< [rad]
   double aside = 0.0;  ///< Shift along +x, before the turn [m]
-  double delay = 0.0;  ///< Time by which the walk is ahead [s]
+  double delay = 0.0;  ///< Added to the time since 1970: the walk is ahead by this [s]
 };
 
 Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body, const Eigen::Isometry3d& placed) {

@@ -22,11 +22,11 @@ constexpr int kFirstRounds = 15;
 constexpr std::array kFirstYaws{0.0, deg(40), -deg(40), deg(80), -deg(80)};
 // Reach of a body's surface: points within it may belong to the body [m].
 constexpr double kReach = 0.35;
-// The same for a piece of which less than kOwnShare is near a body [m].
+// Reach of a body's surface for a piece of which less than kOwnShare is near a body [m].
 constexpr double kMixedReach = 0.12;
 // If at least this share of a piece is within kMixedReach of bodies, kReach applies to all of it.
 constexpr double kOwnShare = 0.5;
-// If less than this share of a piece is, the piece is a new person or an object.
+// If less than this share of a piece is within kMixedReach, it is a new person or an object.
 constexpr double kForeignShare = 0.1;
 constexpr int kConfirmed = 3;  // Frames before a body is reported.
 constexpr int kPatience = 10;  // More poor frames in a row end the track.

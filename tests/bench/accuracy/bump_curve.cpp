@@ -53,10 +53,12 @@ watch::WatchConfig limited(double least_shift) {
   return config;
 }
 
-/// What became of the pushes of one kind under one limit.
+/// The results of all pushes of one kind under one limit.
 struct Outcomes {
-  std::vector<double> told;  ///< Seconds of somebody moving in view; not told in time: NaN.
-  std::size_t wrong = 0;     ///< Another sensor was named first.
+  /// For how long somebody had moved in view of the sensor when the push was reported [s]; NaN:
+  /// not reported in time.
+  std::vector<double> told;
+  std::size_t wrong = 0;  ///< Another sensor was named first.
 };
 
 struct CurveLog {

@@ -25,8 +25,8 @@ struct Link {
   std::uint64_t seed = 1;
 };
 
-/// A request sent at `sent` and answered when `held` has passed and `ready` is reached (true
-/// times).
+/// A request sent at `sent`.  It is answered `held` after its receipt, but not before `ready`.  All
+/// times are true ones.
 struct Request {
   Timestamp sent;
   Duration held{0};

@@ -83,7 +83,8 @@ Body moved(Body body, const outlet::TrackerBody& velocities, double passed) {
   return body;
 }
 
-/// The velocities from instant to instant, as outputs have them for methods without their own.
+/// The body with velocities from instant to instant, as outputs state them if the method states
+/// none.
 outlet::TrackerBody steps_of(outlet::TrackerState& state, FusedBody body, Timestamp instant) {
   body.motion.reset();
   body.slot = 0;

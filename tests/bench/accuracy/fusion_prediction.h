@@ -21,12 +21,14 @@ struct PredictionCase {
 /// "prediction-PROFILE", "silence-6-PROFILE", "silence-3-PROFILE".
 [[nodiscard]] std::vector<PredictionCase> prediction_cases();
 
-/// Predictions: mean joint error 50 and 100 ms after each instant, of the filter's prediction
-/// ("ours"), of the pose as it was ("hold") and of velocities from instant to instant ("steps");
-/// the error after 0.5 and 1 s in which nobody sees the person; nees of ours.  Silence: in the
-/// second after a sensor has fallen silent, the largest difference between a joint's change from
-/// one instant to the next and the true change (step_mm; "living": the same had the sensor gone
-/// on), or the change had the sensor gone on (caused_mm).
+/// Predictions: the mean joint error 50 and 100 ms after each instant.  Compared are the filter's
+/// prediction ("ours"), the pose as it was ("hold") and velocities from instant to instant
+/// ("steps").  Also the error after 0.5 and 1 s in which nobody sees the person, and nees of ours.
+///
+/// Silence: looks at the second after a sensor has fallen silent, and at how a joint changes from
+/// one instant to the next.  step_mm: the largest difference of this change from the true one; row
+/// "living": the same if the sensor had not fallen silent.  caused_mm: the largest difference
+/// between the changes with and without the silence.
 void measure_prediction(Report& report, const PredictionCase& each);
 
 }  // namespace chorus::bench

@@ -38,7 +38,7 @@ std::vector<std::vector<MethodScores>> measure(Report& report, const Registratio
   return scores;
 }
 
-/// The name by which the case is asked for: with the length of its first walk.
+/// The name of the case for `--only`: with the length of its first walk.
 std::string full_name(const RegistrationCase& each) {
   return fmt::format(fmt::runtime(each.name), each.lengths.front());
 }
@@ -212,7 +212,7 @@ void measure_all_short_walks(Report& report, std::size_t count) {
 
 /// The outcome for the sensors of one ring.
 struct RingFate {
-  /// True if the sensor that followed somebody else got no place but a reason.
+  /// True if the sensor that followed somebody else was refused and a reason was given.
   bool odd_named = false;
   std::size_t refused = 0;  ///< Number of other sensors that were refused.
   std::size_t lost = 0;     ///< Number of other sensors that were placed more than 100 mm off.

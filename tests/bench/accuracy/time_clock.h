@@ -16,7 +16,7 @@ using ClockMethod = std::function<Duration(const ClockExchange&)>;
 
 struct NamedClock {
   std::string name;
-  std::function<ClockMethod()> make;  ///< Makes a new one without exchanges.
+  std::function<ClockMethod()> make;  ///< Makes the method before its first exchange.
 };
 
 /// The server's method, and those it is compared with: the exchange with the least delay of the

@@ -12,8 +12,8 @@ namespace chorus::bench::baselines {
 class NearestNeighbour {
  public:
   /// The people at this instant who were seen at three instants or more.  A person unseen for a
-  /// second is forgotten; a body is a new person if nobody within 0.6 m is free of other bodies of
-  /// its sensor.
+  /// second is forgotten.  A person gets at most one body of each sensor; a body without such a
+  /// person within 0.6 m is a new person.
   [[nodiscard]] std::vector<Person> group(const std::vector<SensorView>& views, Timestamp instant);
 
  private:

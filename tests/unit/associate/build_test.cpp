@@ -97,7 +97,8 @@ TEST(Build, AddsUpByTimeOfSight) {
   EXPECT_NEAR(sight_of(both), 60.0, 1e-9);
 }
 
-/// Seconds in view of people whose size is `swing` more and less in turns.
+/// What is learned in so many seconds from people whose size alternates between 1 + `swing` and
+/// 1 - `swing`.
 Repeatability after(int seconds, double swing) {
   Repeatability learned;
   for (int i = 0; i < seconds; ++i)

@@ -71,7 +71,7 @@ TEST_F(Awaited, ACrowdDuringAWalkIsToldToWalkAloneAndNothingElse) {
   session_->target = 30;
   EXPECT_THAT(said(), ElementsAre(HasSubstr("one person alone should walk")))
       << "where the sensors overlap does not matter now";
-  see("s1", 1);  // a mirror before the two others
+  see("s1", 1);  // so the second body of s2 and s3 may be a mirror image
   EXPECT_THAT(said(), Contains("keep walking: 16 s more"));
 }
 

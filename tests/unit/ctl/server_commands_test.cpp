@@ -312,7 +312,7 @@ TEST(Register, ProposesWithTheNumbersOfOldAndNew) {
   EXPECT_THAT(told.out, HasSubstr("proposed, not in use: Good"));
   for (const char* number : {"41", "23", "117", "1.3"}) EXPECT_THAT(told.out, HasSubstr(number));
   EXPECT_THAT(told.error, Not(HasSubstr("not good enough")));
-  done["sessionId"] = 8;  // what waits is another session's
+  done["sessionId"] = 8;  // the waiting proposal belongs to another session
   texts["/sessions/7"] = {done.dump()};
   EXPECT_EQ(register_at(ScriptedServer(texts), {"--propose"}).code, kExitFailed);
 }

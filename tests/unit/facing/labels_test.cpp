@@ -11,7 +11,7 @@ namespace {
 struct LabelWatch {
   std::optional<Exchanged> exchanged = {};
 
-  /// Sum of what happened while the labels agree with the held sides, or oppose them, for a second.
+  /// Sum of the passages in a second in which the labels agree with the held sides, or oppose them.
   Passage for_a_second(bool agree) {
     Passage sum;
     for (int i = 0; i < 30; ++i) {

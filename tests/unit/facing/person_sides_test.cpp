@@ -82,7 +82,7 @@ TEST(PersonFilter, OutlivesAnyEvidence) {
 TEST(NewEvidence, IsHardlyAnyInWhatStaysTheSame) {
   EXPECT_NEAR(new_evidence(2.0, 2.0, 0.033, 5.0), 2.0 * 0.033 / 10.0, 1e-4);
   EXPECT_NEAR(new_evidence(2.0, -1.0, 0.033, 5.0), 1.5,
-              0.02);  // the mean of the first and the last
+              0.02);  // half of the change
   EXPECT_NEAR(new_evidence(2.0, -1.0, 1e3, 5.0), 2.0, 1e-9);
   double sum = 0.0;
   for (int i = 0; i < 300; ++i) sum += new_evidence(2.0, 2.0, 0.033, 5.0);

@@ -228,7 +228,7 @@ TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
 }
 
 /// A person at work turns in front of a camera that never swaps sides.  Then a flat body ("plank")
-/// appears, turned by 150 deg from facing the camera.  Its sides are told more surely than by a
+/// appears, turned by 150 deg from facing the camera.  Its sides are more certain than with a
 /// camera whose habit is unknown.
 TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   const auto plank = body_at({0, 0, 0}, deg(150));
@@ -250,7 +250,7 @@ TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
 }
 
 /// Somebody turns between sensors, and then their sides slip, as when limbs cross in a jump.  The
-/// body tells nothing, so only the labels can.
+/// posture is no evidence here; only the labels are.
 bool right_after_a_slip(const std::vector<Flips>& flips) {
   SidesMemory memory;
   Ring ring(kSix, flips);

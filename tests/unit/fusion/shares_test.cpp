@@ -117,7 +117,7 @@ TEST(JointShares, WhatMemoryAddsIsNoSensors) {
     (void)neck.at(milliseconds(33 * i), {neck_view(1, place, 0.5), neck_view(2, place, 0.5)});
   SensorView ray = neck_view(3, (place - eye).normalized(), 0.5, eye);
   ray.skeleton[JointId::Neck].measurement = Measurement::Ray;
-  const FusedBody body = neck.at(milliseconds(165), {ray});  // its depth is the last place's
+  const FusedBody body = neck.at(milliseconds(165), {ray});  // only memory knows its depth
   EXPECT_EQ(body.contributors[kSharedNeck], 0b100U);
   EXPECT_EQ(body.shares[kSharedNeck].of(2), 1.0);
   EXPECT_EQ(body.age[kSharedNeck], 0.0);

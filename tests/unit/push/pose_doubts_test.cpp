@@ -1,4 +1,4 @@
-// What a program is told although its frames are taken.
+// Of what a pusher is warned although its frames are accepted.
 #include "services/sensor/device/bridge/pose_doubts.h"
 
 #include <gmock/gmock.h>
@@ -12,8 +12,8 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-/// Somebody who stands 2.5 m before a sensor at a height of 1 m, turned by `turn` about the
-/// sensor's place.
+/// Somebody who stands 2.5 m in front of a sensor that is 1 m above the floor; all joints are
+/// rotated about the sensor by `turn`.
 PushedFrame somebody(const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
   PushedFrame frame;
   BodyFrame body;
@@ -29,7 +29,7 @@ PushedFrame somebody(const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) 
 
 class Doubts : public ::testing::Test {
  protected:
-  /// Takes such frames for some time, and returns what was raised then.
+  /// Takes this frame ten times a second for `time`; returns the doubts that were raised meanwhile.
   std::string raised(const PushedFrame& frame, Duration time) {
     std::string all;
     for (const SteadyTime end = now + time; now < end; now += milliseconds(100)) {

@@ -1,4 +1,4 @@
-// What programs push, line by line: what is accepted, and how refusals are worded.
+// What pushers send, line by line: what is accepted, and how refusals are worded.
 #include "services/sensor/device/bridge/push_message.h"
 
 #include <string>

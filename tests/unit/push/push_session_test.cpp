@@ -1,4 +1,4 @@
-// One pushing program: its clock, its rate, and what it must not do.
+// One pusher: its clock, its rate, and what it must not do.
 #include "services/sensor/device/bridge/push_session.h"
 
 #include <fstream>

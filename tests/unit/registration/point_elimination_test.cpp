@@ -119,7 +119,7 @@ TEST(Elimination, RightHandSideIsTheNumericGradient) {
   expect_numeric_gradient(sights_of(kX, mm(30)));
 }
 
-/// A difference of two sights contains only a part of the sensor's position.
+/// In the difference of two sights, the sensor's position counts only in part (`lever`).
 TEST(Elimination, RightHandSideOfDifferencesIsTheNumericGradient) {
   PointMeasurements differences = sights_of(kX, mm(30));
   for (PointMeasurement& difference : differences) {

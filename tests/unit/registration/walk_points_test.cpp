@@ -88,7 +88,8 @@ TEST(Whiten, CountsOnlySensorsThatSawBothAndNothingAcrossAGap) {
   EXPECT_EQ(points[3].counted[0].lever, 1.0);
 }
 
-/// Two sights of a slot at one instant would have no error left.
+/// Between two points of a slot at the same instant nothing is new, so their difference would state
+/// no error.
 TEST(Whiten, PointsOfOneInstantKeepAnError) {
   std::vector<WalkPoint> points = points_with(kMemory);
   points[1].time = points[0].time;

@@ -52,7 +52,7 @@ TEST(FixedPoint, WhatItWritesReadsBackWithinHalfAUnit) {
   }
 }
 
-/// Reads four decimals from `text`, behind which a document goes on.
+/// Reads a number with four decimals from `text`, which is followed by the rest of a document.
 std::optional<double> short_fixed(const std::string& text) {
   const std::string document = text + " ;\n  ch:y 1.0";
   double value = 0.0;

@@ -1,4 +1,4 @@
-// What --check says of settings that can be read, but not meant.
+// What --check says about settings that are valid but hardly intended.
 #include "fusion-server/server/fusion_concerns.h"
 
 #include <gmock/gmock.h>
