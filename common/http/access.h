@@ -70,8 +70,9 @@ struct Guard {
 /// Control if any token is configured; otherwise only trusted local requests may write.  If a token
 /// for reading is configured, every reader needs a token, also on this host, because a proxy on
 /// this host looks like a local client.  If none is, reading from an open server needs any token or
-/// a trusted local request, and reading from any other server needs nothing.  For GET and HEAD the
-/// token may also come as the password of Basic authentication, for which browsers prompt.
+/// a trusted local request, and reading from any other server needs nothing.  A GET or HEAD that
+/// needs less than Control may also send the token as the password of Basic authentication, for
+/// which browsers prompt.
 [[nodiscard]] std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer,
                                                  Role needed, const Guard& guard);
 

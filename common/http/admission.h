@@ -1,4 +1,4 @@
-// Finds the client for which limits count a request that a proxy forwarded.
+// Says for which client a request counts towards the limits if a proxy has forwarded it.
 #pragma once
 
 #include <optional>

@@ -16,7 +16,8 @@ using Query = std::map<std::string, std::string, std::less<>>;
 /// or, if something had to be decoded, into `storage`.
 [[nodiscard]] Result<std::string_view> decode_path(std::string_view raw, std::string& storage);
 
-/// Decodes "a=1&b=%20" (without '?').  Of a repeated key the last value counts; a key without '='
+/// Decodes "a=1&b=%20" (without '?').  Refuses broken escapes and escaped control characters.  Of a
+/// repeated key the last value counts; a key without '='
 /// has an empty value.  '+' stands for itself, not for a space, because time zones are written
 /// "+01:00".
 [[nodiscard]] Result<Query> decode_query(std::string_view raw);

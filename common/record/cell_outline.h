@@ -18,7 +18,7 @@ struct CellLine {
   std::string recording;  ///< The id of the recording run; empty for a separate file.
   std::vector<std::filesystem::path> files;  ///< In the order in which they were written.
   std::set<SensorId> sensors;                ///< The sensors that the files name.
-  bool cell = false;                         ///< True if it has several sensors, with their clocks.
+  bool cell = false;  ///< True if the files are of a cell (cell_writer.h), even of one sensor.
   /// Damage that is visible without unpacking, as "FILE: what and why".
   std::vector<std::string> damage;
 };

@@ -3,7 +3,8 @@
 //
 //   /sensors/{id}/frame        chorus.Frame       as the sensor sent it: its own space and clock
 //   /sensors/{id}/floor-plane  chorus.FloorPlane  when it changes
-//   /sensors/{id}/clock        chorus.ClockModel  when what is added to its capture times changes
+//   /sensors/{id}/clock        chorus.ClockModel  when what is added to its capture times changes,
+//                                                 or whether its clock offset is known
 //   /frame                     chorus.Frame       fused
 //   /registration              chorus.Registration  when it changes
 // and for viewers /scene, /sensors/{id}/scene, /transforms (skeleton_scene.h).  A recording of a

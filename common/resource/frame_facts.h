@@ -77,7 +77,7 @@ template <class T>
   return true;
 }
 
-/// What is said of any other name.
+/// The reason why any other name of a space is refused.
 inline constexpr std::string_view kNoSpace = "is none of SensorSpace and WorldSpace";
 inline constexpr std::string_view kNoState = "is none of Tracked, Inferred and NotTracked";
 

@@ -34,8 +34,8 @@ class ShareList {
   /// The list that is written for a joint, a part of `values`; empty if no list is written.
   [[nodiscard]] std::span<const double> of(const Shares& shares, std::uint64_t contributors,
                                            Values& values) const;
-  /// The shares that a joint's list stands for, which may be left out; nothing when it has not one
-  /// share from 0 to 1 for each contributor, or when these do not make 1.
+  /// The shares that a joint's list stands for; `list` may be missing.  Nothing if the list does
+  /// not hold one share from 0 to 1 for each contributor, or if the shares do not add up to 1.
   [[nodiscard]] std::optional<Shares> read(std::optional<std::span<const double>> list,
                                            std::uint64_t contributors) const;
 

@@ -22,8 +22,8 @@ fs::path nearest_existing(fs::path folder) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
-/// Creates and removes a folder in this one, because permissions do not tell everything: /proc lets
-/// root write, and takes nothing.
+/// Creates a folder in `folder` and removes it again, because permissions alone do not say whether
+/// that is possible: those of /proc let root write, but nothing can be created there.
 std::error_code try_folder(const fs::path& folder) {
   const fs::path probe = folder / (".chorus-probe-" + std::to_string(::getpid()));
   std::error_code error;

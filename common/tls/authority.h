@@ -24,11 +24,12 @@ struct Validity {
 [[nodiscard]] Validity for_days(int days);
 
 /// A new authority (elliptic curve P-256) that can sign hosts, but no further authorities.  `name`
-/// is shown to people: "Chorus of hall 3".
+/// is shown to people: "Chorus of hall 3".  InvalidArgument if it is empty or not UTF-8.
 [[nodiscard]] Result<Issued> new_authority(const std::string& name, const Validity& validity);
 
 /// A new key and a certificate for one host with these names and numeric addresses; the first is
-/// its common name.  InvalidArgument for any other text; Malformed if `authority` is not one.
+/// its common name.  InvalidArgument for any other text, or if there is none; Malformed if
+/// `authority` is not one.
 [[nodiscard]] Result<Issued> new_certificate(const Issued& authority,
                                              const std::vector<std::string>& hosts,
                                              const Validity& validity);

@@ -12,6 +12,7 @@ struct x509_st;
 
 namespace chorus::tls {
 
+/// Texts can be shown on a terminal: "?" replaces every byte that is not printable ASCII.
 struct CertificateFacts {
   std::string subject;             ///< Its common name.
   std::string issuer;              ///< Common name of the signer.

@@ -16,8 +16,8 @@ class Patience {
 
   /// `config` with the patience for this sensor, normally the full patience.  A sensor that is
   /// unsteady compared with the others gets only what the others usually need.  (On a busy machine
-  /// the delays of all sensors vary, and none is unsteady.)  An exception are one or two cameras
-  /// without depth and no other sensor: each of them is needed for a body.
+  /// the delays of all sensors vary, and none is unsteady.)  If one or two cameras without depth
+  /// are the only sensors, they get the full patience, because a body needs each of them.
   [[nodiscard]] AlignConfig of(const History& history) const;
 
   /// How much longer than `config.patience` an instant may wait because most of the sensors are

@@ -16,9 +16,9 @@ namespace chorus::client {
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
 
-/// Reads the recordings completely.  Refuses an empty list, and two recordings of the same sensor
-/// unless they are parts of one recording.  Writes damaged or omitted parts to `notes`, unless it
-/// is null.
+/// Reads the recordings completely.  Refuses an empty list, recordings without a sensor's frames,
+/// and two recordings of the same sensor unless they are parts of one recording.  Writes damaged or
+/// omitted parts to `notes`, unless it is null.
 [[nodiscard]] Result<record::CellRecording> read_recordings(
     const std::vector<std::filesystem::path>& files, std::ostream* notes);
 

@@ -31,9 +31,9 @@ struct Origin {
 [[nodiscard]] Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& new_from_old);
 
 /// The registration, moved into the world in which sensors stand as in `before`.  This is decided
-/// by the largest group of sensors whose relative places are the same in both (within 0.3 m), so a
-/// sensor that was moved changes the world only if there is no other.  Unchanged if they have no
-/// sensor in common.
+/// by the largest group of sensors whose relative places are the same in both (within 0.3 m); of
+/// equally large groups, by the one with the master.  So a sensor that was moved does not change
+/// the world while two others agree.  Unchanged if they have no sensor in common.
 [[nodiscard]] Registration in_world_of(const Places& before, Registration candidate);
 
 inline constexpr double kMaxOrigin = 1000.0;  ///< Along x and along z [m].

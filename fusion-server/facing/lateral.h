@@ -13,7 +13,7 @@ inline constexpr std::array<JointId, 6> kSidePairs{JointId::ShoulderLeft, JointI
                                                    JointId::ElbowLeft,    JointId::KneeLeft,
                                                    JointId::WristLeft,    JointId::AnkleLeft};
 
-/// The vector left - right of each pair, world [m]; shortened if it is longer than 0.4 m or a joint
+/// The vector left - right of each pair, world [m]; shortened if it is longer than 0.7 m or a joint
 /// of the pair is inferred, zero if one is not seen.
 using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 
@@ -34,7 +34,7 @@ inline constexpr double kMinSpan = 0.05;  ///< [m]; shorter spans have no direct
 /// unknown.
 [[nodiscard]] Eigen::Vector3d forward_of(const Spans& spans);
 
-/// Otto's phi: the angle from the direction of the sensor to the direction in which the body faces,
+/// Otto's phi: the yaw from the direction to the sensor to the direction in which the body faces,
 /// in (-pi, pi]; none when unknown.
 [[nodiscard]] std::optional<double> facing_of(const SensorView& view,
                                               const Eigen::Vector3d& forward);

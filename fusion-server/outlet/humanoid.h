@@ -6,9 +6,10 @@
 // directions of the rig at rest to directions in the world, so for a person in T-pose who looks
 // along -z all rotations are the identity.
 //
-// Rotations follow from the positions of the joints: every bone lies exactly along its two joints;
-// what remains, the twist about the bone, is taken
-//   for the trunk:   from the line of the hips (Hips), of the shoulders (Chest), of both (Spine),
+// Rotations follow from the positions of the joints.  Hips lies exactly along the line of the hips,
+// tilted as the spine is.  Every other bone lies exactly along its two joints; what remains, the
+// twist about the bone, is taken
+//   for the trunk:   from the line of the shoulders (Chest), of hips and shoulders (Spine),
 //   for neck, head:  from the shoulders' line, rotated as the joint's own orientation is against
 //                    that of SpineShoulder (the only use of orientations: those of limbs are wrong
 //                    by 50-170 degrees about the bone, and leaf joints have none),

@@ -27,8 +27,8 @@ struct TrailFrame {
   std::array<Eigen::Vector3d, kJointCount> points;  ///< By slot; defined where `seen` has the bit.
   std::uint32_t seen = 0;
   /// True if the body is at least 12 mm away from where it was in the last frame with `moved`, or
-  /// is another body than there. While a person rests, the error of a joint persists, too, so many
-  /// frames amount to one measurement.
+  /// if it is not the same body.  While a person rests, a joint's error stays the same, too, so all
+  /// frames of a rest amount to one measurement.
   bool moved = true;
 
   [[nodiscard]] bool has(std::size_t slot) const { return (seen >> slot & 1U) != 0; }

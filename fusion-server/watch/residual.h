@@ -23,7 +23,8 @@ struct Residual {
   double front = 0.0;
 };
 
-/// The middle of a person's trunk, median over the views; none if no view shows it.
+/// The middle of a person's trunk: the median of each coordinate over the trunk's points in all
+/// views; none if no view shows such a point.
 [[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const Person& person);
 
 /// The person with only those views in which nobody else stands near them or near the line of

@@ -75,7 +75,8 @@ class Search {
     std::vector<calibration::View> views;
   };
 
-  /// Takes the size in which the board was found most often; if in none, the most frequent one.
+  /// Takes the size of picture in which the board was found most often; if it was found in none,
+  /// the size of most pictures.
   void take(std::vector<Group>& groups) {
     const auto rank = [](const Group& group) {
       return std::pair(group.views.size(), group.pictures);

@@ -38,7 +38,8 @@ struct TwoViews {
     }
   }
 
-  /// A person before both, whom they see or not.
+  /// A person in front of both sensors; `near_sees` and `far_shares` say which of them see the
+  /// person.
   void run(Duration length, std::size_t bodies_of_far, bool far_shares, bool near_sees = true) {
     std::vector<SensorId> views;
     if (near_sees) views.push_back(near);
