@@ -53,8 +53,10 @@ class Coverage {
 /// a pair with this many common views (docs/papers/registration.md, Coverage).
 [[nodiscard]] double expected_radius(std::size_t sightings, double spread, double distance);
 
-/// Sentences for people about what the walk still needs, the most important first; empty: nothing.
-/// `seeing`: the sensors that saw somebody during the walk.
+/// Sentences for people about what the walk still needs: one for each sensor that is not connected
+/// with the largest group of sensors by pairs within `target` [m], in the order of their ids.
+/// `seeing`: the sensors that saw somebody during the walk; with fewer than two there is no
+/// sentence.
 [[nodiscard]] std::vector<std::string> needs(const std::vector<PairCoverage>& pairs,
                                              const std::set<SensorId>& seeing, double target);
 

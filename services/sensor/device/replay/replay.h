@@ -17,8 +17,8 @@ namespace chorus::sensor_service {
 
 /// When the replay begins.
 enum class ReplayEpoch {
-  Now,         ///< The set begins when the service starts.
-  AsRecorded,  ///< Captures keep their recorded times; delivery begins when the service starts.
+  Now,         ///< The set begins when the device starts.
+  AsRecorded,  ///< Captures keep their recorded times; delivery begins when the device starts.
 };
 
 struct ReplayOptions {
