@@ -43,7 +43,8 @@ class FrameRing {
   [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const;
 
   /// The frame at an instant (an xsd:dateTime, or nanoseconds since the epoch as an integer),
-  /// interpolated between its neighbours.  NotFound after the newest frame, Gone before the oldest.
+  /// interpolated between its neighbours.  NotFound after the newest frame, Gone before the oldest,
+  /// InvalidArgument if `time` is no instant.
   [[nodiscard]] Result<FramePtr> at(const std::string& time) const;
 
   [[nodiscard]] FramePtr newest() const;
