@@ -3,7 +3,9 @@
 
 #include <vector>
 
-#include "fusion-server/status.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/status/registration_progress.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
 

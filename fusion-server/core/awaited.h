@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "fusion-server/core/last_seen.h"
-#include "fusion-server/status.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
 

@@ -11,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "fusion-server/status.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
 

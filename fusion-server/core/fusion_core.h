@@ -18,8 +18,11 @@
 #include "fusion-server/core/strays.h"
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/core/walked_clocks.h"
+#include "fusion-server/flow.h"
 #include "fusion-server/pipeline/pipeline.h"
-#include "fusion-server/status.h"
+#include "fusion-server/status/registration_progress.h"
+#include "fusion-server/status/sensor_status.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fusion-server/status.h"
+#include "fusion-server/flow.h"
 #include "fusion-server/watch/watch.h"
 
 namespace chorus::core {

@@ -19,7 +19,9 @@
 #include "fusion-server/core/last_seen.h"
 #include "fusion-server/core/registration_session.h"
 #include "fusion-server/core/world.h"
-#include "fusion-server/status.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/status/registration_progress.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
 

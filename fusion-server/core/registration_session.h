@@ -14,7 +14,7 @@
 #include "fusion-server/core/coverage.h"
 #include "fusion-server/flow.h"
 #include "fusion-server/registration/registration.h"
-#include "fusion-server/status.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
 

@@ -8,7 +8,7 @@
 #include "common/http/server.h"
 #include "common/service/metrics.h"
 #include "fusion-server/sink.h"
-#include "fusion-server/status.h"
+#include "fusion-server/status/server_status.h"
 
 namespace chorus::rest {
 

@@ -11,7 +11,9 @@
 #include "common/http/router.h"
 #include "common/service/serving.h"
 #include "fusion-server/core/world.h"
-#include "fusion-server/status.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/status/registration_progress.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::rest {
 

@@ -12,7 +12,7 @@
 #include "common/resource/frame_document.h"
 #include "common/resource/node.h"
 #include "common/service/serving.h"
-#include "fusion-server/status.h"
+#include "fusion-server/status/sensor_status.h"
 
 namespace chorus::rest {
 

@@ -14,11 +14,14 @@
 #include "common/base/rate_report.h"
 #include "common/time/clock.h"
 #include "fusion-server/core/fusion_core.h"
+#include "fusion-server/flow.h"
 #include "fusion-server/poll/poller.h"
 #include "fusion-server/server/state_keeper.h"
 #include "fusion-server/server/worker.h"
 #include "fusion-server/sink.h"
-#include "fusion-server/status.h"
+#include "fusion-server/status/sensor_status.h"
+#include "fusion-server/status/server_status.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::server {
 

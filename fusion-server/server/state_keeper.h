@@ -12,9 +12,10 @@
 #include <string>
 #include <utility>
 
+#include "fusion-server/flow.h"
 #include "fusion-server/server/registration_store.h"
 #include "fusion-server/server/worker.h"
-#include "fusion-server/status.h"
+#include "fusion-server/status/registration_progress.h"
 
 namespace chorus::server {
 

@@ -8,7 +8,8 @@
 
 #include "common/resource/node.h"
 #include "fusion-server/flow.h"
-#include "fusion-server/status.h"
+#include "fusion-server/status/registration_progress.h"
+#include "fusion-server/status/session_status.h"
 
 namespace chorus::wire {
 

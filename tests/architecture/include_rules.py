@@ -17,7 +17,7 @@ ROWS = [
     ["common/record"],
     ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration"],
     ["fusion-server/flow.h"],
-    ["fusion-server/status.h", "fusion-server/sink.h"],
+    ["fusion-server/status", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],
     ["fusion-server/registration"],
     ["fusion-server/pipeline", "fusion-server/poll"],
@@ -31,12 +31,12 @@ ROWS = [
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 
 # Values that rooms of the fusion server pass to each other; each header is a room of its own.
-VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/status.h", "fusion-server/sink.h"}
+VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/sink.h"}
 
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
-NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline"} | VALUE_HEADERS | STAGES
+NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline", "fusion-server/status"} | VALUE_HEADERS | STAGES
 # These rooms implement protocols other than HTTP: they may use sockets, but no HTTP.
 NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
 

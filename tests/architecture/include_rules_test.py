@@ -77,7 +77,7 @@ class BrokenRules(unittest.TestCase):
     def test_core_knows_no_socket(self):
         for room in ("core", "pipeline"):
             self.assert_caught(f"fusion-server/{room}/a.cpp", '#include "common/http/server.h"\n', "no socket")
-        self.assert_caught("fusion-server/status.h", '#include "common/http/server.h"\n', "no socket")
+        self.assert_caught("fusion-server/status/sensor_status.h", '#include "common/http/server.h"\n', "no socket")
 
     def test_core_links_no_socket(self):
         cmake = "chorus_library(NAME {} SRCS a.cpp DEPS {})\n".format
