@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/base/duration.h"
 #include "common/body/bones.h"
 #include "common/http/client.h"
 #include "common/http/status.h"
@@ -110,9 +111,11 @@ void take(const Json& frame, const importers::ImportedSet& set, Watched& out) {
   out.ages.push_back(chorus::seconds(SystemClock().now() - from_unix_ns(captured)));
   const auto& bodies = frame.at("bodies");
   if (!bodies.empty()) out.with_body += 1.0;
-  // Sensors begin their rounds at whole multiples of the take's length since 1970.
-  constexpr std::int64_t kTakeNs = 100 * 1'000'000'000LL / 60;
-  const double at = static_cast<double>(captured % kTakeNs) * 1e-9;
+  // Sensors begin their rounds at whole multiples of the take's length since 1970.  There have been
+  // 1e9 rounds, so the length must be the same to the nanosecond: one less is a second's
+  // difference.
+  const double at =
+      chorus::seconds(from_unix_ns(captured).time_since_epoch() % from_seconds(kTakeSeconds));
   if (at < kJoin || at > kTakeSeconds - kJoin) return;
   const auto& truth = set.truth.at(static_cast<std::size_t>(at * kTruthHz)).skeleton;
   if (bodies.empty()) return out.agreement.missed(truth);
