@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/body/bones.h"
 #include "common/body/interpolate.h"
+#include "fusion-server/align/same_body.h"
 
 namespace chorus::align {
 namespace {
@@ -12,8 +12,6 @@ namespace {
 /// Added to the longest delay seen so far, because a frame may be a little later than all before.
 constexpr Duration kGrace = std::chrono::milliseconds(15);
 constexpr int kPeriods = 2;  // A gap of this many of a sensor's periods is still interpolated.
-
-constexpr double kJumpSlack = 0.1;  // By how much a body's core may jump through noise alone [m].
 
 /// The frames around an instant; if one was captured at the instant itself, `before` and `after`
 /// are that frame.
@@ -51,39 +49,13 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
   return found;
 }
 
-const BodyFrame* body_of(const SensorFrame& frame, BodyId id) {
-  for (const BodyFrame& body : frame.bodies) {
-    if (body.id == id) return &body;
-  }
-  return nullptr;
-}
-
-/// True if one person cannot have moved that far between the two frames.  False for ray bodies,
-/// which do not show how far somebody moved.
-bool is_somebody_else(const BodyFrame& before, const BodyFrame& after, double reach) {
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  for (const JointId id : kCoreJoints) {
-    const Joint& from = before.skeleton[id];
-    const Joint& to = after.skeleton[id];
-    if (!from.seen() || !to.seen()) continue;
-    way += to.position - from.position;
-    count += 1.0;
-  }
-  return count > 0 && way.norm() > count * reach;
-}
-
 std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant,
                                       const AlignConfig& config) {
   const Duration gap = around.after->captured - around.before->captured;
   const double s = seconds(instant - around.before->captured) / seconds(gap);
-  const double reach = config.max_speed * seconds(gap) + kJumpSlack;
   std::vector<BodyFrame> bodies;
-  for (const BodyFrame& earlier : around.before->bodies) {
-    const BodyFrame* later = body_of(*around.after, earlier.id);
-    if (!later || is_somebody_else(earlier, *later, reach)) continue;
-    bodies.push_back({earlier.id, instant, interpolate(earlier.skeleton, later->skeleton, s)});
-  }
+  for (const auto& [earlier, later] : same_bodies(*around.before, *around.after, config.max_speed))
+    bodies.push_back({earlier->id, instant, interpolate(earlier->skeleton, later->skeleton, s)});
   return bodies;
 }
 

@@ -2,9 +2,8 @@
 //
 // Positions are interpolated linearly, orientations by sign-aligned normalised LERP. A joint is
 // interpolated only when both frames saw it; its state is the worse of the two. Bodies are matched
-// by id. A body that only one of the two frames has is left out. So is one that would have moved
-// faster than anybody can, because its id was passed to somebody else between the two frames.
-// Nothing is extrapolated.
+// by place and id (same_body.h). A body that only one of the two frames has is left out. So is one
+// that would have moved faster than anybody can. Nothing is extrapolated.
 #pragma once
 
 #include <optional>

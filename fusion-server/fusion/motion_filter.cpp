@@ -87,15 +87,22 @@ void MotionFilter::predict(Model& model, double dt) {
   model.covariance = step * model.covariance * step.transpose() + model.density * noise;
 }
 
+// What is clipped says less: the covariance shrinks only as far as the measurement was taken
+// (Joseph's form with the gain that was used).  Somebody who moves faster than expected is clipped
+// again and again; the variance, and with it the reach, then grows until they are followed.
 double MotionFilter::correct(Model& model, const Eigen::Vector3d& position, double variance,
                              double reach) {
   const double expected = model.covariance(0, 0) + variance;
-  Eigen::Vector3d off = position - model.position;
-  if (off.norm() > reach) off *= reach / off.norm();
-  const Eigen::Vector2d gain = model.covariance.col(0) / expected;
-  model.position += gain.x() * off;
-  model.velocity += gain.y() * off;
-  model.covariance = (model.covariance - gain * model.covariance.row(0)).eval();
+  const Eigen::Vector3d whole = position - model.position;
+  const double taken = whole.norm() > reach ? reach / whole.norm() : 1.0;
+  const Eigen::Vector3d off = taken * whole;
+  const Eigen::Vector2d gain = taken / expected * model.covariance.col(0);
+  model.position += gain.x() * whole;
+  model.velocity += gain.y() * whole;
+  Eigen::Matrix2d left = Eigen::Matrix2d::Identity();
+  left.col(0) -= gain;
+  model.covariance =
+      (left * model.covariance * left.transpose() + variance * gain * gain.transpose()).eval();
   return -0.5 * (kDimensions * std::log(expected) + off.squaredNorm() / expected);
 }
 

@@ -1,7 +1,11 @@
 #include "fusion-server/align/aligner.h"
 
+#include <array>
 #include <optional>
+#include <tuple>
+#include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace chorus::align {
@@ -159,6 +163,37 @@ TEST(Align, JointsThatAreNotSeenDoNotHideThatAnIdWentToSomebodyElse) {
   history.push(frame_at(milliseconds(0), 0.0));  // of these bodies, the neck alone is seen
   history.push(frame_at(milliseconds(33), 0.8));
   EXPECT_TRUE(ask(history, milliseconds(10)).bodies.empty());
+}
+
+/// Two people 0.5 m apart who step 0.05 m to the side, numbered as stated, in frames 66 ms apart.
+std::vector<double> between(std::array<std::uint64_t, 2> before, std::array<std::uint64_t, 2> after,
+                            double apart = 0.5) {
+  History history;
+  for (const auto& [when, ids, x] :
+       {std::tuple(milliseconds(0), before, 0.0), std::tuple(milliseconds(66), after, 0.05)}) {
+    SensorFrame frame = frame_at(when, x);
+    frame.bodies = {body_at(frame.captured, x, ids[0]), body_at(frame.captured, x + apart, ids[1])};
+    history.push(std::move(frame));
+  }
+  std::vector<double> places;
+  for (const BodyFrame& body : ask(history, milliseconds(33)).bodies)
+    places.push_back(body.skeleton[JointId::Neck].position.x());
+  return places;
+}
+
+TEST(Align, PeopleAreFollowedWhateverTheirNumbers) {
+  const auto both =
+      testing::ElementsAre(testing::DoubleNear(0.025, 1e-9), testing::DoubleNear(0.525, 1e-9));
+  EXPECT_THAT(between({1, 2}, {1, 2}), both);
+  EXPECT_THAT(between({1, 2}, {2, 1}), both);  // exchanged
+  EXPECT_THAT(between({1, 2}, {3, 4}), both);  // numbered from scratch
+  EXPECT_THAT(between({1, 2}, {2, 3}), both);
+}
+
+TEST(Align, WhoeverStandsCloselyIsToldApartByTheirNumber) {
+  const auto places = between({1, 2}, {2, 1}, 0.05);
+  EXPECT_THAT(places, testing::ElementsAre(testing::DoubleNear(0.05, 1e-9),
+                                           testing::DoubleNear(0.05, 1e-9)));
 }
 
 TEST(Align, BasisAtAgreesWithTheFullAnswer) {

@@ -1,6 +1,8 @@
 #include "fusion-server/fusion/motion_filter.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -106,8 +108,39 @@ TEST(MotionFilter, IsTheSingleFilterWhereBothDensitiesAreEqual) {
   const Errors single = of_single(1.0, 3.0);
   for (int i = 0; i < 60; ++i) {
     EXPECT_NEAR(std::sqrt(mixed.squared[i]), std::sqrt(single.squared[i]), 2e-4) << i;
-    EXPECT_NEAR(mixed.variance[i], single.variance[i], 1e-9) << i;
+    // Of 400 draws, a few are clipped at some step, and are less sure after it.
+    EXPECT_NEAR(mixed.variance[i], single.variance[i], 0.01 * single.variance[i]) << i;
   }
+}
+
+/// Raised and lowered by 1.2 m within half a second, at up to 7.5 m/s, then half a second of rest.
+double swung(int i) {
+  const double phase = std::fmod(kMotionStep * i, 1.0);
+  return phase < 0.5 ? 1.2 * std::sin(std::numbers::pi * phase / 0.5) : 0.0;
+}
+
+TEST(MotionFilter, FollowsAHandThatIsFasterThanExpected) {
+  MotionFilter filter(kDensities);
+  double rest = 0.0;
+  double worst = 0.0;
+  for (int i = 0; i < 150; ++i) {
+    filter.update(at_motion_step(i), {0, swung(i), 0}, 1e-5);
+    const double error = std::abs(filter.at(at_motion_step(i))->position.y() - swung(i));
+    worst = std::max(worst, error);
+    if (std::fmod(kMotionStep * i, 1.0) > 0.75) rest = std::max(rest, error);
+  }
+  EXPECT_LT(worst, 0.35);
+  EXPECT_LT(rest, 0.01);
+}
+
+TEST(MotionFilter, HardlyFollowsASingleOutlierAndIsNoSurerForIt) {
+  MotionFilter filter(kDensities);
+  for (int i = 0; i < 60; ++i) filter.update(at_motion_step(i), {0, 0, 0}, 1e-5);
+  const double before = filter.at(at_motion_step(59))->variance;
+  filter.update(at_motion_step(60), {0, 0.5, 0}, 1e-5);
+  const auto after = filter.at(at_motion_step(60)).value();
+  EXPECT_LT(after.position.y(), 0.08);
+  EXPECT_GT(after.variance, 5.0 * before);
 }
 
 TEST(MotionFilter, AnUnseenPointSlowsDownAndIsLessAndLessSure) {
