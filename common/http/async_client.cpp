@@ -15,6 +15,10 @@ namespace {
 namespace beast = boost::beast;
 using Parser = beast::http::response_parser<beast::http::string_body>;
 
+/// Limits what has come and cannot be parsed yet: a head, or that of a chunk, which Beast does not
+/// limit by itself.
+constexpr std::size_t kMaxUnparsed = 131072;
+
 }  // namespace
 
 struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
@@ -65,7 +69,7 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
   bool head_only = false;
   std::string out;
   std::chrono::milliseconds answer_time{0};
-  beast::flat_buffer in;
+  beast::flat_buffer in{kMaxUnparsed};
   std::optional<Parser> parser;
   std::int64_t sent_ns = 0;
 };

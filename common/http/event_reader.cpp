@@ -44,7 +44,8 @@ Result<std::vector<ServerEvent>> EventReader::take(std::string_view bytes) {
     }
     const std::size_t end = ends.after(here);
     const std::string_view part = bytes.substr(here, end - here);
-    if (line_.size() + part.size() + data_.size() > most_) {
+    since_event_ += part.size() + 1;
+    if (line_.size() + part.size() + data_.size() > most_ || since_event_ > 2 * most_) {
       return fail(ErrorCode::TooLarge, "event stream",
                   "an event is larger than " + std::to_string(most_) + " bytes");
     }
@@ -80,6 +81,7 @@ void EventReader::end_line(std::string_view line, std::vector<ServerEvent>& out)
 
 void EventReader::end_event(std::vector<ServerEvent>& out) {
   if (!std::exchange(any_data_, false)) return;
+  since_event_ = 0;
   usual_ = data_.size();
   out.push_back({id_, std::move(data_)});
   data_.clear();

@@ -22,7 +22,8 @@ class EventReader {
   explicit EventReader(std::size_t max_event_bytes) : most_(max_event_bytes) {}
 
   /// Returns the events that these bytes complete.  TooLarge when an event or a line exceeds the
-  /// limit; then do not read on from the stream.
+  /// limit, or when twice as many bytes (comments, empty lines) bring no event; then do not read on
+  /// from the stream.
   [[nodiscard]] Result<std::vector<ServerEvent>> take(std::string_view bytes);
 
  private:
@@ -35,6 +36,7 @@ class EventReader {
   std::size_t usual_ = 0;  ///< Bytes of the last event's data; the next has as many, or nearly.
   std::string id_;
   bool any_data_ = false;
+  std::size_t since_event_ = 0;  ///< Bytes since the last event.
   /// The last byte was a carriage return; if a line feed follows, both end one line.
   bool after_return_ = false;
   bool at_begin_ = true;  ///< A byte order mark is skipped at the beginning only.

@@ -48,6 +48,7 @@ struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::I
   void on_head(net::error_code failed);
   void read();
   void read_now();
+  [[nodiscard]] net::error_code parse();
   void on_read(net::error_code failed);
   void arm(std::chrono::milliseconds time, std::string_view doing);
   void end(Error error);
@@ -145,7 +146,7 @@ void AsyncEventStream::Impl::on_head(net::error_code failed) {
   const auto told = handlers;
   told->on_head(head);
   if (!is(mine)) return;
-  if (streams) return read();
+  if (streams) return on_read({});  // The first events may have come with the head.
   end({ErrorCode::Unsupported, authority, "answers no event stream"});
 }
 
@@ -157,17 +158,31 @@ void AsyncEventStream::Impl::read() {
   });
 }
 
+/// Does not use Beast's async_read_some, which goes on reading, and collecting, as long as what has
+/// come ends within the head of a chunk.
 void AsyncEventStream::Impl::read_now() {
+  stream.async_read_some(in.prepare(kReadBytes), [self = shared_from_this(), mine = attempt](
+                                                     net::error_code failed, std::size_t size) {
+    if (!self->is(mine)) return;
+    self->in.commit(size);
+    self->on_read(failed);
+  });
+}
+
+/// Parses all bytes that have come, except an unfinished head of a chunk, whose size it limits.
+net::error_code AsyncEventStream::Impl::parse() {
+  net::error_code broken;
   parser->eager(true);
-  in.reserve(kReadBytes);
-  beast::http::async_read_some(
-      stream, in, *parser,
-      [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
-        if (self->is(mine)) self->on_read(failed);
-      });
+  if (in.size() > 0) in.consume(parser->put(in.data(), broken));
+  if (broken == beast::http::error::need_more) broken = {};
+  if (!broken && in.size() > kMaxAnswerHeadBytes) broken = beast::http::error::buffer_overflow;
+  return broken;
 }
 
 void AsyncEventStream::Impl::on_read(net::error_code failed) {
+  net::error_code broken = parse();
+  if (!broken && failed == asio::error::eof) parser->put_eof(broken);
+  if (!broken && failed != asio::error::eof) broken = failed;
   const std::string bytes = std::exchange(parser->get().body(), {});
   auto events = reader->take(bytes);
   const auto mine = attempt;
@@ -175,8 +190,8 @@ void AsyncEventStream::Impl::on_read(net::error_code failed) {
   if (events && !events->empty()) told->on_events(std::move(*events));
   if (!is(mine)) return;
   if (!events) return end(events.error());
-  if (failed) {
-    return end({ErrorCode::Unavailable, authority, "the stream broke off: " + failed.message()});
+  if (broken) {
+    return end({ErrorCode::Unavailable, authority, "the stream broke off: " + broken.message()});
   }
   if (parser->is_done()) return end({ErrorCode::Unavailable, authority, "the stream ended"});
   read();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include <pcl/console/print.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/registration/correspondence_rejection_trimmed.h>
@@ -81,6 +82,9 @@ Eigen::Vector3d centroid(const Points& cloud) {
 }
 
 void set_up(Icp& icp, const Points::Ptr& source, const Points::Ptr& target, int iterations) {
+  // PCL would write to standard error by itself, past our log, and wait for whoever should read it.
+  static const bool silenced = (pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS), true);
+  static_cast<void>(silenced);
   icp.setSearchMethodTarget(std::make_shared<Scan>());
   icp.setInputSource(source);
   icp.setInputTarget(target);

@@ -44,6 +44,9 @@ TEST(Fetch, BrokenAnswersAreErrorsWithAReason) {
   EXPECT_EQ(failure("HTTP/1.1 200 OK\r\nContent-Length: 100\r\n\r\ncut"), ErrorCode::Unavailable);
   EXPECT_EQ(failure("HTTP/1.1 200 OK\r\nX: " + std::string(100000, 'a') + "\r\n\r\n"),
             ErrorCode::Malformed);
+  EXPECT_EQ(failure("HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n1;" +
+                    std::string(1U << 20U, 'e')),
+            ErrorCode::Malformed);
   ClientLimits small;
   small.max_body_bytes = 10;
   EXPECT_EQ(failure("HTTP/1.1 200 OK\r\nContent-Length: 11\r\n\r\n01234567890", small),

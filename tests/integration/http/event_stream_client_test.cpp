@@ -17,6 +17,9 @@ using testing::HasSubstr;
 
 const ClientRequest kAsking{"GET", "/frame", {{"Accept", "text/event-stream, text/turtle;q=0.9"}}};
 
+const std::string kChunked =
+    "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nTransfer-Encoding: chunked\r\n\r\n";
+
 /// What a stream delivered, in order.
 struct Heard {
   std::optional<ClientResponse> head;
@@ -99,6 +102,28 @@ TEST_F(EventStreamClient, EndlessEventsAndSilentServersAreGivenUp) {
             ErrorCode::TooLarge);
   heard_ = {};
   EXPECT_EQ(end_of("", small).code, ErrorCode::Timeout);
+}
+
+TEST_F(EventStreamClient, AnEventDoesNotWaitForTheRestOfAChunksHead) {
+  ScriptedServer server({kChunked + "9\r\ndata: a\n\n\r\n1"}, ScriptedServer::Afterwards::Stay);
+  AsyncEventStream stream(io_, "127.0.0.1", server.port());
+  stream.open(kAsking, handlers());
+  run_until([this] { return !heard_.events.empty(); });
+  EXPECT_EQ(heard_.events, (std::vector<ServerEvent>{{"", "a"}}));
+}
+
+TEST_F(EventStreamClient, TheHeadOfAChunkIsLimited) {
+  const Error end = end_of(kChunked + "1;" + std::string(1U << 20U, 'e'));
+  EXPECT_EQ(end.code, ErrorCode::Unavailable);
+  EXPECT_THAT(end.message, HasSubstr("buffer overflow"));
+}
+
+TEST_F(EventStreamClient, CommentsWithoutEndAreGivenUp) {
+  ClientLimits small;
+  small.max_body_bytes = 100;
+  std::string comments = "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\n";
+  for (int i = 0; i < 100; ++i) comments += ":\n\n";
+  EXPECT_EQ(end_of(comments, small).code, ErrorCode::TooLarge);
 }
 
 TEST_F(EventStreamClient, NobodyThereIsUnavailable) {

@@ -55,6 +55,10 @@ TEST(EventReader, WhatGrowsBeyondTheBoundIsRefused) {
   bool held = true;
   for (std::size_t i = 0; i < kMax && held; ++i) held = many_lines.take("data: x\n").has_value();
   EXPECT_FALSE(held);
+  EventReader no_events(kMax);
+  held = true;
+  for (std::size_t i = 0; i < kMax && held; ++i) held = no_events.take(":\n\n").has_value();
+  EXPECT_FALSE(held);
 }
 
 TEST(EventReader, ManySmallEventsAreNoLargeOne) {

@@ -52,6 +52,15 @@ TEST(RefineByIcp, PullsANearbyStartOntoTheTarget) {
   EXPECT_EQ(fit->accepted, 150u);
 }
 
+TEST(RefineByIcp, WritesNothingToStandardErrorWhenItFails) {
+  const Points target = walk(150);
+  const Eigen::Isometry3d far_away(Eigen::Translation3d(100, 0, 0));
+  testing::internal::CaptureStderr();
+  const auto fit = refine_by_icp(target, target, far_away, 0.10);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_FALSE(fit);
+}
+
 TEST(RefineByIcp, TheOtherWayRoundIsTheInverse) {
   const Points target = walk(150);
   const Points source = moved(tilted_motion().inverse(), target);
