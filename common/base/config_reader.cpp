@@ -11,6 +11,7 @@
 #include "common/base/log.h"
 #include "common/base/nearest.h"
 #include "common/base/parse.h"
+#include "common/base/shortened.h"
 #include "common/base/units.h"
 
 namespace chorus {
@@ -29,19 +30,26 @@ std::string reason_of(const Error& error) {
   return error.context.empty() ? error.message : "'" + error.context + "': " + error.message;
 }
 
-std::string shown(std::string_view text) {
-  if (text.size() <= kShownCharacters) return std::string(text);
-  std::size_t end = kShownCharacters;
-  // Cuts only between characters of UTF-8.
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  return std::string(text.substr(0, end)) + "...";
-}
+std::string shown(std::string_view text) { return shortened(text, kShownCharacters); }
 
 std::string dumped(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string shown_json(const json& value) { return shown(dumped(value)); }
+/// Whether the value of a key, or of an item of a list, is a token.
+bool is_secret(std::string_view path) {
+  while (!path.empty() && (path.back() == '.' || (path.back() >= '0' && path.back() <= '9')))
+    path.remove_suffix(1);
+  return path.ends_with("token") || path.ends_with("tokens");
+}
+
+/// How errors, which end up in logs, quote the wrong value of a key.  Never shows a token, nor what
+/// may contain some.
+std::string shown_json(std::string_view path, const json& value) {
+  if (value.is_array()) return "a list";
+  if (value.is_object()) return "an object";
+  return is_secret(path) ? "what is there" : shown(dumped(value));
+}
 
 std::string joined(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : path + "." + std::string(key);
@@ -103,7 +111,7 @@ struct ConfigReader::Node {
 
   /// For example: "port: must be a whole number, not "x"".
   void complain_type(std::string_view key, std::string_view wanted, const json& got) const {
-    complain(key, "must be " + std::string(wanted) + ", not " + shown_json(got));
+    complain(key, "must be " + std::string(wanted) + ", not " + shown_json(joined(path, key), got));
   }
 
   std::shared_ptr<Node> nested(const std::string& key, const json& inner) {
@@ -147,7 +155,7 @@ Result<ConfigReader> ConfigReader::parse(std::string_view text, std::string_view
 
 Result<void> ConfigReader::set(std::string_view assignment) {
   const std::size_t equals = assignment.find('=');
-  const std::string context = "--set " + shown(assignment);
+  const std::string context = "--set " + shown(assignment.substr(0, equals));
   if (equals == std::string_view::npos || equals == 0) {
     return fail(ErrorCode::InvalidArgument, context, "write it as path=value, such as port=8082");
   }

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/shortened.h"
+
 namespace chorus {
 namespace {
 
@@ -44,11 +46,30 @@ class StructureGuard {
   std::string repeated_;
 };
 
+/// Shortens the quoted text that the parser puts into its messages, which may be the whole
+/// document.  Leaves it out of those about configurations, because these contain tokens.
+std::string with_short_quote(std::string text, bool quotes) {
+  constexpr std::string_view kQuote = "; last read: '";
+  constexpr std::size_t kLongestEnd = 60;  // "; expected end of input" and the like.
+  const std::size_t begin = text.find(kQuote);
+  if (begin == std::string::npos) return text;
+  const std::size_t after = text.rfind("; expected ");
+  const bool ends_there =
+      after > begin && after != std::string::npos && text.size() - after < kLongestEnd;
+  const std::string end = ends_there ? text.substr(after) : std::string();
+  const std::size_t from = begin + kQuote.size();
+  const std::size_t size = text.size() - end.size() - from;
+  if (!quotes) return text.substr(0, begin) + end;
+  if (size <= kShownKey) return text;
+  return text.substr(0, from) + shortened(text.substr(from, size), kShownKey) + "'" + end;
+}
+
 /// "[json.exception.parse_error.101] parse error at line 1..." without the part in brackets.
-std::string readable(const Json::exception& error) {
+std::string readable(const Json::exception& error, bool configuration) {
   const std::string_view what = error.what();
   const std::size_t end = what.find("] ");
-  return std::string(end == std::string_view::npos ? what : what.substr(end + 2));
+  const auto words = end == std::string_view::npos ? what : what.substr(end + 2);
+  return with_short_quote(std::string(words), !configuration);
 }
 
 }  // namespace
@@ -70,7 +91,7 @@ Result<Json> parse_json(std::string_view text, const JsonLimits& limits) {
         kExceptions, limits.comments);
     if (guard.repeated().empty()) return json;
   } catch (const Json::exception& error) {
-    return fail(ErrorCode::Malformed, {}, readable(error));
+    return fail(ErrorCode::Malformed, {}, readable(error, limits.comments));
   } catch (const TooDeep& error) {
     return fail(ErrorCode::TooLarge, {}, error.what());
   }

@@ -16,6 +16,7 @@
 
 #include "common/base/line_writer.h"
 #include "common/base/log_queue.h"
+#include "common/base/shortened.h"
 
 namespace chorus::log {
 namespace {
@@ -33,6 +34,8 @@ constexpr std::array kLevels{
     LevelName{"error", Level::Error, spdlog::level::err},
 };
 
+/// Longest value of a field [bytes]; the reasons of a large registration need a few thousand.
+constexpr std::size_t kMaxValue = 8192;
 constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%eZ %v";
 constexpr const char* kJsonPattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",%v})";
 
@@ -98,7 +101,8 @@ std::string text_line(const LevelName& level, std::string_view name, Fields fiel
   // Event names are our own and may contain spaces, but must not break the line.
   for (const char c : name) line += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   for (const Field& field : fields) {
-    line.append(" ").append(field.key).append("=").append(as_word(field.value));
+    line.append(" ").append(field.key).append("=").append(
+        as_word(shortened(field.value, kMaxValue)));
   }
   return line;
 }
@@ -108,7 +112,7 @@ std::string json_members(const LevelName& level, std::string_view name, Fields f
   for (const Field& field : fields) {
     const bool bare = field.bare && nlohmann::json::accept(field.value);  // JSON has no "nan"
     line.append(",").append(json_text(field.key)).append(":");
-    line.append(bare ? field.value : json_text(field.value));
+    line.append(bare ? field.value : json_text(shortened(field.value, kMaxValue)));
   }
   return line;
 }

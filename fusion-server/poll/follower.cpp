@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/shortened.h"
 #include "common/http/status.h"
 
 namespace chorus::poll {
@@ -189,7 +190,7 @@ void Follower::take(Result<http::ClientResponse> response, const Send& asked) {
     case Resource::FloorPlane: {
       const auto floor = read_floor_answer(*response);
       floor_ = floor.value_or(std::nullopt);
-      floor_error_ = floor ? "" : to_string(floor.error());
+      floor_error_ = floor ? "" : shortened(to_string(floor.error()), kMaxReason);
       return feed(FloorAnswered{response->status < http::status::kInternal});
     }
     case Resource::Clock: {

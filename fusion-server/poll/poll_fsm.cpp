@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/base/shortened.h"
 #include "common/http/status.h"
 
 namespace chorus::poll {
@@ -321,6 +322,7 @@ Action PollFsm::after(Duration interval, Duration now, Duration rest) {
 }
 
 void PollFsm::enter(SensorState state, std::string reason) {
+  reason = shortened(reason, kMaxReason);
   const bool changed = state != state_ || (!reason.empty() && reason != last_error_);
   if (!changed) return;
   state_ = state;

@@ -108,6 +108,28 @@ TEST(ConfigMistakes, UnknownKeysAreNamedWithPathAndNearestKey) {
             Not(HasSubstr("entirely_different: unknown key;"))));
 }
 
+TEST(ConfigMistakes, NoMessageShowsAToken) {
+  const std::string secret = "9123456789012";
+  for (const std::string& text :
+       {R"({"bearer_token": )" + secret + "}", R"({"tokens": [")" + secret + "\"]}",
+        R"({"sensors": {"id": "s1", "token": ")" + secret + "\"}}"}) {
+    auto root = reader_of(text);
+    std::string token;
+    root.read("bearer_token", token);
+    EXPECT_TRUE(root.items("tokens").empty());
+    EXPECT_TRUE(root.items("sensors").empty());
+    EXPECT_THAT(complaint_of(root), AllOf(HasSubstr("must be"), Not(HasSubstr(secret)))) << text;
+  }
+  const auto cut = ConfigReader::parse(R"({"token": ")" + secret + ", \"x\": 1}", "test.json");
+  ASSERT_FALSE(cut);
+  EXPECT_THAT(to_string(cut.error()), AllOf(HasSubstr("line 1"), Not(HasSubstr(secret))));
+  auto root = reader_of("{}");
+  const auto set = root.set("http.bearer_token=\"" + secret);
+  ASSERT_FALSE(set);
+  EXPECT_THAT(to_string(set.error()),
+              AllOf(HasSubstr("http.bearer_token"), Not(HasSubstr(secret))));
+}
+
 TEST(ConfigMistakes, WrongTypesAndRangesAreAllReportedAndLeaveTheDefaults) {
   auto root = reader_of(
       R"({"flag": 1, "port": 70000, "whole": 1.5, "huge": 1e300, "big": 18446744073709551615,

@@ -37,6 +37,20 @@ TEST(ParseJson, NamesAKeyThatAnObjectHasTwice) {
   EXPECT_EQ(longest.error().context.size(), 80U);
 }
 
+TEST(ParseJson, QuotesLittleOfWhatItCannotRead) {
+  const std::string endless = R"({"a": "; expected ')" + std::string(100'000, 'x');
+  for (const std::string& text : {endless, endless + "\"", endless + "\" 1"}) {
+    const auto json = parse_json(text);
+    ASSERT_FALSE(json);
+    EXPECT_LT(json.error().message.size(), 300U) << json.error().message.substr(0, 300);
+    EXPECT_NE(json.error().message.find("line 1"), std::string::npos);
+  }
+  const auto short_one = parse_json("[1, tru]");
+  ASSERT_FALSE(short_one);
+  EXPECT_NE(short_one.error().message.find("last read: '1, tru]'"), std::string::npos)
+      << short_one.error().message;
+}
+
 TEST(ParseJson, CountsDepthAsABracketCounterWould) {
   EXPECT_TRUE(parse_json(repeated("[", 32) + repeated("]", 32)));
   const auto deep = parse_json(repeated("[", 33) + repeated("]", 33));

@@ -46,6 +46,16 @@ TEST(LogText, AForeignValueCannotForgeALineOrAField) {
   EXPECT_THAT(line, HasSubstr(R"(path="/x\n2026 error fake" agent="a b=c" empty="")"));
 }
 
+TEST(LogText, AVeryLongValueIsCut) {
+  for (const log::Format format : {log::Format::Text, log::Format::Json}) {
+    const std::string line = logged(log::Level::Info, format, [] {
+      log::info("sensor refused", {{"reason", std::string(500'000, 'x')}});
+    });
+    EXPECT_LT(line.size(), 10'000U);
+    EXPECT_THAT(line, HasSubstr("xxx..."));
+  }
+}
+
 TEST(LogJson, IsOneObjectPerLineWithNumbersAsNumbers) {
   const std::string line = logged(log::Level::Debug, log::Format::Json, [] {
     log::debug("tick", {{"count", 3},

@@ -197,6 +197,15 @@ TEST(PollFsm, AnUnreadableBodyIsRefusedAndItsTagForgotten) {
   EXPECT_EQ(fsm.state(), SensorState::Live);
 }
 
+TEST(PollFsm, AReasonIsCutThatQuotesTheWholeAnswer) {
+  PollFsm fsm = live(milliseconds(0));
+  const Error endless{ErrorCode::Malformed, std::string(500'000, 'x'), "is not a number"};
+  const Step step = fsm.resume(Unreadable{endless}, std::chrono::seconds(5), kFull);
+  EXPECT_LT(fsm.last_error().size(), 600U);
+  ASSERT_TRUE(step.notice);
+  EXPECT_LT(step.notice->reason.size(), 600U);
+}
+
 TEST(PollFsm, TheFloorIsAskedForAgainLaterBetweenFrames) {
   PollFsm fsm = live(milliseconds(100));
   const Step before = fsm.resume(frame(1, "\"2\""), std::chrono::seconds(9), kFull);

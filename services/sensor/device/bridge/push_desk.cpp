@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/base/log.h"
+#include "common/base/shortened.h"
 
 namespace chorus::bridge {
 namespace {
@@ -139,7 +140,7 @@ Result<void> PushDesk::take(Seat seat, PushedFrame frame, const Hello& hello) {
 }
 
 void PushDesk::note_refusal(Seat seat, const Error& error) {
-  const std::string text = to_string(error);
+  const std::string text = shortened(to_string(error), kMaxReason);
   refusals_.hit(text);
   const std::lock_guard lock(mutex_);
   if (!holder_ || holder_->seat != seat) return;
