@@ -29,8 +29,12 @@ std::vector<OwnPort> own_ports(const StartSettings& config) {
   const outputs::OutputsConfig& out = config.outputs;
   if (out.vrpn.common.enabled)
     ports.push_back({"outputs.vrpn.port", out.vrpn.protocol.port, true, true});
-  if (out.dtrack.common.enabled)
-    ports.push_back({"outputs.dtrack.source_port", out.dtrack.protocol.source_port, false, true});
+  if (out.dtrack.common.enabled) {
+    const auto& dtrack = out.dtrack.protocol;
+    ports.push_back({"outputs.dtrack.source_port", dtrack.source_port, false, true});
+    if (dtrack.commands)
+      ports.push_back({"outputs.dtrack.command.port", dtrack.command.port, true, false});
+  }
   if (out.natnet.common.enabled)
     ports.push_back({"outputs.natnet.command_port", out.natnet.protocol.command_port, false, true});
   return ports;

@@ -150,6 +150,7 @@ struct FusionServer::Impl {
   mutable std::mutex mutex;
   Status status;  ///< Guarded by mutex.
   std::atomic<std::chrono::steady_clock::time_point> status_at{};
+  StateClaim state_claim;
   RegistrationStore store{""};
   std::string store_trouble;
   std::optional<service::FrameResources> frames;
@@ -278,6 +279,9 @@ Result<void> FusionServer::start() {
   service::log_concerns({});
   s.store = RegistrationStore(folder);
   s.store_trouble = probe_folders(s.config.at_start, folder);
+  auto claim = StateClaim::take(folder);
+  if (!claim) return pass(claim);
+  s.state_claim = std::move(*claim);
   for (const std::string& concern : setting_concerns(s.config))
     log::warn("the configuration may not be what is meant", {{"what", concern}});
   auto initial = initial_registration(s.config, s.store);

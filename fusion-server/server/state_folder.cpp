@@ -1,5 +1,10 @@
 #include "fusion-server/server/state_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -44,6 +49,28 @@ Result<void> probe_folder(const std::string& folder) {
   }
   fs::remove(probe, error);
   return {};
+}
+
+Result<StateClaim> StateClaim::take(const std::string& folder) {
+  if (folder.empty()) return StateClaim();
+  constexpr mode_t kMode = 0644;
+  const std::string path = (fs::path(folder) / ".lock").string();
+  const int lock = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kMode);
+  if (lock < 0) return StateClaim();
+  StateClaim claim(lock);
+  if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return claim;
+  return fail(ErrorCode::Conflict, folder,
+              "another chorus-fusion keeps its state there; end it, or set state_dir to another "
+              "folder");
+}
+
+StateClaim& StateClaim::operator=(StateClaim&& other) noexcept {
+  std::swap(lock_, other.lock_);
+  return *this;
+}
+
+StateClaim::~StateClaim() {
+  if (lock_ >= 0) ::close(lock_);
 }
 
 std::string viewer_folder(const std::string& configured) {

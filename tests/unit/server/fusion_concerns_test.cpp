@@ -52,6 +52,9 @@ TEST(SettingConcerns, NoTwoOutputsShareAPort) {
               Contains(HasSubstr("outputs.vrpn.port: is the port of http.port too")));
   EXPECT_THAT(setting_concerns(two_sensors_with(R"("http": {"port": 3883})")), IsEmpty())
       << "not enabled";
+  EXPECT_THAT(setting_concerns(two_sensors_with(R"("http": {"port": 50105}, "outputs": {
+                  "dtrack": {"enabled": true, "command": {"enabled": true}}})")),
+              Contains(HasSubstr("outputs.dtrack.command.port: is the port of http.port too")));
   EXPECT_THAT(setting_concerns(
                   two_sensors_with(R"("outputs": {"natnet": {"enabled": true, "command_port": 3883},
                                                    "vrpn": {"enabled": true}})")),

@@ -82,5 +82,22 @@ TEST(Probing, TheViewerNeedsItsFilesAndThree) {
   EXPECT_TRUE(probe_viewer(folder.path().string()));
 }
 
+TEST(StateClaim, IsForOneServerUntilItEnds) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string path = folder.path().string();
+  {
+    auto first = StateClaim::take(path);
+    ASSERT_TRUE(first);
+    const StateClaim moved = std::move(*first);
+    const auto second = StateClaim::take(path);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, ErrorCode::Conflict);
+    EXPECT_EQ(second.error().context, path);
+  }
+  EXPECT_TRUE(StateClaim::take(path));
+  EXPECT_TRUE(StateClaim::take(""));
+  EXPECT_TRUE(StateClaim::take((folder / "missing").string()));
+}
+
 }  // namespace
 }  // namespace chorus::server
