@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kMinSigma =
     1e-4;  ///< [m], [rad]; prevents a division by zero if the configuration is careless
+/// Least standard deviation of a stated covariance [m], [rad].  Nobody knows better where a joint
+/// is inside a person, and a sensor that claims it would outvote any number of others.
+constexpr double kLeastStated = 3e-3;
+constexpr double kLeastStatedRay = 1e-3;
 constexpr double kMinFactor = 1.0;  ///< an inferred joint is never better than a tracked one
 constexpr double kMinRay = 1e-3;    ///< [m]; closer to the eye, a joint has no line of sight
 
@@ -28,14 +32,15 @@ Eigen::Matrix3d ray_covariance(const Joint& joint, const NoiseModel& noise) {
   return sigma * sigma * Eigen::Matrix3d::Identity();
 }
 
-/// A stated covariance, widened so that it can be inverted.  Rounding on the wire leaves
-/// eigenvalues slightly below 0 where a sensor states that one direction is hardly known.
-Eigen::Matrix3d invertible(const Eigen::Matrix3d& stated) {
+/// A stated covariance, widened so that no direction is better known than `least` (standard
+/// deviation) and it can be inverted.  Rounding on the wire leaves eigenvalues slightly below 0
+/// where a sensor states that one direction is hardly known.
+Eigen::Matrix3d believable(const Eigen::Matrix3d& stated, double least) {
   constexpr double kLeastRatio = 1e-7;  // of the smallest to the largest eigenvalue
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(stated, Eigen::EigenvaluesOnly);
   const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();
-  const double lack = std::max(0.0, -solver.eigenvalues().minCoeff());
+  const double lack = std::max(0.0, least * least - solver.eigenvalues().minCoeff());
   return stated +
          (lack + kMinSigma * kMinSigma + kLeastRatio * largest) * Eigen::Matrix3d::Identity();
 }
@@ -47,7 +52,9 @@ class LineOfSightErrors final : public ErrorModel {
 
   [[nodiscard]] Eigen::Matrix3d covariance(const SensorView& view, JointId id) const override {
     const Joint& joint = view.skeleton[id];
-    if (joint.covariance.known()) return invertible(joint.covariance.matrix());
+    if (joint.covariance.known()) {
+      return believable(joint.covariance.matrix(), joint.bears() ? kLeastStatedRay : kLeastStated);
+    }
     const auto own = of_sensors_.find(view.sensor);
     const NoiseModel& noise = own == of_sensors_.end() ? noise_ : own->second;
     if (joint.bears()) return ray_covariance(joint, noise);

@@ -152,5 +152,21 @@ TEST(BodyFilterViews, SomebodyUnseenIsSaidToBeAnywhereSoon) {
   EXPECT_GT(body.variance[index_of(SpineMid)], 10.0 * seen);
 }
 
+TEST(BodyFilterViews, AViewThatClaimsToBePerfectDoesNotOutvoteThreeOthers) {
+  Room room;
+  const Skeleton<WorldSpace> truth = standing();
+  SensorView liar = view_of(4, truth);
+  for (Joint& joint : liar.skeleton.joints) {
+    if (!joint.seen()) continue;
+    joint.position.x() += 0.25;
+    joint.covariance = Covariance(Eigen::Matrix3d(1e-12 * Eigen::Matrix3d::Identity()));
+  }
+  FusedBody body;
+  for (int step = 0; step < 30; ++step)
+    body = room.at(step, {view_of(1, truth), view_of(2, truth), view_of(3, truth), liar});
+  for (const JointId id : kCoreJoints)
+    EXPECT_LT((body.skeleton[id].position - truth[id].position).norm(), 0.03) << name_of(id);
+}
+
 }  // namespace
 }  // namespace chorus::fusion

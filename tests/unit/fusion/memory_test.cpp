@@ -183,6 +183,17 @@ TEST(ErrorModel, BelievesAMeasurementThatBringsItsCovariance) {
   EXPECT_NEAR(errors->covariance(view, JointId::Neck)(2, 2), 6e-4, 1e-7);
 }
 
+TEST(ErrorModel, BelievesNobodyToBeBetterThanABodyCanBeKnown) {
+  SensorView view = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 5});
+  view.skeleton[JointId::Neck].covariance =
+      Covariance(Eigen::Vector3d(1e-12, 4e-4, 0).asDiagonal().toDenseMatrix());
+  const auto errors = line_of_sight_errors({}, {});
+  EXPECT_NEAR(errors->covariance(view, JointId::Neck)(0, 0), 9e-6, 1e-7);
+  EXPECT_NEAR(errors->covariance(view, JointId::Neck)(2, 2), 9e-6, 1e-7);
+  view.skeleton[JointId::Neck].measurement = Measurement::Ray;
+  EXPECT_NEAR(errors->covariance(view, JointId::Neck)(0, 0), 1e-6, 1e-7);
+}
+
 TEST(ErrorModel, ASensorMayHaveANoiseOfItsOwn) {
   const SensorView view = neck_view(2, {0, 1, 0}, 0.5, {0, 1, 5});
   const auto errors = line_of_sight_errors({}, {{sensor(2), {.along = 0.2, .across = 0.1}}});
