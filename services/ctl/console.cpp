@@ -13,11 +13,21 @@ namespace {
 
 constexpr int kBarWidth = 30;  // characters
 
+/// True for characters of three bytes that order text from right to left or break lines: U+200E,
+/// U+200F, U+2028 to U+202E and U+2066 to U+2069.  Shown, they let a line read as another one.
+bool reorders(std::string_view character) {
+  if (!character.starts_with("\xE2\x80") && !character.starts_with("\xE2\x81")) return false;
+  const auto last = static_cast<unsigned char>(character[2]);
+  if (character[1] == '\x81') return last >= 0xA6 && last <= 0xA9;
+  return last == 0x8E || last == 0x8F || (last >= 0xA8 && last <= 0xAE);
+}
+
 /// Length in bytes of the control character at `i`; 0 if there is none.  Control characters are C0,
-/// DEL, and C1 in UTF-8 (0xC2, then 0x80 to 0x9F).
+/// DEL, C1 in UTF-8 (0xC2, then 0x80 to 0x9F), and those that reorder text.
 std::size_t control_at(std::string_view text, std::size_t i) {
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
   if (byte(i) < 0x20 || byte(i) == 0x7F) return 1;
+  if (i + 2 < text.size() && reorders(text.substr(i, 3))) return 3;
   const bool c1 =
       byte(i) == 0xC2 && i + 1 < text.size() && byte(i + 1) >= 0x80 && byte(i + 1) < 0xA0;
   return c1 ? 2 : 0;

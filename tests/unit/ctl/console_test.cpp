@@ -29,6 +29,10 @@ TEST(Printable, HasNoControlCharactersAndKeepsTheRest) {
                       "0m"),
             "?[31m????0m");
   EXPECT_EQ(printable(std::string_view("\0\xC2", 2)), "?\xC2");
+  EXPECT_EQ(printable("good\xE2\x80\xAE"
+                      "dab\xE2\x81\xA9 \xE2\x80"),
+            "good?dab? \xE2\x80")
+      << "an override of the direction of text, and an unfinished character";
   EXPECT_EQ(table({{"a\x1b[2J", "b\n"}}), "a?[2J  b?\n");
 }
 
