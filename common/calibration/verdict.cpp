@@ -14,6 +14,10 @@ constexpr double kWidest = 0.2;    // smallest focal length relative to the pict
                                    // field of view of 136 degrees
 constexpr double kNarrowest = 12;  // 5 degrees
 
+// Errors of the corners, relative to the picture's longer side, that no bent board and no blur
+// explain.
+constexpr double kAnotherBoard = 0.015;
+
 /// A third of the picture: its name, and the part of a side that it covers.
 struct Strip {
   const char* name;
@@ -52,7 +56,8 @@ void find_few(std::size_t views, std::size_t least, std::vector<std::string>& ou
     out.push_back(
         "the board was found in none of them: --squares counts squares, one more each way than "
         "inner corners; --board and --marker-bits must be those of the print; all of a chessboard "
-        "must be in the picture; a board printed white on black is not found");
+        "must be in the picture, which must be sharp and bright; a board printed white on black is "
+        "not found");
     return;
   }
   out.push_back(fmt::format(
@@ -68,15 +73,25 @@ void find_untilted(const Calibration& calibration, const Demands& demands,
                     [&](const SolvedView& v) { return v.used && v.tilt >= demands.tilt; }));
   if (tilted >= demands.tilted_views) return;
   out.push_back(
-      fmt::format("tilt the board by 30 deg in at least {} views, each another way: only "
-                  "{} are tilted, and without tilt the focal length is unknown",
-                  demands.tilted_views, tilted == 0 ? "none" : std::to_string(tilted)));
+      fmt::format("tilt the board by 30 deg in at least {} views, each another way: {} tilted, "
+                  "and without tilt the focal length is unknown",
+                  demands.tilted_views,
+                  tilted == 0   ? "none is"
+                  : tilted == 1 ? "only 1 is"
+                                : fmt::format("only {} are", tilted)));
 }
 
 void find_bad_fit(const Calibration& calibration, const Demands& demands,
                   std::vector<std::string>& out) {
   const Intrinsics& camera = calibration.intrinsics;
   const double side = std::max(camera.width, camera.height);
+  if (calibration.error_px > kAnotherBoard * side) {
+    out.push_back(
+        fmt::format("the corners miss their places by {:.0f} px: this is another board than "
+                    "--squares says, which counts squares, one more each way than inner corners",
+                    calibration.error_px));
+    return;  // What came out is no lens, so its faults say nothing.
+  }
   if (!(calibration.error_px <= demands.error_share * side))
     out.push_back(
         fmt::format("the corners miss their places by {:.1f} px, more than {:.1f}: is the "

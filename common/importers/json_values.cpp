@@ -14,7 +14,13 @@ Result<nlohmann::json> read_json(const std::filesystem::path& file, std::uintmax
   const auto text = read_bounded(file, max_bytes);
   if (!text) return pass(text);
   auto parsed = parse_json(*text, {.bytes = max_bytes});
-  if (!parsed) return fail(parsed.error().code, file.string(), parsed.error().message);
+  if (!parsed) {
+    const bool nan = text->find("NaN") != std::string::npos;
+    return fail(
+        parsed.error().code, file.string(),
+        parsed.error().message +
+            (nan ? "; JSON has no NaN: write 0 as the confidence of what is not seen" : ""));
+  }
   return parsed;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/nearest.h"
 #include "common/base/units.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
@@ -89,6 +90,14 @@ Result<Joint> joint_of(const Table& row) {
   return joint;
 }
 
+std::string no_joint(std::string_view word) {
+  const std::vector<std::string> names(kJointNames.begin(), kJointNames.end());
+  const std::string meant = nearest(word, names);
+  return meant.empty()
+             ? "is no joint of ours, such as ShoulderLeft; docs/terminology.md lists all 25"
+             : fmt::format("is no joint of ours; did you mean {}?", meant);
+}
+
 Result<void> check_columns(const LineReader& lines, const Table& table) {
   for (const std::string_view needed : {"joint", "x_m", "y_m", "z_m"}) {
     if (!table.has(needed))
@@ -120,7 +129,7 @@ Result<void> read_joint_rows(LineReader& lines, const ImportOptions& options,
     const auto person = table->natural("person", 1);
     if (!person) return pass(person);
     const auto id = joint_named(table->field("joint"));
-    if (!id) return table->wrong("joint", "is no joint of ours, such as ShoulderLeft");
+    if (!id) return table->wrong("joint", no_joint(table->field("joint")));
     const auto joint = joint_of(*table);
     if (!joint) return pass(joint);
     if (auto ok = instants.reach(lines, *captured); !ok) return ok;

@@ -29,6 +29,18 @@ std::string_view unquoted(std::string_view field) {
   return field.substr(1, field.size() - 2);
 }
 
+/// As numpy, pandas and R write what is not there.
+bool is_nan(std::string_view text) { return text == "nan" || text == "NaN" || text == "NA"; }
+
+/// The unit of a column's numbers, which its name ends in, and the mistake that takes them beyond
+/// their bound.
+std::string_view unit_of(std::string_view column) {
+  if (column.ends_with("_mm")) return " mm";
+  if (column.ends_with("_m")) return " m; is it in millimetres?";
+  if (column.ends_with("_s")) return " s; is it in milliseconds?";
+  return "";
+}
+
 }  // namespace
 
 void Table::split(std::string_view line) {
@@ -75,12 +87,13 @@ std::string_view Table::field(std::string_view column) const {
 
 Result<std::optional<double>> Table::number(std::string_view column, double bound) const {
   const std::string_view text = field(column);
-  if (text.empty()) return std::nullopt;
+  if (text.empty() || is_nan(text)) return std::nullopt;
   const auto value = parse_finite(text);
   if (!value && text.find(',') != std::string_view::npos)
     return wrong(column, "is not a number; decimals need a point instead of the comma");
   if (!value) return wrong(column, "is not a number");
-  if (std::abs(*value) > bound) return wrong(column, fmt::format("is beyond +-{}", bound));
+  if (std::abs(*value) > bound)
+    return wrong(column, fmt::format("is beyond +-{}{}", bound, unit_of(column)));
   return value;
 }
 
@@ -93,8 +106,9 @@ Result<std::uint64_t> Table::natural(std::string_view column, std::uint64_t abse
 }
 
 tl::unexpected<Error> Table::wrong(std::string_view column, std::string_view what) const {
-  return lines_->malformed(
-      fmt::format("{}: \"{}\" {}.", column, field(column).substr(0, kShownFieldBytes), what));
+  return lines_->malformed(fmt::format("{}: \"{}\" {}{}", column,
+                                       field(column).substr(0, kShownFieldBytes), what,
+                                       what.ends_with('?') ? "" : "."));
 }
 
 }  // namespace chorus::importers

@@ -1,5 +1,7 @@
 #include "fusion-server/core/last_seen.h"
 
+#include <algorithm>
+
 namespace chorus::core {
 namespace {
 
@@ -11,7 +13,10 @@ void LastSeen::add(const SensorFrame& frame) {
   Newest& own = newest_[frame.sensor];
   own.received = frame.received;
   own.bodies = frame.bodies.size();
-  if (!frame.bodies.empty()) own.saw = frame.received;
+  if (frame.bodies.empty()) return;
+  own.saw = frame.received;
+  own.rays = std::ranges::all_of(
+      frame.bodies, [](const BodyFrame& body) { return has_rays_alone(body.skeleton.joints); });
 }
 
 void LastSeen::keep(const std::set<SensorId>& sensors) {
@@ -26,6 +31,11 @@ std::size_t LastSeen::bodies(const SensorId& sensor, Timestamp now) const {
 bool LastSeen::delivers(const SensorId& sensor, Timestamp now) const {
   const auto own = newest_.find(sensor);
   return own != newest_.end() && lately(own->second.received, now);
+}
+
+bool LastSeen::sends_rays_alone(const SensorId& sensor) const {
+  const auto own = newest_.find(sensor);
+  return own != newest_.end() && own->second.rays;
 }
 
 std::set<SensorId> LastSeen::seeing(Timestamp now) const {

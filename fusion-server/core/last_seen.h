@@ -25,12 +25,15 @@ class LastSeen {
   [[nodiscard]] bool delivers(const SensorId& sensor, Timestamp now) const;
   /// Sensors that recently saw a body.
   [[nodiscard]] std::set<SensorId> seeing(Timestamp now) const;
+  /// True if the last body that the sensor saw had directions alone, without depth.
+  [[nodiscard]] bool sends_rays_alone(const SensorId& sensor) const;
 
  private:
   struct Newest {
     Timestamp received;  ///< When its newest frame came.
     std::size_t bodies = 0;
-    Timestamp saw{};  ///< When its last frame with a body came.
+    Timestamp saw{};    ///< When its last frame with a body came.
+    bool rays = false;  ///< That body had rays alone.
   };
   std::map<SensorId, Newest> newest_;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "common/base/units.h"
 #include "common/body/guessed_depth.h"
 
@@ -23,6 +25,13 @@ constexpr double kCameraPosition = 2.0;   // [m] 95 %, of a whole room
 bool saw_somebody(const WalkTrack& track) {
   return std::ranges::any_of(track.frames,
                              [](const SensorFrame& frame) { return !frame.bodies.empty(); });
+}
+
+bool sends_rays_alone(const WalkTrack& track) {
+  const auto bears = [](const BodyFrame& body) { return has_rays_alone(body.skeleton.joints); };
+  return saw_somebody(track) && std::ranges::all_of(track.frames, [&](const SensorFrame& frame) {
+           return std::ranges::all_of(frame.bodies, bears);
+         });
 }
 
 }  // namespace
@@ -61,6 +70,30 @@ RegistrationConfig suited_to(const std::vector<WalkTrack>& walk, const Registrat
   suited.max_distance = std::max(config.max_distance, kCameraDistance);
   suited.max_position = std::max(config.max_position, kCameraPosition);
   return suited;
+}
+
+bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result) {
+  const auto silent = [](const WalkTrack& track) { return track.frames.empty(); };
+  if (std::ranges::all_of(walk, silent)) {
+    result.reasons.emplace_back("no sensor has delivered a frame yet");
+    return true;
+  }
+  bool others = false;
+  for (const WalkTrack& track : walk) {
+    if (!sends_rays_alone(track)) {
+      others = others || saw_somebody(track);
+      continue;
+    }
+    const std::string reason = fmt::format(
+        "sensor {} sends directions without depth, which no walk can place: switch "
+        "device.camera.depth_from_size on there, or state its place in registration.file",
+        track.sensor.str());
+    result.verdicts[track.sensor] = {Verdict::Refused, {reason}};
+    result.reasons.push_back(reason);
+  }
+  const bool in_vain = !others && !result.reasons.empty();
+  if (in_vain) result.verdict = Verdict::Refused;
+  return in_vain;
 }
 
 }  // namespace chorus::registration

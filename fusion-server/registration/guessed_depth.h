@@ -2,7 +2,8 @@
 //
 // They know a joint's place to centimetres across the line of sight and to decimetres along it.
 // Their frames say so: the stated error along the line of sight is a fraction of the distance.  A
-// walk that only such cameras saw is registered by directions, almost as by rays.
+// walk that only such cameras saw is registered by directions, almost as by rays.  Cameras that
+// send nothing but rays are not registered at all: this room says so.
 #pragma once
 
 #include "fusion-server/registration/registration.h"
@@ -16,5 +17,10 @@ namespace chorus::registration {
 /// guess depth; then what a depth sensor must fulfil gives way to what such cameras can.
 [[nodiscard]] RegistrationConfig suited_to(const std::vector<WalkTrack>& walk,
                                            const RegistrationConfig& config);
+
+/// True if no place can come of this walk: no frame came, or all sensors that saw somebody are
+/// cameras that send rays alone.  Each such camera, also one beside other sensors, is `Refused` in
+/// `result` with what to do about it.
+[[nodiscard]] bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result);
 
 }  // namespace chorus::registration

@@ -368,10 +368,7 @@ Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTra
   Work work{walk, config, stopped, {}, {}, {}, {}, {}, false};
   work.result.solved = now;
   reduce_tracks(work);
-  if (std::ranges::all_of(walk, [](const WalkTrack& track) { return track.frames.empty(); })) {
-    work.result.reasons.push_back("no sensor has delivered a frame yet");
-    return work.result;
-  }
+  if (nothing_to_solve(walk, work.result)) return work.result;
   register_pairs(work, estimate);
   refuse_outcasts(work);
   choose_master(work);

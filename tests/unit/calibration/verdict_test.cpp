@@ -1,5 +1,7 @@
 #include "common/calibration/verdict.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +49,16 @@ TEST(Weaknesses, FewViewsAreCounted) {
 
 TEST(Weaknesses, WithoutTiltTheFocalLengthIsUnknown) {
   const auto said = weak(views_of({.count = 15, .tilt = 0.02, .reach = 0.36}));
-  EXPECT_THAT(said, Contains(HasSubstr("tilt the board by 30 deg in at least 3 views")));
+  EXPECT_THAT(said, Contains(HasSubstr("tilt the board by 30 deg in at least 3 views, each another "
+                                       "way: none is tilted")));
+}
+
+TEST(Weaknesses, AnotherBoardIsSaidAndNothingElseOfTheFit) {
+  Calibration wrong = calibrate(views_of({.count = 20}), kSize).value();
+  wrong.error_px = 60.0;
+  wrong.intrinsics.fx = 0.0;
+  wrong.sigma[0] = std::nan("");
+  EXPECT_THAT(weaknesses(wrong), ElementsAre(HasSubstr("another board than --squares says")));
 }
 
 TEST(Weaknesses, CornersThatMissTheirPlacesAreSaid) {

@@ -97,6 +97,19 @@ TEST(RunnerWire, AWorldBesideThePixelsIsTheShape) {
   EXPECT_EQ(head.position, Eigen::Vector3d(-0.1, 0.6, -0.2));
 }
 
+TEST(RunnerWire, WhatIsNoAnswerIsShownAsTheRunnersOwn) {
+  const auto printed = read_runner_answer("debug: found 1 person", kQuestion, hello());
+  ASSERT_FALSE(printed);
+  EXPECT_EQ(printed.error().context, "the runner's answer");
+  EXPECT_THAT(printed.error().message, HasSubstr("begins with \"debug: found 1 person\""));
+  EXPECT_THAT(printed.error().message, HasSubstr("print everything else to the standard error"));
+  const auto nan =
+      read_runner_answer(answer(R"([{"id": 1, "pixels": [[NaN, 1]]}])"), kQuestion, hello());
+  ASSERT_FALSE(nan);
+  EXPECT_THAT(nan.error().message, HasSubstr("JSON has no NaN"));
+  EXPECT_THAT(nan.error().message, ::testing::Not(HasSubstr("standard error")));
+}
+
 TEST(RunnerWire, AnAnswerBelongsToItsImage) {
   EXPECT_TRUE(read_runner_answer(answer("[]"), kQuestion, hello()));
   for (const std::string& wrong : {answer("[]", "41"), answer("[]", "42", "1795246200250000001")}) {

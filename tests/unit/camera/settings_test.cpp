@@ -8,6 +8,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Read {
   CameraSettings settings;
@@ -87,6 +88,13 @@ TEST(CameraSettings, MistakesAreNamed) {
       HasSubstr("cy: is missing"));
   EXPECT_THAT(read(R"({"intrinsics": {"distortion": [1, 2]}})").problems,
               HasSubstr("k1, k2, p1, p2, k3"));
+  const std::string path = read(R"({"intrinsics": "lens.json"})").problems;
+  EXPECT_THAT(path, HasSubstr("$(cat lens.json)"));
+  EXPECT_THAT(path, Not(HasSubstr("fy: is missing"))) << "one advice is enough";
+  EXPECT_THAT(read(R"({"intrinsics": {"width": 1280, "height": 720, "fx": 3.67, "fy": 3.67,
+                                      "cx": 640, "cy": 360}})")
+                  .problems,
+              HasSubstr("intrinsics.fx: is 3.67 px"));
   EXPECT_THAT(read(R"({"modell": "x"})").problems, HasSubstr("did you mean 'model'"));
 }
 

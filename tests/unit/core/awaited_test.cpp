@@ -23,6 +23,15 @@ class Awaited : public ::testing::Test {
     frame.received = kStart;
     last_seen_.add(frame);
   }
+  void see_rays(const char* sensor) {
+    BodyFrame body;
+    body.skeleton[JointId::Neck] = {.position = Eigen::Vector3d::UnitZ(),
+                                    .state = JointState::Tracked,
+                                    .measurement = Measurement::Ray};
+    SensorFrame frame = testing::sensor_frame(sensor, kStart, {body});
+    frame.received = kStart;
+    last_seen_.add(frame);
+  }
   void place(const char* sensor) { registration_.sensors[sensor_id(sensor)] = Extrinsics{}; }
   std::vector<std::string> said() {
     Situation s{sensors_, registration_, last_seen_, nullptr, automatic_, retry_, kStart};
@@ -42,6 +51,21 @@ TEST_F(Awaited, NoSensorsAndDeadSensors) {
   EXPECT_THAT(said(), ElementsAre(HasSubstr("none of the sensors delivers frames")));
   sensors_.clear();
   EXPECT_THAT(said(), ElementsAre(HasSubstr("no sensors are configured")));
+}
+
+TEST_F(Awaited, NobodyIsSentWalkingForCamerasWithoutDepth) {
+  for (const char* camera : {"s1", "s2", "s3"}) see_rays(camera);
+  session_.emplace();
+  session_->elapsed = 20.0;
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("sensors s1, s2 and s3 send directions without depth, "
+                                            "which no walk can place")));
+  see("s1", 1);
+  see("s2", 1);
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("sensor s3 sends directions without depth"),
+                                  HasSubstr("keep walking"), HasSubstr("sensor see you")))
+      << "the camera is not among those to walk before";
+  for (const char* sensor : {"s1", "s2", "s3"}) place(sensor);
+  EXPECT_THAT(said(), Not(Contains(HasSubstr("without depth"))));
 }
 
 TEST_F(Awaited, NobodyThenOneSensorThenAWalk) {

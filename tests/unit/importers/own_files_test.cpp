@@ -61,6 +61,12 @@ TEST(JointCsv, PeopleOfOneInstantShareItsFrame) {
   EXPECT_THAT(read->frames[1].bodies, SizeIs(0));  // joints without a position do not yield a body
 }
 
+TEST(JointCsv, TakesNanForWhatWasNotSeenAsNumpyWritesIt) {
+  const auto read = csv(std::string(kHeader) + "0,1,Neck,1,2,3\n0,1,Head,nan,NaN,NA\n");
+  ASSERT_THAT(read, IsOk());
+  EXPECT_FALSE(read->frames.at(0).bodies.at(0).skeleton[JointId::Head].given());
+}
+
 TEST(JointCsv, NamesTheRowTheColumnAndWhatIsWrong) {
   EXPECT_THAT(why("a,b\n1,2\n"), HasSubstr("names no column \"joint\""));
   EXPECT_THAT(why("joint,x_m,y_m,z_m\nNeck,1,2,3\n"), HasSubstr("neither a column \"utc\""));
@@ -72,7 +78,11 @@ TEST(JointCsv, NamesTheRowTheColumnAndWhatIsWrong) {
   EXPECT_THAT(why(start + "0,1,Neck,1,2\n"), HasSubstr("5 values where the first row names 6"));
   EXPECT_THAT(why(start + "0,1,Neck,1,,3\n"), HasSubstr("some are missing"));
   EXPECT_THAT(why(start + "0,1,Neck,1,2,3000\n"), HasSubstr("z_m"));
-  EXPECT_THAT(why(start + "0,1,Neck,1,nan,3\n"), HasSubstr("is not a number"));
+  EXPECT_THAT(why(start + "0,1,Neck,1,nan,3\n"), HasSubstr("some are missing"));
+  EXPECT_THAT(why(start + "0,1,Neck,1,two,3\n"), HasSubstr("is not a number."));
+  EXPECT_THAT(why(start + "0,1,neck,1,2,3\n"), HasSubstr("did you mean Neck?"));
+  EXPECT_THAT(why(start + "0,1,Neck,1,2,3000\n"), HasSubstr("+-100 m; is it in millimetres?"));
+  EXPECT_THAT(why(start + "7e8,1,Neck,1,2,3\n"), HasSubstr("+-604800 s; is it in milliseconds?"));
   EXPECT_THAT(why(start + "1,1,Neck,1,2,3\n0,1,Neck,1,2,3\n"), HasSubstr("goes back in time"));
   EXPECT_THAT(why(start + "0,1,Neck,1,2,3\n0,1,Neck,1,2,3.5\n"), HasSubstr("twice at one instant"));
   EXPECT_THAT(why("time_s;joint;x_m;y_m;z_m\n0;Neck;0,1;2;3\n"), HasSubstr("need a point"));

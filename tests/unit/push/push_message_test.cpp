@@ -124,6 +124,8 @@ TEST(Hello, MistakesAreNamed) {
   refused(with(kHelloMessage, "intrinsics", half), "intrinsics.fy", "missing");
   refused(with(kHelloMessage, "intrinsics", with(with(half, "fy", 500), "distortion", {0.1})),
           "intrinsics.distortion", "5 numbers");
+  refused(with(kHelloMessage, "intrinsics", with(with(half, "fx", 3.67), "fy", 3.67)),
+          "intrinsics.fx", "is it in millimetres?");
 }
 
 TEST(PushedFrame, BringsPointsIntoSensorSpace) {

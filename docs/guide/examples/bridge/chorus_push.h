@@ -226,7 +226,9 @@ class Pusher {
   bool connect() {
     heard_.clear();
     greeted_ = false;
-    if (!stream_.open(where_)) return fail("cannot connect to " + where_);
+    if (where_.compare(0, 4, "http") == 0 && where_.find("://") != std::string::npos)
+      return fail(where_ + ": this program speaks WebSocket: write HOST:PORT, ws://HOST:PORT or wss://HOST:PORT");
+    if (!stream_.open(where_)) return fail("cannot connect to " + where_ + ": is the sensor running, and is the address right?");
     if (sealed_) {
       const std::string wrong = tls_.open(stream_, where_.substr(0, where_.rfind(':')), ca_, kPatienceMs);
       if (!wrong.empty()) return fail(where_ + ": " + wrong);
@@ -252,7 +254,9 @@ class Pusher {
         if (!receive(kPatienceMs) || heard_.size() == before) break;
       }
     }
-    problem_ = heard_.empty() ? "no answer from " + where_ : heard_;
+    problem_ = heard_.empty() ? "no answer from " + where_
+                              : where_ + ": " + heard_.substr(0, heard_.find("\r\n")) + ": " +
+                                    (end == std::string::npos ? "" : heard_.substr(end + 4));
     if (end == std::string::npos || heard_.compare(0, 12, "HTTP/1.1 101") != 0) return false;
     problem_.clear();
     heard_.erase(0, end + 4);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/sensor/impossible_lens.h"
 #include "common/sensor/limits.h"
 #include "services/sensor/device/bridge/json_value.h"
 
@@ -89,6 +90,8 @@ Result<Intrinsics> read_intrinsics(const Json& value) {
     const auto ok = read_numbers(*distortion, camera.distortion, {-100.0, 100.0}, at["distortion"]);
     if (!ok) return pass(ok);
   }
+  if (const auto objection = objection_to(camera))
+    return wrong(at[objection->key], objection->text);
   return camera;
 }
 

@@ -132,6 +132,7 @@ Result<Capture> Camera::ask(Looker& looker, const Shot& shot, const std::stop_to
       found->floor};
   parts_.state->answered(found->sent, std::chrono::steady_clock::now() - began,
                          frame.received - frame.captured);
+  parts_.state->outside(found->outside_picture);
   return capture_of(std::move(frame), shot.picture, found->lens);
 }
 
@@ -162,6 +163,7 @@ Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   while (!stop.stop_requested()) {
     const auto began = std::chrono::steady_clock::now();
     const auto looked = look(pictures, stop, sink);
+    if (looked && !stop.stop_requested()) parts_.state->ended();
     if (looked || stop.stop_requested()) break;
     parts_.state->runner_failed(to_string(looked.error()));
     if (!rest(stop, pause.after(std::chrono::steady_clock::now() - began))) break;

@@ -28,11 +28,13 @@ Json report_json(const CameraReport& report) {
                     {"answerMilliseconds", tenths(report.answer_ms)},
                     {"latencyMilliseconds", tenths(report.latency_ms)}};
   if (report.sent.width > 0) json["runner"]["size"] = size_json(report.sent);
+  if (!report.doubt.empty()) json["doubt"] = report.doubt;
   return json;
 }
 
 /// While there is trouble.
 const char* state_of(const CameraReport& report) {
+  if (report.over) return "ended";
   if (!report.source_trouble.empty()) return "no pictures";
   return report.lens_fits ? "no runner" : "wrong lens";
 }

@@ -1,7 +1,10 @@
 #include "services/sensor/device/camera/camera_settings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "common/sensor/impossible_lens.h"
 
 namespace chorus::camera {
 namespace {
@@ -22,8 +25,15 @@ void read_intrinsics(ConfigReader section, CameraSettings& out) {
   constexpr double kPercent = 0.01;
   Intrinsics camera;
   double sigma_percent = 0.0;
-  for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"}) {
-    if (!section.has(key)) section.complain(key, "is missing; a lens is stated as a whole");
+  const std::array<const char*, 6> needed{"width", "height", "fx", "fy", "cx", "cy"};
+  if (std::none_of(needed.begin(), needed.end(), [&](const char* k) { return section.has(k); })) {
+    section.complain("width",
+                     "is missing, like the rest of the lens: width, height, fx, fy, cx and cy are "
+                     "stated here themselves, as $(cat lens.json) writes them");
+  } else {
+    for (const char* key : needed) {
+      if (!section.has(key)) section.complain(key, "is missing; a lens is stated as a whole");
+    }
   }
   section.read("width", camera.width, 16, kMaxSide);
   section.read("height", camera.height, 16, kMaxSide);
@@ -32,6 +42,8 @@ void read_intrinsics(ConfigReader section, CameraSettings& out) {
   section.read("cx", camera.cx, -kMaxPixels, kMaxPixels);
   section.read("cy", camera.cy, -kMaxPixels, kMaxPixels);
   read_distortion(section, camera);
+  if (const auto objection = objection_to(camera))
+    section.complain(objection->key, objection->text);
   section.read("focal_sigma_percent", sigma_percent, 0.0, 50.0);
   out.intrinsics = camera;
   out.focal_sigma = sigma_percent * kPercent;

@@ -69,6 +69,25 @@ void CameraState::answered(Size sent, Duration answer, Duration latency) {
   report_.runner_trouble.clear();
 }
 
+void CameraState::outside(std::optional<bool> all) {
+  constexpr int kEnough = 10;
+  const std::lock_guard lock(mutex_);
+  if (all == false) {
+    outside_in_a_row_ = 0;
+    report_.doubt.clear();
+  }
+  if (all != true || ++outside_in_a_row_ != kEnough) return;
+  report_.doubt =
+      "all landmarks lie outside the pictures: does the runner answer in pixels of the picture as "
+      "it was sent (image.maxSide), with its width and height?";
+  log::warn("what the runner finds looks wrong", {{"reason", report_.doubt}});
+}
+
+void CameraState::ended() {
+  const std::lock_guard lock(mutex_);
+  report_.over = true;
+}
+
 CameraReport CameraState::report() const {
   const std::lock_guard lock(mutex_);
   return report_;
@@ -76,6 +95,7 @@ CameraReport CameraState::report() const {
 
 std::string CameraState::trouble() const {
   const CameraReport now = report();
+  if (now.over) return "the video has ended; device.camera.loop true plays it again and again";
   std::string text = now.source_trouble;
   if (!text.empty() && !now.runner_trouble.empty()) text += "; ";
   return text + now.runner_trouble;

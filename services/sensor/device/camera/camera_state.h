@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "common/base/duration.h"
@@ -14,6 +15,8 @@ struct CameraReport {
   std::string source_trouble;  ///< Why no pictures arrive; empty while they do.
   std::string runner_trouble;  ///< Why no runner works; empty while one does.
   bool lens_fits = true;       ///< False: the lens is for pictures of another shape.
+  bool over = false;           ///< The video has ended and is not played again.
+  std::string doubt;           ///< What is probably wrong although pictures are answered.
   std::string runner;          ///< The runner's name, from its hello.
   std::string layout;
   Size picture;                 ///< Size of the source's pictures [px].
@@ -35,14 +38,18 @@ class CameraState {
   void runner_failed(std::string why);
   void lens_fits(bool fits);
   void answered(Size sent, Duration answer, Duration latency);
+  /// Whether all landmarks of the newest picture lie outside of it; none: it shows nobody.
+  void outside(std::optional<bool> all);
+  void ended();
 
   [[nodiscard]] CameraReport report() const;
-  /// Both troubles in one sentence; empty if there are none.
+  /// All troubles in one sentence, or that the video has ended; empty if there are none.
   [[nodiscard]] std::string trouble() const;
 
  private:
   mutable std::mutex mutex_;
   CameraReport report_;
+  int outside_in_a_row_ = 0;
 };
 
 }  // namespace chorus::camera

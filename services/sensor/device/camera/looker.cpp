@@ -39,7 +39,7 @@ Result<Found> Looker::look(const Picture& picture, Timestamp captured, std::uint
   errors.focal = lens->focal_sigma;
   if (settings_->depth_from_size) placer_.place(frame->bodies, frame->shapes, errors);
   return Found{std::move(frame->bodies), *lens, question.size,
-               hello.floor ? hello.floor : settings_->floor};
+               hello.floor ? hello.floor : settings_->floor, frame->outside_picture};
 }
 
 }  // namespace chorus::camera

@@ -18,6 +18,7 @@ struct Found {
   Lens lens;                        ///< The lens of the picture.
   Size sent;                        ///< Size in which the runner got the picture.
   std::optional<FloorPlane> floor;  ///< From the runner or, if it gives none, as configured.
+  std::optional<bool> outside_picture = {};  ///< All landmarks are; none if nobody is seen.
 };
 
 /// Not thread-safe; keeps a reference to its settings.

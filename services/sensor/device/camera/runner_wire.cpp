@@ -67,7 +67,16 @@ std::string image_header(const Question& question) {
 Result<bridge::PushedFrame> read_runner_answer(std::string_view line, const Question& question,
                                                const bridge::Hello& hello) {
   auto read = bridge::read_push_message(line, &hello);
-  if (!read) return pass(read);
+  if (!read) {
+    constexpr std::size_t kShown = 40;
+    const bool json = line.starts_with('{');
+    return fail(read.error().code, "the runner's answer",
+                fmt::format("{}; the line begins with \"{}\"{} (proto/runner.md, section 3)",
+                            to_string(read.error()), line.substr(0, kShown),
+                            json ? ""
+                                 : ": its standard output is for answers alone, so print "
+                                   "everything else to the standard error"));
+  }
   auto* frame = std::get_if<bridge::PushedFrame>(&*read);
   if (frame == nullptr) return not_said("frame");
   if (frame->sequence != question.sequence || frame->captured != question.captured) {

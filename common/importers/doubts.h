@@ -1,0 +1,24 @@
+// What is probably wrong with recordings that could be imported.
+//
+// Nothing here is an error: each of these can be meant, so the import is done, and the sentence
+// says what to look at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/record/frame_recording.h"
+
+namespace chorus::importers {
+
+/// Sentences about recordings with nobody in them, with seconds between their frames, and in which
+/// people lie or stand on their heads, each of which begins with the sensor's id.
+[[nodiscard]] std::vector<std::string> doubts_about(
+    const std::vector<record::FrameRecording>& recordings);
+
+/// A sentence if cameras whose pictures are counted from `start`, this many a second, do not begin
+/// with the same number: one may count from 0 and another one from 1.
+[[nodiscard]] std::vector<std::string> numbering_doubts(
+    const std::vector<record::FrameRecording>& recordings, Timestamp start, double rate_hz);
+
+}  // namespace chorus::importers
