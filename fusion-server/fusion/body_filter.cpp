@@ -11,6 +11,7 @@
 #include "fusion-server/fusion/bone_lengths.h"
 #include "fusion-server/fusion/handover.h"
 #include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/limb_ends.h"
 #include "fusion-server/fusion/misfit_size.h"
 #include "fusion-server/fusion/motion_filter.h"
 #include "fusion-server/fusion/sighted_body.h"
@@ -63,7 +64,10 @@ class BodyFilter final : public Estimator {
     misfits_.learn(sighted.misfits(), passed, model());
     lengths_.learn(sighted.placed(), passed, model());
     if (model().handover > Duration{0}) handover_.take(sighted.pulls(), passed, model().handover);
-    const PlacedBody whole = held(handed_over(sighted.placed()), expected);
+    const StatedVariances stated = sighted.stated_variances();
+    limb_ends_.learn(sighted.placed(), stated, passed, model());
+    const PlacedBody whole =
+        held(limb_ends_.held(handed_over(sighted.placed()), stated, model()), expected);
     if (model().bias_rate > 0) sighted.learn(biases_, whole, passed, turned(whole));
     agreement_.follow(sighted.disagreement(whole), passed);
     scale_square_.follow(sighted.scale_square(), passed);
@@ -129,7 +133,7 @@ class BodyFilter final : public Estimator {
     if (!determined) fused.joint.state = JointState::Inferred;
     PlacedJoint place = filtered(j, instant, now, determined);
     if (determined) {
-      const Eigen::Matrix3d beyond = sighted.stated(j) - now.covariance;
+      const Eigen::Matrix3d beyond = limb_ends_.left(j) * sighted.stated(j) - now.covariance;
       beyond_[j] = std::max(0.0, mean_variance(beyond));
       place.covariance += beyond;
     } else {
@@ -194,6 +198,7 @@ class BodyFilter final : public Estimator {
   MisfitSize misfits_;
   Biases biases_;
   Handover handover_;
+  LimbEnds limb_ends_;
   MotionFilters filters_;
   std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last determined [m^2].
   /// What was stated in addition to that, per axis [m^2].  It is kept while nobody sees the joint,

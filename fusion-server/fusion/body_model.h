@@ -23,6 +23,9 @@ struct BodyModel {
   /// Standard deviation of a bone's length [m], and the time over which the length is learned.
   double bone = 0.003;
   Duration bone_memory = std::chrono::seconds(60);
+  /// Standard deviation per axis of the place of a foot or of a part of a hand in the axes of its
+  /// limb, as a fraction of its distance from the ankle or wrist (limb_ends.h); 0: it is anywhere.
+  double limb_end = 0.2;
   /// Rate at which each sensor's bias of each joint is learned [1/s]; 0: no biases.
   double bias_rate = 3.0;
   /// Biases fade by a factor of e in this time, and also while the person turns by this angle

@@ -239,6 +239,14 @@ Eigen::Matrix3d SightedBody::stated(std::size_t joint) const {
   return round_covariance(1.0 / information);
 }
 
+StatedVariances SightedBody::stated_variances() const {
+  StatedVariances all{};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (determined(j) && sights_[j].round) all[j] = mean_variance(stated(j));
+  }
+  return all;
+}
+
 std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
   constexpr double kDimensions = 3.0;
   double sum = 0.0;

@@ -13,6 +13,7 @@
 #include "fusion-server/fusion/fusion_config.h"
 #include "fusion-server/fusion/handover.h"
 #include "fusion-server/fusion/joint_view.h"
+#include "fusion-server/fusion/limb_ends.h"
 #include "fusion-server/fusion/view_misfit.h"
 
 namespace chorus::fusion {
@@ -36,6 +37,9 @@ class SightedBody {
   /// Covariance of a joint's position according to the views.  The bones' lengths are not used,
   /// because they were learned from the same views, which may agree on wrong lengths.
   [[nodiscard]] Eigen::Matrix3d stated(std::size_t joint) const;
+  /// stated() per axis of the joints that views determine by points without a covariance of their
+  /// own.
+  [[nodiscard]] StatedVariances stated_variances() const;
   [[nodiscard]] const std::vector<Misfit>& misfits() const { return misfits_; }
   /// common_turn() of the views [rad].
   [[nodiscard]] double turn_sigma() const { return turn_sigma_; }

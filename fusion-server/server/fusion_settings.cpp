@@ -139,6 +139,7 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read("bone_m", out.bone, 0.0, 1.0);
   reader.read_s("bone_memory_s", out.bone_memory, std::chrono::seconds(1),
                 std::chrono::seconds(3600));
+  reader.read("limb_end", out.limb_end, 0.0, 10.0);
   reader.read("bias_rate_hz", out.bias_rate, 0.0, 30.0);
   reader.read_ms("bias_memory_ms", out.bias_memory, milliseconds(1), std::chrono::seconds(10));
   reader.read_deg("bias_turn_deg", out.bias_turn, 1.0, 360.0);

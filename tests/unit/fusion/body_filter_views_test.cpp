@@ -107,6 +107,45 @@ TEST(BodyFilterViews, ASensorThatFallsSilentMovesNobodyAtOnce) {
   EXPECT_LT(step(FusionConfig{}.body.handover), 0.5 * step(Duration{0}));
 }
 
+/// Four sensors each err about a foot in their own way, within a tenth of a second; one of them
+/// falls silent.  Its step is the largest difference between the foot's way from one instant to the
+/// next and the same way had the sensor gone on, within a second.
+TEST(BodyFilterViews, ASensorThatFallsSilentMovesNoFootBySteps) {
+  auto exact = standing();
+  for (const JointId foot : {FootLeft, FootRight}) {
+    exact[foot] = exact[foot == FootLeft ? AnkleLeft : AnkleRight];
+    exact[foot].position += Eigen::Vector3d(0.0, -0.06, 0.13);
+  }
+  const auto feet = [&](double limb_end, int falls_silent) {
+    Room room;
+    room.config.body.limb_end = limb_end;
+    std::vector<Eigen::Vector3d> places;
+    for (int i = 0; i < kFilterSteps + 30; ++i) {
+      std::vector<SensorView> views;
+      for (int v = 1; v <= (i < falls_silent ? 4 : 3); ++v) {
+        views.push_back(view_of(v, exact));
+        const double phase = 7.0 * v + 0.7 * i;
+        views.back().skeleton[FootLeft].position +=
+            0.05 * Eigen::Vector3d(std::sin(phase), 0.5 * std::cos(2.1 * phase), std::cos(phase));
+      }
+      places.push_back(room.at(i, views).skeleton[FootLeft].position);
+    }
+    return places;
+  };
+  const auto step = [&](double limb_end) {
+    const auto silent = feet(limb_end, kFilterSteps);
+    const auto living = feet(limb_end, 2 * kFilterSteps);
+    double largest = 0.0;
+    for (std::size_t i = kFilterSteps; i < silent.size(); ++i) {
+      const Eigen::Vector3d own = silent[i] - silent[i - 1];
+      largest = std::max(largest, (own - (living[i] - living[i - 1])).norm());
+    }
+    return largest;
+  };
+  EXPECT_LT(step(FusionConfig{}.body.limb_end), 0.012);
+  EXPECT_GT(step(0.0), 0.015) << "the case would not be worth testing";
+}
+
 TEST(BodyFilterViews, NobodyIsSurerOfAPersonWhomNobodySees) {
   Room room;
   double before = room.settled(standing()).variance[index_of(WristLeft)];
