@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/base/parse.h"
-
 namespace chorus::resource {
 namespace {
 
@@ -31,11 +29,6 @@ std::optional<std::string> fixed(double value, int decimals) {
   }
   const int size = std::snprintf(text.data(), text.size(), "%.*f", std::max(1, decimals), value);
   return std::string(text.data(), static_cast<std::size_t>(size));
-}
-
-std::optional<double> read_decimal(std::string_view text) noexcept {
-  const auto value = parse_signed<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace chorus::resource

@@ -5,7 +5,7 @@
 
 #include "common/base/json.h"
 #include "common/rdf/turtle_reader.h"
-#include "common/resource/fixed_point.h"
+#include "common/resource/decimal_reader.h"
 #include "common/resource/terms.h"
 
 namespace chorus::resource {

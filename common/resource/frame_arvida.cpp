@@ -8,6 +8,7 @@
 
 #include "common/body/bones.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/pen.h"
 
 namespace chorus::resource {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "common/base/json.h"
 #include "common/base/parse.h"
-#include "common/resource/fixed_point.h"
+#include "common/resource/decimal_reader.h"
 #include "common/resource/frame_facts.h"
 
 namespace chorus::resource {

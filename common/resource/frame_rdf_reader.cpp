@@ -6,7 +6,7 @@
 
 #include "common/base/parse.h"
 #include "common/rdf/turtle_reader.h"
-#include "common/resource/fixed_point.h"
+#include "common/resource/decimal_reader.h"
 #include "common/resource/frame_facts.h"
 #include "common/resource/terms.h"
 #include "common/sensor/limits.h"

@@ -6,6 +6,7 @@
 #include "common/resource/frame_parts.h"
 #include "common/resource/frame_shares.h"
 #include "common/resource/joint_texts.h"
+#include "common/resource/pen.h"
 #include "common/resource/terms.h"
 #include "common/sensor/limits.h"
 

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/resource/fixed_point.h"
+#include "common/resource/decimal_reader.h"
 #include "common/resource/frame_resource.h"
 #include "common/resource/frame_shares.h"
 #include "common/time/timestamp.h"

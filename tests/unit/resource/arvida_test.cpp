@@ -5,7 +5,7 @@
 
 #include "common/body/bones.h"
 #include "common/rdf/turtle_reader.h"
-#include "common/resource/fixed_point.h"
+#include "common/resource/decimal_reader.h"
 #include "common/resource/frame_resource.h"
 #include "tests/support/graph/isomorphism.h"
 #include "tests/unit/resource/frames.h"

@@ -1,4 +1,5 @@
 #include "common/resource/fixed_point.h"
+#include "common/resource/decimal_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -8,10 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "common/resource/clock_resource.h"
+#include "common/resource/decimal_reader.h"
 #include "common/resource/fixed_point.h"
 #include "common/resource/floor_plane_resource.h"
 #include "common/resource/frame_parts.h"
 #include "common/resource/frame_resource.h"
+#include "common/resource/pen.h"
 #include "tests/unit/resource/frames.h"
 
 namespace chorus::resource {
