@@ -126,7 +126,6 @@ Comparison report_draws(Report& report, const std::string& name, const Draws& dr
 
 Comparison measure(Report& report, const FusionCase& each) {
   const Draws draws = draw_all(report, each, all_contenders());
-  if (!each.also.empty()) report_draws(report, each.also, draws, false);
   if (each.cold) report_cold_starts(report, each.name, draws);
   return report_draws(report, each.name, draws, each.in_full);
 }

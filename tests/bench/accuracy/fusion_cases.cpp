@@ -25,12 +25,11 @@ std::vector<FusionCase> scenes_of(const std::string& profile) {
   FusionCase cold{name + "-cold", contest_of(profile, 6, PathKind::Random), true};
   cold.contest.setting.length = std::min(cold.contest.setting.length, kColdLength);
   cold.cold = true;
-  return {
-      {name, contest_of(profile, 6, PathKind::Random), true, profile == "A" ? "sensors-6-A" : ""},
-      {name + "-stand", contest_of(profile, 6, PathKind::Stand), true},
-      {name + "-turn", contest_of(profile, 6, PathKind::Turn), true},
-      {name + "-assembly", contest_of(profile, 6, PathKind::Assembly), true},
-      std::move(cold)};
+  return {{name, contest_of(profile, 6, PathKind::Random), true},
+          {name + "-stand", contest_of(profile, 6, PathKind::Stand), true},
+          {name + "-turn", contest_of(profile, 6, PathKind::Turn), true},
+          {name + "-assembly", contest_of(profile, 6, PathKind::Assembly), true},
+          std::move(cold)};
 }
 
 /// The yaws at which every sensor swaps left and right, and swaps them back [rad].

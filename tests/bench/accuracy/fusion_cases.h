@@ -14,10 +14,9 @@ inline constexpr const char* kMainCase = "workshop6-A";
 struct FusionCase {
   std::string name;
   Contest contest;
-  bool in_full = false;   ///< Reports every metric, not only the first ones.
-  std::string also = {};  ///< Reports the short rows under this name too.
-  bool quick = false;     ///< Part of the smoke run.
-  bool cold = false;      ///< Draws rotate through the ways to begin, see begin_cold().
+  bool in_full = false;  ///< Reports every metric, not only the first ones.
+  bool quick = false;    ///< Part of the smoke run.
+  bool cold = false;     ///< Draws rotate through the ways to begin, see begin_cold().
   std::size_t draws = 20;
 };
 
