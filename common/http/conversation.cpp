@@ -33,7 +33,8 @@ Conversation::Conversation(ConversationContext context, Peer peer, Charge charge
     : context_(context),
       peer_(std::move(peer)),
       charge_(std::move(charge)),
-      buffer_(context.config.limits.max_header_bytes) {}
+      buffer_(context.config.limits.max_header_bytes),
+      download_(context.counters.downloads_open) {}
 
 template <class Event>
 Orders Conversation::resume(SteadyTime now, const Event& event) {
@@ -230,14 +231,13 @@ void Conversation::advance_body() {
 }
 
 void Conversation::send(Answer answer) {
-  if (answer.file && !begin_download()) {
+  if (answer.file && !download_.begin(context_.config.limits.max_downloads)) {
     count(context_.counters.refused);
     answer = context_.responder.refuse(
         {status::kUnavailable,
          "too many files are on their way to others; ask again when one is done"});
   }
   answer_ = std::move(answer);
-  sent_of_file_ = 0;
   state_ = State::Writing;
   close_after_ = close_after_ || answer_.close || context_.stopping;
   if (answer_.status == status::kNotModified) count(context_.counters.not_modified);
@@ -261,7 +261,7 @@ void Conversation::write(std::string_view bytes) {
 void Conversation::answer_sent() {
   if (send_piece()) return;
   answer_ = {};
-  end_download();
+  download_.end();
   if (reaction_.kind == Reaction::Kind::Stream) {
     state_ = State::Streaming;
     return push_event();
@@ -270,27 +270,15 @@ void Conversation::answer_sent() {
   next_request();
 }
 
-bool Conversation::begin_download() {
-  auto& open = context_.counters.downloads_open;
-  if (open.load(std::memory_order_relaxed) >= context_.config.limits.max_downloads) return false;
-  count(open);
-  return downloading_ = true;
-}
-
-void Conversation::end_download() {
-  if (std::exchange(downloading_, false)) uncount(context_.counters.downloads_open);
-}
-
 /// Sends the next piece of the answer's file; false when none is left.
 bool Conversation::send_piece() {
-  if (!answer_.file || sent_of_file_ >= answer_.file->size()) return false;
-  if (!answer_.file->read(sent_of_file_, piece_)) {
+  if (!answer_.file || download_.complete(*answer_.file)) return false;
+  if (!download_.read_next(*answer_.file)) {
     hang_up();  // The file became too short for the announced length; hanging up is the only way to
                 // say so.
     return true;
   }
-  sent_of_file_ += piece_.size();
-  write(piece_);
+  write(download_.piece());
   return true;
 }
 
@@ -353,7 +341,7 @@ void Conversation::on_stop() {
 
 void Conversation::hang_up() {
   const State before = std::exchange(state_, State::Closed);
-  end_download();
+  download_.end();
   if (before == State::Waiting) uncount(context_.counters.long_polls_waiting);
   if (reaction_.kind == Reaction::Kind::Stream) uncount(context_.counters.event_streams_open);
   orders_.stop_waiting = reaction_.entry != nullptr;

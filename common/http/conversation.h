@@ -14,20 +14,13 @@
 #include <string_view>
 
 #include "common/base/duration.h"
-#include "common/http/counters.h"
+#include "common/http/conversation_context.h"
+#include "common/http/download.h"
 #include "common/http/orders.h"
 #include "common/http/request_buffer.h"
 #include "common/http/responder.h"
 
 namespace chorus::http {
-
-/// What all conversations of a server share.
-struct ConversationContext {
-  const ServerConfig& config;
-  const Responder& responder;
-  AtomicCounters& counters;
-  const bool& stopping;  ///< While the server stops, each answer is the last one of its connection.
-};
 
 class Conversation {
  public:
@@ -90,8 +83,6 @@ class Conversation {
   void send(Answer answer);
   void write(std::string_view bytes);
   void answer_sent();
-  [[nodiscard]] bool begin_download();
-  void end_download();
   [[nodiscard]] bool send_piece();
   void next_request();
   void linger();
@@ -120,9 +111,7 @@ class Conversation {
   bool close_after_ = false;
   bool in_reserve_ = false;
   bool expects_tls_ = false;
-  bool downloading_ = false;
   bool continuing_ = false;  ///< "100 Continue" is being written.
-
   RequestBuffer buffer_;
   std::size_t request_size_ = 0;
   std::size_t drained_ = 0;
@@ -131,8 +120,7 @@ class Conversation {
   Reaction reaction_;
   Answer answer_;
   std::array<std::string_view, 4> output_;
-  std::uint64_t sent_of_file_ = 0;
-  std::string piece_;  ///< The piece of the answer's file that is being sent.
+  Download download_;  ///< Of the answer's file.
   Timestamp received_;
   std::string first_lines_;
   std::string body_;
