@@ -50,6 +50,8 @@ TEST(FrameDocument, TheLatestFrameNamesItsImmutableTwin) {
   const auto kept = frame_document(frame, {"frames/" + sequence}, kept_options(*frame));
   EXPECT_NE(kept->options().cache_control.find("immutable"), std::string::npos);
   EXPECT_TRUE(kept->options().content_location.empty());
+  EXPECT_EQ(latest->options().captured, frame->captured);
+  EXPECT_EQ(kept->options().captured, std::nullopt) << "the age of an old frame is of no use";
   EXPECT_EQ(latest_options(*frame, "r1").version, sequence + ".r1");
 }
 

@@ -137,6 +137,70 @@ const std::vector<Damage> kBodyDamages{
     {"contributors no list", [](Json& f) { head(f)["contributors"] = "s1"; }, "ch:contributors",
      "no array"}};
 
+/// The head as a camera's: a direction instead of a position.
+Json& ray(Json& frame) {
+  for (const char* axis : {"x", "y", "z"}) head(frame).erase(axis);
+  head(frame)["rayX"] = 0.6;
+  head(frame)["rayY"] = 0;
+  head(frame)["rayZ"] = 0.8;
+  return head(frame);
+}
+
+/// A covariance of the head with this first variance.
+void spread(Json& frame, double cxx) {
+  head(frame).update(
+      {{"cxx", cxx}, {"cxy", 0}, {"cxz", 0}, {"cyy", 0.01}, {"cyz", 0}, {"czz", 0.01}});
+}
+
+const std::vector<Damage> kMeasurementDamages{
+    {"half a ray", [](Json& f) { ray(f).erase("rayZ"); }, "skeletons/3#Head ch:rayZ",
+     "beside the others"},
+    {"long ray", [](Json& f) { ray(f)["rayX"] = 0.7; }, "ch:rayX", "length 1"},
+    {"ray of length 0", [](Json& f) { ray(f)["rayX"] = ray(f)["rayZ"] = 0; }, "ch:rayX", ""},
+    {"ray and position",
+     [](Json& f) {
+       ray(f)["x"] = 1;
+       head(f)["y"] = head(f)["z"] = 0;
+     },
+     "ch:rayX", "a position or a ray"},
+    {"half a covariance",
+     [](Json& f) {
+       spread(f, 0.01);
+       head(f).erase("cyz");
+     },
+     "ch:cyz", "beside the others"},
+    {"negative covariance", [](Json& f) { spread(f, -0.01); }, "ch:cxx", "negative variance"},
+    {"huge covariance", [](Json& f) { spread(f, 10'001); }, "ch:cxx", "beyond 10000"},
+    {"impossible covariance",
+     [](Json& f) {
+       spread(f, 0.01);
+       head(f)["cxy"] = 0.02;
+     },
+     "ch:cxx", "negative variance"},
+    {"an old joint", [](Json& f) { head(f)["age"] = 3600.001; }, "ch:age", "3600 s"},
+    {"age of somebody", [](Json& f) { head(f)["age"] = "old"; }, "ch:age", "no finite number"}};
+
+const std::vector<Damage> kPersonDamages{
+    {"no such slot", [](Json& f) { body(f)["slot"] = kMaxBodies; }, "skeletons/3 ch:slot", "above"},
+    {"negative slot", [](Json& f) { body(f)["slot"] = -1; }, "ch:slot", "wrong sign"},
+    {"one slot of two",
+     [](Json& f) {
+       body(f)["slot"] = 1;
+       f["bodies"].push_back(body(f));
+       f["bodies"][1]["bodyId"] = 4;
+     },
+     "ch:slot", "two bodies have the slot 1"},
+    {"more than sure", [](Json& f) { body(f)["sidesConfidence"] = 1.01; }, "ch:sidesConfidence",
+     "between 0 and 1"},
+    {"less than unsure", [](Json& f) { body(f)["sidesConfidence"] = -0.01; }, "ch:sidesConfidence",
+     "between 0 and 1"},
+    {"carried for ever", [](Json& f) { body(f)["carriedFor"] = 3601; }, "ch:carriedFor", "3600 s"},
+    {"carried before", [](Json& f) { body(f)["carriedFor"] = -1; }, "ch:carriedFor", "between 0"},
+    {"carried somehow", [](Json& f) { body(f)["carriedFor"] = Json::array(); }, "ch:carriedFor",
+     "no finite number"},
+    {"a body of its own time", [](Json& f) { body(f)["captured"] = "2026-11-21T07:30:02Z"; },
+     "skeletons/3 ch:captured", "different times"}};
+
 void expect_refused(const Damage& damage) {
   Json frame = good();
   damage.harm(frame);
@@ -155,6 +219,50 @@ TEST(FrameReader, RefusesAFrameWithADamagedHeadByName) {
 
 TEST(FrameReader, RefusesAFrameWithADamagedBodyByName) {
   for (const Damage& damage : kBodyDamages) expect_refused(damage);
+}
+
+TEST(FrameReader, RefusesADamagedMeasurementByName) {
+  for (const Damage& damage : kMeasurementDamages) expect_refused(damage);
+}
+
+TEST(FrameReader, RefusesWhatCannotBeOfAPersonByName) {
+  for (const Damage& damage : kPersonDamages) expect_refused(damage);
+}
+
+TEST(FrameReader, TakesTheLimitsThemselves) {
+  Json frame = good();
+  body(frame)["slot"] = kMaxBodies - 1;
+  body(frame)["sidesConfidence"] = 1;
+  body(frame)["carriedFor"] = 3600;
+  ray(frame);
+  spread(frame, 10'000);
+  head(frame)["variance"] = 10'000;
+  head(frame)["age"] = 3600;
+  const auto taken = read(frame);
+  ASSERT_TRUE(taken) << to_string(taken.error());
+  const BodyResource& person = taken->bodies.at(0);
+  EXPECT_EQ(person.slot, kMaxBodies - 1);
+  EXPECT_EQ(person.sides_confidence, 1.0);
+  EXPECT_EQ(person.carried_for, 3600.0);
+  const JointResource& joint = person.joints[static_cast<int>(JointId::Head)];
+  EXPECT_EQ(joint.measurement, Measurement::Ray);
+  EXPECT_EQ(joint.position, Eigen::Vector3d(0.6, 0, 0.8));
+  EXPECT_EQ(joint.covariance.matrix()(0, 0), 10'000);
+  EXPECT_EQ(joint.variance, 10'000);
+  EXPECT_EQ(joint.age, 3600);
+}
+
+TEST(FrameReader, TakesTimesThatDifferByRoundingAlone) {
+  Json frame = good();
+  frame["captured"] = "2026-11-21T07:30:00.251Z";
+  const auto taken = read(frame);
+  ASSERT_TRUE(taken) << to_string(taken.error());
+  EXPECT_EQ(to_unix_ns(taken->captured), 1'795'246'200'250'000'000) << "the exact one counts";
+  frame["captured"] = "2026-11-21T07:30:00.251000001Z";
+  EXPECT_FALSE(read(frame)) << "more than a millisecond";
+  frame = good();
+  frame.erase("capturedNanoseconds");
+  EXPECT_EQ(to_unix_ns(read(frame)->captured), 1'795'246'200'250'000'000) << "either alone will do";
 }
 
 TEST(FrameReader, RefusesMoreBodiesThanThereMayBe) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "common/resource/clock_resource.h"
 #include "common/resource/flat_reader.h"
@@ -66,6 +68,53 @@ TEST(ImageResource, SaysHowToMeasureInIt) {
   EXPECT_NE(turtle.find("ch:metresPerUnit 0.0010"), std::string::npos) << turtle;
   image.media_type = "image/jpeg";
   EXPECT_EQ(write(image_node(image, "c"), Format::Json).find("metresPerUnit"), std::string::npos);
+}
+
+TEST(FloorPlaneResource, TakesFloorsAsFarAsBodiesMayBe) {
+  const auto read = [](double offset) {
+    return read_floor_plane(
+        R"({"@type":"FloorPlane","normalX":0,"normalY":1,"normalZ":0,"offset":)" +
+            std::to_string(offset) + "}",
+        Format::Json);
+  };
+  EXPECT_TRUE(read(-10'000));
+  const auto far = read(10'000.1);
+  ASSERT_FALSE(far);
+  EXPECT_EQ(far.error().context, "ch:offset");
+  EXPECT_EQ(far.error().message, "is beyond anything a floor can be");
+}
+
+TEST(FloorPlaneResource, KeepsThePlaneAndNotItsScale) {
+  const auto floor = read_floor_plane(
+      R"({"@type":"FloorPlane","normalX":0,"normalY":2,"normalZ":0,"offset":3})", Format::Json);
+  ASSERT_TRUE(floor);
+  EXPECT_EQ(floor->normal, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(floor->offset, 1.5);
+}
+
+TEST(ImageResource, HasTheLensInPixelsAndTheDistortionInItsOrder) {
+  CameraImage image{from_unix_ns(1'795'246'200'250'000'001), {}, "image/jpeg", ""};
+  image.intrinsics = {1280, 720, 900.1234, 901.5, 640.25, 359.75, {0.1, -0.2, 0.001, -0.002, 0.03}};
+  const auto json = nlohmann::json::parse(write(image_node(image, "images/color"), Format::Json));
+  EXPECT_EQ(json.at("@id"), "images/color");
+  EXPECT_EQ(json.at("mediaType"), "image/jpeg");
+  EXPECT_EQ(json.at("width"), 1280);
+  EXPECT_EQ(json.at("height"), 720);
+  EXPECT_EQ(json.at("fx"), 900.123);
+  EXPECT_EQ(json.at("fy"), 901.5);
+  EXPECT_EQ(json.at("cx"), 640.25);
+  EXPECT_EQ(json.at("cy"), 359.75);
+  EXPECT_EQ(json.at("distortion"), nlohmann::json({0.1, -0.2, 0.001, -0.002, 0.03}));
+  EXPECT_EQ(json.at("captured"), "2026-11-21T07:30:00.250000001Z");
+  EXPECT_EQ(json.at("capturedNanoseconds"), "1795246200250000001");
+}
+
+TEST(ClockResource, NeedsNoNumbersThatJavaScriptRounds) {
+  const ClockState clock{from_unix_ns(1'795'246'200'250'000'001), {}};
+  const auto json = nlohmann::json::parse(write(clock_node(clock), Format::Json));
+  EXPECT_EQ(json.at("nowNanoseconds"), "1795246200250000001");
+  EXPECT_EQ(json.at("now"), "2026-11-21T07:30:00.250000001Z");
+  EXPECT_EQ(json.at("synchronised"), false);
 }
 
 }  // namespace
