@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/support/matchers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::ctl {
 namespace {
@@ -24,6 +25,27 @@ TEST(ChildProcesses, SayWhenAProgramCannotBeStarted) {
   const auto missing = run_children({kLasting, {"gone", {"/nowhere/chorus-sensor"}}});
   ASSERT_FALSE(missing.has_value());
   EXPECT_THAT(to_string(missing.error()), HasSubstr("could not be started"));
+}
+
+TEST(ChildProcesses, SayOfWhichSignalOneDied) {
+  const auto killed = run_children({{"hit", {"sh", "-c", "kill -9 $$"}}, kLasting});
+  ASSERT_FALSE(killed.has_value());
+  EXPECT_THAT(to_string(killed.error()), HasSubstr("hit: died of signal 9"));
+  EXPECT_THAT(to_string(killed.error()), HasSubstr("its own message is above"));
+}
+
+TEST(ChildProcesses, NoneAreAtTheirEndAtOnce) { EXPECT_THAT(run_children({}), testing::IsOk()); }
+
+TEST(ChildProcesses, StopTheOthersBeforeTheyReturn) {
+  const testing::TemporaryFolder folder;
+  const std::string mark = (folder / "stopped").string();
+  const Child other{"other",
+                    {"sh", "-c",
+                     "trap 'touch " + mark + "; exit' TERM; echo > " + mark +
+                         ".up; while :; do sleep 0.01; done"}};
+  const Child ending{"ending", {"sh", "-c", "until [ -e " + mark + ".up ]; do sleep 0.01; done"}};
+  EXPECT_THAT(run_children({other, ending}), testing::IsOk());
+  EXPECT_TRUE(std::filesystem::exists(mark)) << "it was asked to end, and awaited";
 }
 
 TEST(ChildProcesses, StopAllWhenWeAreToldToStop) {

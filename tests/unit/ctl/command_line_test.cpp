@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "common/base/version.h"
 #include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {
@@ -58,6 +59,35 @@ TEST(CommandLine, NamesTheCommandThatWasMeant) {
   const Outcome strange = run_chorus({"xyzzyplugh"});
   EXPECT_EQ(strange.code, kExitUsage);
   EXPECT_THAT(strange.error, HasSubstr("The commands are: import, init, discover, doctor"));
+}
+
+TEST(CommandLine, TheAuthorityOnTheCommandLineIsTheOneThatIsUsed) {
+  ::unsetenv("CHORUS_CA");
+  const Outcome told =
+      run_chorus({"status", "--url", "https://127.0.0.1:1/", "--ca", "/nowhere/ca.crt"});
+  ::unsetenv("CHORUS_CA");
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("/nowhere/ca.crt"));
+}
+
+TEST(CommandLine, ErrorsBeginWithTheCommandAndHaveOneLine) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"status", "--url", "ftp://x/\x1b[31m"},
+        {"fuse", "/nowhere", "--out", "y"},
+        {"record", "ftp://x/", "--out", "/tmp/x.mcap"}}) {
+    const Outcome told = run_chorus(words);
+    EXPECT_EQ(told.code, kExitFailed) << words[0];
+    EXPECT_EQ(told.out, "");
+    EXPECT_TRUE(told.error.starts_with("chorus " + words[0] + ": ")) << told.error;
+    EXPECT_EQ(lines_of(told.error).size(), 1u) << told.error;
+    EXPECT_EQ(told.error.find('\x1b'), std::string::npos);
+  }
+}
+
+TEST(CommandLine, SaysItsVersion) {
+  const Outcome told = run_chorus({"--version"});
+  EXPECT_EQ(told.code, kExitOk);
+  EXPECT_EQ(told.out, "chorus " + std::string(version()) + "\n");
 }
 
 TEST(CommandLine, TellsWrongUsageFromFailure) {

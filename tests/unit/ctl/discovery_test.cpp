@@ -88,6 +88,56 @@ TEST(Discovery, InitFusionTakesNoSensorThatTwoAnnounce) {
   EXPECT_THAT(named.out, ::testing::Not(HasSubstr("10.9.0.66")));
 }
 
+TEST(DiscoverCommand, ListsEachSensorOnALine) {
+  const Browsed found(kBrowsed);
+  const Outcome told = run_chorus({"discover"});
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_EQ(told.error, "");
+  const auto lines = lines_of(told.out);
+  ASSERT_EQ(lines.size(), 3u) << told.out;
+  EXPECT_THAT(lines[0], ::testing::MatchesRegex("sensor +url +host +address"));
+  EXPECT_THAT(lines[1], ::testing::MatchesRegex(
+                            "a2 +http://10\\.9\\.0\\.2:9000/ +a2\\.local +10\\.9\\.0\\.2"));
+  EXPECT_THAT(lines[2],
+              ::testing::MatchesRegex("s1 +https://s1\\.local:8081/ +s1\\.local +10\\.9.*"));
+}
+
+TEST(DiscoverCommand, TellsTheSameAsJson) {
+  const Browsed found(kBrowsed);
+  const auto json = nlohmann::json::parse(run_chorus({"discover", "--json"}).out);
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0].at("url"), "http://10.9.0.2:9000/");
+  EXPECT_EQ(json[1], nlohmann::json({{"id", "s1"},
+                                     {"url", "https://s1.local:8081/"},
+                                     {"host", "s1.local"},
+                                     {"address", "10.9.0.1"},
+                                     {"port", 8081},
+                                     {"tls", true}}));
+}
+
+TEST(DiscoverCommand, NobodyThereIsAFailureThatSaysWhatSensorHostsNeed) {
+  const Browsed nobody("");
+  const Outcome told = run_chorus({"discover"});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_EQ(told.out, "");
+  EXPECT_THAT(told.error, HasSubstr("no sensor announces itself in this network"));
+  const Outcome json = run_chorus({"discover", "--json"});
+  EXPECT_EQ(json.code, kExitFailed);
+  EXPECT_EQ(json.out, "[]\n") << "still JSON";
+}
+
+TEST(DiscoverCommand, SaysWhatAvahiLacks) {
+  const Browsed missing("END\nexit 127\ncat <<'END'\n");
+  EXPECT_THAT(run_chorus({"discover"}).error, HasSubstr("apt install avahi-daemon avahi-utils"));
+  const Browsed stopped(
+      "Failed to create client object: Daemon not running\nEND\nexit 1\ncat <<'END'\n");
+  EXPECT_THAT(run_chorus({"discover"}).error, HasSubstr("systemctl start avahi-daemon"));
+  const Browsed broken("Some other reason\nEND\nexit 1\ncat <<'END'\n");
+  const Outcome told = run_chorus({"discover"});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("avahi-browse: failed: Some other reason"));
+}
+
 TEST(Discovery, TlsIsAskedByNameAndPlainHttpByAddress) {
   EXPECT_EQ((FoundSensor{"s1", "s1.local", "10.9.0.1", 8081, true}.url()),
             "https://s1.local:8081/");

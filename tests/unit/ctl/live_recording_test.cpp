@@ -12,6 +12,7 @@
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {
 namespace {
@@ -121,6 +122,23 @@ TEST_F(BrokenCell, MakesTheCommandFailThoughSomethingCame) {
   EXPECT_THAT(table, HasSubstr("/sensors/s2/frame"));
   EXPECT_THAT(errors, HasSubstr("delivered no frame of /sensors/s2/frame, /sensors/s3/frame"));
   EXPECT_TRUE(std::filesystem::exists(out)) << "what came is kept";
+}
+
+TEST_F(BrokenCell, TellsTheSameAsJson) {
+  const std::string out = (folder_ / "a.mcap").string();
+  const Outcome told =
+      run_chorus({"record", url(), "--raw", "--out", out, "--seconds", "1", "--json"});
+  EXPECT_EQ(told.code, kExitFailed);
+  const auto json = nlohmann::json::parse(told.out);
+  EXPECT_EQ(json.at("file"), out);
+  EXPECT_EQ(json.at("bytes"), std::filesystem::file_size(out));
+  EXPECT_GT(json.at("seconds"), 0.0);
+  const auto& streams = json.at("streams");
+  EXPECT_EQ(streams.size(), 3u) << "--raw: no fused frames";
+  EXPECT_EQ(json.at("frames"), streams.at("/sensors/s1/frame").at("frames"));
+  EXPECT_FALSE(streams.at("/sensors/s1/frame").contains("lastError"));
+  EXPECT_THAT(streams.at("/sensors/s2/frame").at("lastError").get<std::string>(), HasSubstr("401"));
+  EXPECT_EQ(streams.at("/sensors/s2/frame").at("frames"), 0);
 }
 
 }  // namespace

@@ -60,5 +60,44 @@ TEST(NewFiles, HaveTheModeOfTheirReadersWhateverTheUmask) {
   EXPECT_EQ(mode_of(at("ca.key")), perms{0600});
 }
 
+std::string refused(const Result<void>& written) {
+  return written ? "it was written" : to_string(written.error());
+}
+
+TEST(NewFiles, NeverTakeThePlaceOfAnother) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string file = folder.write("sensor.json", "edited by hand").string();
+  EXPECT_THAT(refused(write_file(file, "new", Readers::Services)),
+              ::testing::HasSubstr("exists and is not overwritten: edit it, move it away"));
+  EXPECT_EQ(chorus::testing::bytes_of(file), "edited by hand");
+}
+
+TEST(NewFiles, AreReplacedAsAWholeWhereThatIsAskedFor) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string file = folder.write("host.crt", "an older and longer one").string();
+  (void)folder.write("host.crt.new", "left by a run that was cut off");
+  ASSERT_THAT(write_file(file, "new", Readers::Everybody, Overwriting::Yes),
+              chorus::testing::IsOk());
+  EXPECT_EQ(chorus::testing::bytes_of(file), "new");
+  EXPECT_FALSE(fs::exists(folder / "host.crt.new"));
+}
+
+TEST(NewFiles, SayWhatIsMissing) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string nowhere = (folder / "none/sensor.json").string();
+  EXPECT_THAT(refused(write_file(nowhere, "x", Readers::Services)),
+              ::testing::HasSubstr("its folder is not there; make it, or give --out FILE"));
+  const std::string below = folder.write("file", "x").string() + "/tls";
+  EXPECT_THAT(refused(make_folder(below, Readers::Owner)),
+              ::testing::HasSubstr("with --out FOLDER"));
+}
+
+TEST(NewFiles, OnStandardOutputAreNoFiles) {
+  ::testing::internal::CaptureStdout();
+  ASSERT_THAT(write_file("-", "{}\n", Readers::Owner), chorus::testing::IsOk());
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "{}\n");
+  EXPECT_FALSE(fs::exists("-"));
+}
+
 }  // namespace
 }  // namespace chorus::ctl

@@ -26,13 +26,26 @@ std::string frame_text(int index) {
       .dump();
 }
 
+/// The body of the only request for another origin.
+Json origin_asked(const ScriptedServer& server) {
+  constexpr std::string_view kAsked = "POST /registration/origin ";
+  const auto written = server.written();
+  EXPECT_EQ(written.size(), 1u);
+  if (written.empty() || !written[0].starts_with(kAsked)) return Json::object();
+  return Json::parse(written[0].substr(kAsked.size()));
+}
+
 TEST(Origin, ThePersonIsWatchedOnOneConnection) {
   std::vector<std::string> frames;
   for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
   const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
-  // The server of this test has no /registration/origin; only the request counts.
-  EXPECT_THAT(done.error, HasSubstr("/registration/origin"));
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_THAT(done.error, HasSubstr("stand still for 0.6 s, facing the front\n"));
+  const Json asked = origin_asked(server);
+  EXPECT_NEAR(asked.at("x"), 1.0, 1e-9);
+  EXPECT_NEAR(asked.at("z"), -2.0, 1e-9);
+  EXPECT_NEAR(asked.at("yawDegrees"), 0.0, 1e-9) << "the person faces +z";
   EXPECT_LE(server.connections(), 3u)
       << "one to see that it is there, one for the frames, one to set the origin";
 }
@@ -51,6 +64,77 @@ TEST(Origin, AServerThatIsNotThereIsNamed) {
   const Outcome told = run_chorus({"origin", "--url", gone, "--here", "--seconds", "0.5"});
   EXPECT_THAT(told.error, HasSubstr("is chorus-fusion running there?"));
   EXPECT_EQ(told.error.find("stand still"), std::string::npos) << "nobody waits for nothing";
+}
+
+TEST(Origin, IsSetByNumbersInTheWorldAsItIs) {
+  const ScriptedServer server(ScriptedServer::Texts{{"/registration", {R"({"verdict": "Good"})"}}});
+  const Outcome done =
+      run_chorus({"origin", "--url", server.url(), "--x", "1.5", "--z=-2", "--yaw", "90"});
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_EQ(done.error, "") << "nobody has to stand still";
+  EXPECT_THAT(done.out, HasSubstr("begins at what was x 1.500 m, z -2.000 m"));
+  EXPECT_THAT(done.out, HasSubstr("its front is what was 90.0 deg\nregistration: Good"));
+  const Json asked = origin_asked(server);
+  EXPECT_EQ(asked.at("x"), 1.5);
+  EXPECT_EQ(asked.at("z"), -2.0);
+  EXPECT_NEAR(asked.at("yawDegrees"), 90.0, 1e-9);
+}
+
+TEST(Origin, OneNumberAloneLeavesTheRestWhereItIs) {
+  const ScriptedServer server(ScriptedServer::Texts{{"/registration", {"{}"}}});
+  ASSERT_EQ(run_chorus({"origin", "--url", server.url(), "--yaw=-30"}).code, kExitOk);
+  const Json asked = origin_asked(server);
+  EXPECT_EQ(asked.at("x"), 0.0);
+  EXPECT_EQ(asked.at("z"), 0.0);
+  EXPECT_NEAR(asked.at("yawDegrees"), -30.0, 1e-9);
+}
+
+TEST(Origin, ReportsTheServersAnswerAsJson) {
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/registration", {R"({"verdict": "Good", "version": 4})"}}});
+  const Outcome set = run_chorus({"origin", "--url", server.url(), "--x", "1", "--json"});
+  EXPECT_EQ(Json::parse(set.out).at("version"), 4);
+  const Outcome shown = run_chorus({"origin", "--url", server.url(), "--json"});
+  EXPECT_EQ(Json::parse(shown.out).at("verdict"), "Good");
+  EXPECT_EQ(server.written().size(), 1u) << "showing it asks for nothing";
+}
+
+TEST(Origin, WhoeverMovesDoesNotSetIt) {
+  std::vector<std::string> frames;
+  for (int i = 0; i < 40; ++i) {
+    Json frame = Json::parse(frame_text(i));
+    for (auto& joint : frame["bodies"][0]["joints"])
+      joint["x"] = joint["x"].get<double>() + 0.2 * (i % 2);
+    frames.push_back(frame.dump());
+  }
+  const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
+  const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("stand still and retry"));
+  EXPECT_TRUE(server.written().empty()) << "the world stays where it is";
+}
+
+TEST(Origin, TheSameFrameTwiceIsOneLook) {
+  std::vector<std::string> frames;  // of one time, but not the same text
+  for (std::size_t i = 0; i < 40; ++i) frames.push_back(frame_text(1) + std::string(i, ' '));
+  const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
+  const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.5"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("too few frames came; is the tracker running?"));
+}
+
+TEST(Origin, RefusesPlacesAndTimesThatAreNone) {
+  for (const auto& words : std::vector<std::vector<std::string>>{{"--x", "1001"},
+                                                                 {"--z", "nan"},
+                                                                 {"--yaw", "361"},
+                                                                 {"--here", "--x", "1"},
+                                                                 {"--here", "--seconds", "0.4"},
+                                                                 {"--here", "--seconds", "31"},
+                                                                 {"--seconds", "2"}}) {
+    std::vector<std::string> whole{"origin", "--url", "http://127.0.0.1:1/"};
+    whole.insert(whole.end(), words.begin(), words.end());
+    EXPECT_EQ(run_chorus(whole).code, kExitUsage) << ::testing::PrintToString(words);
+  }
 }
 
 TEST(Origin, WithoutOptionsItIsShownWithTheWayBack) {

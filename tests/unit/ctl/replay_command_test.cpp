@@ -133,6 +133,13 @@ TEST(RecordCommand, NeedsAServiceOfOurs) {
   EXPECT_THAT(told.error, HasSubstr("127.0.0.1"));
 }
 
+TEST(RecordCommand, ARecordingIsAnMcapFile) {
+  const Outcome told =
+      run_chorus({"record", "http://127.0.0.1:1/", "--out", "/tmp/walk", "--seconds", "1"});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("name it /tmp/walk.mcap"));
+}
+
 TEST(RecordCommand, RefusesTimesThatAreNone) {
   for (const char* seconds : {"0", "-1", "soon", "nan", "1e9"})
     EXPECT_EQ(run_chorus({"record", "--out", "/tmp/x.mcap", "--seconds", seconds}).code, kExitUsage)

@@ -44,6 +44,13 @@ class ScriptedServer {
         return Result<http::ActionResult>(http::ActionResult{200, *now, {}});
       });
     }
+    router->action(http::Method::Post, "/registration/origin",
+                   [this](const http::Request& request, const http::PathParams&) {
+                     note("POST /registration/origin " + std::string(request.body));
+                     const auto now = document("/registration");
+                     if (!now) return Result<http::ActionResult>(tl::unexpected(now.error()));
+                     return Result<http::ActionResult>(http::ActionResult{200, *now, {}});
+                   });
     for (const char* path : {"/registration", "/sessions/7"})
       router->action(http::Method::Delete, path, [this, path](const auto&, const auto&) {
         note("DELETE " + std::string(path));

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/ctl/program_run.h"
+#include "tests/unit/ctl/register_answers.h"
 #include "tests/unit/ctl/scripted_server.h"
 
 namespace chorus::ctl {
@@ -23,10 +24,6 @@ using Json = nlohmann::json;
 constexpr const char* kLive = R"({"sensors": {
   "s1": {"state": "live", "ageMilliseconds": 12.34, "rateHz": 29.97, "bodies": 2, "share": 0.995,
          "clockOffsetMilliseconds": -1.5, "url": "http://10.0.0.1:8081/"}}})";
-constexpr const char* kIdle =
-    R"({"verdict": "Good", "master": "s1", "session": {"state": "idle"}})";
-constexpr const char* kRuns =
-    R"({"verdict": "Good", "session": {"state": "collecting", "progress": "/sessions/7"}})";
 constexpr const char* kFrame = R"({"captured": "2026-11-22T10:00:00Z", "bodies": [
   {"bodyId": 3, "joints": {"Head": {"x": 0.5, "y": 1.7, "z": -0.25}}}]})";
 
@@ -133,29 +130,6 @@ TEST(Status, TakesTheServerFromTheSurroundings) {
   const Outcome told = run_chorus({"status"});
   ::unsetenv("CHORUS_URL");
   EXPECT_EQ(told.code, kExitOk) << told.error;
-}
-
-std::string session(const std::string& state, const std::string& verdict, bool adopted,
-                    double elapsed = 1.0) {
-  return Json{{"state", state},
-              {"verdict", verdict},
-              {"adopted", adopted},
-              {"elapsedSeconds", elapsed},
-              {"targetSeconds", 2.0},
-              {"reasons", {"the walk lasted only 2 s"}},
-              {"awaits", {"walk in front of s2"}}}
-      .dump();
-}
-
-ScriptedServer::Texts walk(const std::string& last) {
-  return {{"/registration", {kRuns, kIdle}},
-          {"/sessions/7", {session("collecting", "None", false), last}}};
-}
-
-Outcome register_at(const ScriptedServer& server, std::vector<std::string> more = {}) {
-  std::vector<std::string> words{"register", "--url", server.url()};
-  words.insert(words.end(), more.begin(), more.end());
-  return run_chorus(words);
 }
 
 TEST(Register, FollowsItsSessionToTheVerdict) {
@@ -312,7 +286,7 @@ TEST(Register, ProposesWithTheNumbersOfOldAndNew) {
   EXPECT_THAT(told.out, HasSubstr("proposed, not in use: Good"));
   for (const char* number : {"41", "23", "117", "1.3"}) EXPECT_THAT(told.out, HasSubstr(number));
   EXPECT_THAT(told.error, Not(HasSubstr("not good enough")));
-  done["sessionId"] = 8;  // the waiting proposal belongs to another session
+  done["sessionId"] = 8;  // what waits is another session's
   texts["/sessions/7"] = {done.dump()};
   EXPECT_EQ(register_at(ScriptedServer(texts), {"--propose"}).code, kExitFailed);
 }

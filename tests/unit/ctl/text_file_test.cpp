@@ -54,5 +54,34 @@ TEST(TextFile, WhatCannotBeWrittenLeavesWhatWasThere) {
   EXPECT_THAT(to_string(nowhere.error()), HasSubstr("is its folder there?"));
 }
 
+TEST(SameFile, ByWhateverPath) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.csv", "x").string();
+  EXPECT_TRUE(
+      same_file(file, (folder / "../").string() + folder.path().filename().string() + "/a.csv"));
+  EXPECT_TRUE(same_file((folder / "new").string(), (folder / "./new").string()))
+      << "also before it is there";
+  EXPECT_FALSE(same_file(file, (folder / "b.csv").string()));
+  fs::create_symlink(file, folder / "link");
+  EXPECT_TRUE(same_file(file, (folder / "link").string()));
+}
+
+TEST(SameFile, StandardOutputIsItselfAndNothingIsNoFile) {
+  EXPECT_TRUE(same_file("-", "-"));
+  EXPECT_FALSE(same_file("-", "./-")) << "a file of that name";
+  EXPECT_FALSE(same_file("", ""));
+  EXPECT_FALSE(same_file("", "a"));
+}
+
+TEST(MayCreate, OnlyWhatIsNotThere) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(may_create((folder / "lens.json").string()), IsOk());
+  EXPECT_THAT(may_create("-"), IsOk());
+  const auto there = may_create(folder.write("lens.json", "{}").string());
+  ASSERT_THAT(there, FailsWith(ErrorCode::Conflict));
+  EXPECT_THAT(to_string(there.error()), HasSubstr("move it away, or name another --out"));
+  EXPECT_THAT(may_create(folder.path().string()), FailsWith(ErrorCode::Conflict)) << "a folder";
+}
+
 }  // namespace
 }  // namespace chorus::ctl

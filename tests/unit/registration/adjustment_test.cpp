@@ -227,6 +227,44 @@ TEST(AdjustTogether, NoisierWalksAreStatedToBeLessCertain) {
   EXPECT_GT(sigma(0.04), 1.5 * sigma(0.01));
 }
 
+/// Moves every joint by errors that last: with this time constant [s], and as large on every axis.
+WalkTrack with_lasting_errors(WalkTrack track, double sigma, double time_constant, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> draw(0.0, 1.0);
+  const double kept = std::exp(-1.0 / (30.0 * time_constant));
+  std::array<Eigen::Vector3d, kJointCount> errors;
+  for (Eigen::Vector3d& error : errors) error = {draw(random), draw(random), draw(random)};
+  for (SensorFrame& frame : track.frames) {
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const Eigen::Vector3d news{draw(random), draw(random), draw(random)};
+      errors[j] = kept * errors[j] + std::sqrt(1.0 - kept * kept) * news;
+      frame.bodies[0].skeleton.joints[j].position += sigma * errors[j];
+    }
+  }
+  return track;
+}
+
+/// Errors that last can be taken out only as far as the walk is long.  What stays in it makes
+/// instants repeat one another, so that a quarter of a walk is worth less than a quarter.
+TEST(AdjustTogether, AShortWalkWithLastingErrorsIsWorthLessThanItsShare) {
+  const auto stated_variance = [](double length) {
+    WalkSpec spec{.length = length, .noise = 0.001};
+    spec.path = [](double t) {  // round and round, three seconds each
+      return Eigen::Vector2d(0.4 * std::sin(2.1 * t), 0.4 * std::cos(2.1 * t));
+    };
+    Scene scene;
+    scene.config.view_bias = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Isometry3d at = ring_place(kAngles[static_cast<std::size_t>(i)]);
+      const unsigned seed = 70 + static_cast<unsigned>(i);
+      scene.add(with_lasting_errors(watch(i, at, spec), 0.03, 0.6, seed), at);
+    }
+    const auto adjusted = scene.look(scene.truth);
+    return adjusted ? adjusted->covariances.at(sensor(1))(1, 1) : 0.0;
+  };
+  EXPECT_GT(stated_variance(3.0), 4.0 * stated_variance(12.0));
+}
+
 TEST(AdjustTogether, ASensorWithTooFewSightsKeepsItsPlace) {
   Scene scene = scene_of({.noise = 0.01});
   Walker& stranger = scene.walkers.at(sensor(2));
