@@ -19,7 +19,7 @@
 #include "fusion-server/core/last_seen.h"
 #include "fusion-server/core/registration_session.h"
 #include "fusion-server/core/world.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/session_status.h"
 
