@@ -5,7 +5,7 @@
 #include <memory>
 #include <string_view>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/snapshot.h"
 
 namespace chorus {
 

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "fusion-server/align/history.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/aligned_sensor.h"
 
 namespace chorus::align {
 

@@ -8,7 +8,8 @@
 #include <deque>
 #include <optional>
 
-#include "fusion-server/flow.h"
+#include "common/sensor/sensor_frame.h"
+#include "common/time/timestamp.h"
 
 namespace chorus::align {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "common/sensor/sensor_frame.h"
 
 namespace chorus::align {
 

@@ -15,7 +15,7 @@
 
 #include "fusion-server/associate/association_config.h"
 #include "fusion-server/associate/track.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::associate {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fusion-server/associate/stated_place.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::associate {
 

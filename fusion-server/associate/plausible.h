@@ -5,7 +5,10 @@
 #include <map>
 #include <string_view>
 
-#include "fusion-server/flow.h"
+#include "common/base/strong_id.h"
+#include "common/body/skeleton.h"
+#include "common/sensor/sensor_frame.h"
+#include "common/time/timestamp.h"
 
 namespace chorus::associate {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/session_status.h"
 

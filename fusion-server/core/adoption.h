@@ -8,7 +8,7 @@
 
 #include "common/base/result.h"
 #include "fusion-server/core/registration_session.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::core {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fusion-server/core/last_seen.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/session_status.h"
 
 namespace chorus::core {

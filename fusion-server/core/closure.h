@@ -2,7 +2,7 @@
 // sensor's chain was chosen.
 #pragma once
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::core {
 

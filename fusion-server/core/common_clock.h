@@ -1,7 +1,7 @@
 // Which clock the offsets of a walk refer to, where no host says what time it is.
 #pragma once
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::core {
 

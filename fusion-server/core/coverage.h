@@ -11,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "common/sensor/sensor_frame.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/session_status.h"
 
 namespace chorus::core {

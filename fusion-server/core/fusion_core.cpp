@@ -17,15 +17,6 @@ CoreConfig with_polled(CoreConfig config) {
   return config;
 }
 
-constexpr std::string_view kOutOfOrder =
-    "a frame was captured before the one it follows, and is refused: the clock of the sensor's "
-    "host "
-    "was set back, or it numbers its frames wrongly";
-constexpr std::string_view kFuture =
-    "a frame was captured in the future, and is refused: set the clock of the sensor's host";
-constexpr std::string_view kStaleFrame =
-    "a frame came more than a second after later ones, and is refused: its network or the program "
-    "that sends it holds frames back";
 constexpr std::string_view kFrozen =
     "a body is left out: its coordinates are repeated to the last digit under new stamps";
 
@@ -59,9 +50,9 @@ void FusionCore::reconfigure(CoreConfig config) {
   registrar_.reconfigure(registrar_config(config_));
   const auto gone = [&](const auto& entry) { return !config_.sensors.contains(entry.first); };
   std::erase_if(histories_, gone);
-  std::erase_if(refused_, gone);
   std::erase_if(frozen_, gone);
   std::erase_if(displaced_at_, gone);
+  fates_.keep(config_.sensors);
   shares_.keep(config_.sensors);
   guard_.keep(config_.sensors);
   strays_.keep(config_.sensors);
@@ -74,36 +65,7 @@ void FusionCore::take(SensorFrame frame) {
   sift(frame);
   if (!histories_.contains(frame.sensor)) awaited_by_ = 0;  // one more sensor to wait for
   const align::PushVerdict verdict = histories_[frame.sensor].push(in_step(frame));
-  if (count(frame, verdict)) registrar_.take(frame);
-}
-
-/// Counts what became of the frame; true if it was added to the history.
-bool FusionCore::count(const SensorFrame& frame, align::PushVerdict verdict) {
-  using align::PushVerdict;
-  FrameFates& fates = refused_[frame.sensor].fates;
-  const auto leave_out = [&](std::uint64_t& fate, std::string_view why) {
-    ++fate;
-    refuse(frame, why);
-    return false;
-  };
-  switch (verdict) {
-    case PushVerdict::Added:
-      return true;
-    case PushVerdict::Late:
-      return ++fates.late > 0;
-    case PushVerdict::Restarted:
-      return ++fates.restarts > 0;
-    case PushVerdict::Duplicate:
-      ++fates.doubled;
-      return false;
-    case PushVerdict::Stale:
-      return leave_out(fates.stale, kStaleFrame);
-    case PushVerdict::Backwards:
-      return leave_out(fates.backwards, kOutOfOrder);
-    case PushVerdict::Future:
-      return leave_out(fates.early, kFuture);
-  }
-  return false;
+  if (fates_.count(frame, verdict)) registrar_.take(frame);
 }
 
 /// The frame with its capture time by the common clock, as far as a walk has determined that;
@@ -126,12 +88,7 @@ void FusionCore::sift(SensorFrame& frame) {
     return !reason.empty();
   });
   if (frozen_[frame.sensor].remove_from(frame, limits) > 0) why = kFrozen;
-  if (!why.empty()) refuse(frame, why);
-}
-
-void FusionCore::refuse(const SensorFrame& frame, std::string_view why) {
-  refused_[frame.sensor].last = frame.received;
-  refused_[frame.sensor].why = why;
+  if (!why.empty()) fates_.refuse(frame, why);
 }
 
 std::optional<Snapshot> FusionCore::tick(Timestamp now) {
@@ -317,7 +274,7 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
     if (!config_.sensors.contains(sensor)) progress.unpolled.push_back(sensor);
   }
   for (const SensorId& sensor : config_.sensors) {
-    const auto told = alarm(sensor);
+    const auto told = guard_.alarm_of(sensor);
     const bool twice = told && told->or_else && *told->or_else < sensor;
     if (told ? !twice : is_stray(sensor)) progress.alarms.push_back(alarm_text(sensor, now));
   }
@@ -325,7 +282,7 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
 }
 
 std::string FusionCore::alarm_text(const SensorId& sensor, Timestamp now) const {
-  const auto told = alarm(sensor);
+  const auto told = guard_.alarm_of(sensor);
   const bool anew = config_.session.automatic && !registration().sensors.contains(sensor);
   if (told) return sentence_of(sensor, *told, now, anew);
   return is_stray(sensor) ? stray_sentence(sensor, *strays_.since(sensor), now) : std::string();
@@ -334,17 +291,6 @@ std::string FusionCore::alarm_text(const SensorId& sensor, Timestamp now) const 
 /// While a session runs, it says itself what it waits for.
 bool FusionCore::is_stray(const SensorId& sensor) const {
   return !registrar_.busy() && strays_.since(sensor);
-}
-
-FrameFates FusionCore::fates(const SensorId& sensor) const {
-  const auto it = refused_.find(sensor);
-  return it == refused_.end() ? FrameFates{} : it->second.fates;
-}
-
-std::string FusionCore::complaint(const SensorId& sensor, Timestamp now) const {
-  const auto it = refused_.find(sensor);
-  const bool lately = it != refused_.end() && now - it->second.last < kSeenLately;
-  return lately ? std::string(it->second.why) : std::string();
 }
 
 }  // namespace chorus::core

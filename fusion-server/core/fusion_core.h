@@ -6,37 +6,27 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "fusion-server/associate/plausible.h"
+#include "fusion-server/core/core_config.h"
 #include "fusion-server/core/cross_fade.h"
+#include "fusion-server/core/fates.h"
 #include "fusion-server/core/guard.h"
 #include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registrar.h"
 #include "fusion-server/core/strays.h"
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/core/walked_clocks.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
+#include "fusion-server/flow/snapshot.h"
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/sensor_status.h"
 #include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
-
-struct CoreConfig {
-  TickConfig output;
-  pipeline::PipelineConfig pipeline;
-  registration::RegistrationConfig registration;
-  SessionConfig session;
-  watch::WatchConfig watch;
-  std::set<SensorId> sensors;  ///< Frames of other sensors are ignored.
-  std::uint64_t first_sequence = 1;
-  std::uint64_t first_session = 1;
-  std::uint64_t first_person = 1;
-};
 
 class FusionCore {
  public:
@@ -88,25 +78,15 @@ class FusionCore {
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);
   }
-  /// How many frames came late, twice or with a wrong time, and what became of them.
-  [[nodiscard]] FrameFates fates(const SensorId& sensor) const;
-  /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
-  [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
+  /// What became of each sensor's frames.
+  [[nodiscard]] const Fates& fates() const noexcept { return fates_; }
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
-  /// Set if the sensor does not stand where it was registered, as far as known.
-  [[nodiscard]] std::optional<SensorAlarm> alarm(const SensorId& sensor) const {
-    return guard_.alarm_of(sensor);
-  }
+  /// Which sensors do not stand where they were registered, as far as known.
+  [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
   /// The alarm as a sentence for people; empty if there is none.
   [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
-  /// As SensorStatus::shift.
-  [[nodiscard]] std::optional<double> shift(const SensorId& sensor) const {
-    return guard_.shift_of(sensor);
-  }
-  /// What is added to this sensor's capture times because a walk showed that its clock is off.
-  [[nodiscard]] std::optional<WalkedClock> walked_clock(const SensorId& sensor) const {
-    return clocks_.of(sensor);
-  }
+  /// What is added to capture times because a walk showed that a sensor's clock is off.
+  [[nodiscard]] const WalkedClocks& walked_clocks() const noexcept { return clocks_; }
   /// How often a sensor lost its place because it was moved.
   [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
@@ -114,20 +94,12 @@ class FusionCore {
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:
-  struct Refusals {
-    FrameFates fates;
-    Timestamp last;  ///< When the last frame was received that was refused, or lost a body.
-    std::string_view why;
-  };
-
   void leave_world();
   void note_places(const Registration& before);
   [[nodiscard]] bool is_stray(const SensorId& sensor) const;
   void take_over(Registration before);
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
   void displace_moved(Timestamp instant);
-  bool count(const SensorFrame& frame, align::PushVerdict verdict);
-  void refuse(const SensorFrame& frame, std::string_view why);
   [[nodiscard]] SensorFrame in_step(SensorFrame frame);
   void sift(SensorFrame& frame);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
@@ -138,7 +110,7 @@ class FusionCore {
   pipeline::Memory memory_;
   Registrar registrar_;
   WalkedClocks clocks_;
-  std::map<SensorId, Refusals> refused_;
+  Fates fates_;
   std::map<SensorId, associate::FrozenBodies> frozen_;
   pipeline::Waiting awaited_;           ///< The sensors to wait for at the pending instant.
   std::uint64_t awaited_by_ = 0;        ///< Sequence of that instant; zero: none.

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/watch/watch.h"
 
 namespace chorus::core {

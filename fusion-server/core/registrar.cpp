@@ -14,12 +14,6 @@ namespace chorus::core {
 namespace {
 
 constexpr std::size_t kSessionsKept = 8;
-/// A sensor that could not be placed starts no session for this long; the time doubles with every
-/// further failure.
-constexpr Duration kFirstRetry = std::chrono::seconds(30);
-constexpr int kMaxDoublings = 5;  // at most 16 minutes
-/// After a session was cancelled by hand, none starts by itself for this long.
-constexpr Duration kAfterCancel = std::chrono::seconds(60);
 
 }  // namespace
 
@@ -34,7 +28,7 @@ void Registrar::reconfigure(RegistrarConfig config) {
   config_ = std::move(config);
   if (!same_session && !session_.collecting()) session_ = RegistrationSession(config_.session);
   last_seen_.keep(config_.sensors);
-  std::erase_if(retries_, [&](const auto& e) { return !config_.sensors.contains(e.first); });
+  retries_.keep(config_.sensors);
 }
 
 void Registrar::take(const SensorFrame& frame) {
@@ -83,7 +77,7 @@ Result<void> Registrar::cancel(std::uint64_t session, Timestamp now) {
     sessions_.front().reasons = {"cancelled"};
   }
   end_session(SessionState::Cancelled);
-  not_before_ = now + kAfterCancel;
+  retries_.cancelled(now);
   return {};
 }
 
@@ -112,7 +106,6 @@ void Registrar::forget() {
   lacks_displaced_ = false;
   keep_earlier(registration_);
   retries_.clear();
-  not_before_ = Timestamp{};
   const std::uint64_t version = registration_.version;
   registration_ = Registration{};
   registration_.version = version;
@@ -151,7 +144,7 @@ bool Registrar::displace(const SensorId& sensor, const std::string& reason) {
     return config_.sensors.contains(entry.first);
   });
   if (busy() || placed < kLeastPlaced || !registration_.sensors.contains(sensor)) return false;
-  retries_.erase(sensor);
+  retries_.forget(sensor);
   drop_proposal("given up: " + reason);
   if (!std::exchange(lacks_displaced_, true)) keep_earlier(registration_);
   replace(without(registration_, sensor, reason));
@@ -182,13 +175,11 @@ Result<Registration> Registrar::successor(const Registration& base, const Regist
 }
 
 bool Registrar::waits(const SensorId& sensor, Timestamp now) const {
-  const auto retry = retries_.find(sensor);
-  return !registration_.sensors.empty() && retry != retries_.end() &&
-         now < retry->second.not_before;
+  return !registration_.sensors.empty() && retries_.waits(sensor, now);
 }
 
 void Registrar::start_by_itself(Timestamp now) {
-  if (!config_.session.automatic || busy() || proposal_ || now < not_before_) return;
+  if (!config_.session.automatic || busy() || proposal_ || now < retries_.not_before()) return;
   const std::set<SensorId> seeing = last_seen_.seeing(now);
   // A single sensor has no partner to be registered with, unless it is the only one there is.
   const bool enough = seeing.size() >= 2 || (seeing.size() == 1 && config_.sensors.size() == 1);
@@ -321,13 +312,10 @@ void Registrar::explain_refusal(const Registration& candidate, const Error& why,
 
 void Registrar::back_off(const Registration& candidate, Timestamp now) {
   for (const auto& [sensor, own] : candidate.verdicts) {
-    if (registration_.sensors.contains(sensor)) {
-      retries_.erase(sensor);
-      continue;
-    }
-    Retry& retry = retries_[sensor];
-    retry.not_before = now + kFirstRetry * (1 << std::min(retry.failures, kMaxDoublings));
-    ++retry.failures;
+    if (registration_.sensors.contains(sensor))
+      retries_.forget(sensor);
+    else
+      retries_.failed(sensor, now);
   }
 }
 
@@ -353,10 +341,10 @@ std::vector<std::string> Registrar::awaits(Timestamp now) const {
 std::optional<Duration> Registrar::retry_in(Timestamp now) const {
   std::optional<Timestamp> first;
   for (const SensorId& sensor : unplaced(registration_, last_seen_.seeing(now))) {
-    const Timestamp at = waits(sensor, now) ? retries_.at(sensor).not_before : now;
+    const Timestamp at = waits(sensor, now) ? *retries_.waits(sensor, now) : now;
     first = std::min(first.value_or(at), at);
   }
-  const Timestamp next = std::max(first.value_or(now), not_before_);
+  const Timestamp next = std::max(first.value_or(now), retries_.not_before());
   return next > now ? std::optional(next - now) : std::nullopt;
 }
 

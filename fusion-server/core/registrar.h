@@ -8,7 +8,6 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <optional>
 #include <set>
 #include <stop_token>
@@ -18,42 +17,19 @@
 #include "fusion-server/core/adoption.h"
 #include "fusion-server/core/last_seen.h"
 #include "fusion-server/core/registration_session.h"
+#include "fusion-server/core/retries.h"
+#include "fusion-server/core/solve_job.h"
 #include "fusion-server/core/world.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/session_status.h"
 
 namespace chorus::core {
 
-/// A solve to be run by the worker thread.
-struct SolveJob {
-  std::uint64_t session = 0;
-  SolveKind kind = SolveKind::Provisional;
-  SharedWalk walk;
-  registration::RegistrationConfig config;
-  std::stop_token stop;  ///< Stopped when its result is no longer wanted.
-};
-
-struct Solution {
-  std::uint64_t session = 0;
-  SolveKind kind = SolveKind::Provisional;
-  Registration registration;
-  Duration cost{0};       ///< How long the solve took.
-  bool given_up = false;  ///< True if the solve was stopped before its end: then there is no
-                          ///< result.
-};
-
 struct RegistrarConfig {
   registration::RegistrationConfig registration;
   SessionConfig session;
   std::set<SensorId> sensors;
-};
-
-/// The effect of a solution.
-enum class Outcome {
-  Nothing,    ///< The registration in use stays.
-  Adopted,    ///< It was replaced or extended.
-  Withdrawn,  ///< The session's own provisional registration was withdrawn.
 };
 
 class Registrar {
@@ -110,11 +86,6 @@ class Registrar {
   [[nodiscard]] std::vector<std::string> awaits(Timestamp now) const;
 
  private:
-  struct Retry {
-    int failures = 0;
-    Timestamp not_before;
-  };
-
   /// Conflict while a session is running: `what` cannot be changed then.
   [[nodiscard]] Result<void> unless_busy(const char* what) const;
   void begin(Duration target, bool automatic, Timestamp now);
@@ -156,8 +127,7 @@ class Registrar {
   bool solving_ = false;
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;
-  std::map<SensorId, Retry> retries_;
-  Timestamp not_before_{};  ///< No session starts by itself before this time.
+  Retries retries_;
 };
 
 }  // namespace chorus::core

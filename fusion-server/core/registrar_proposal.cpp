@@ -43,7 +43,7 @@ Result<void> Registrar::accept() {
   const auto own = std::ranges::find(sessions_, proposal_->session, &SessionStatus::id);
   if (own != sessions_.end()) own->adopted = true;
   proposal_.reset();
-  for (const auto& [sensor, place] : next.sensors) retries_.erase(sensor);
+  for (const auto& [sensor, place] : next.sensors) retries_.forget(sensor);
   if (!std::exchange(lacks_displaced_, false)) keep_earlier(registration_);
   replace(std::move(next));
   return {};

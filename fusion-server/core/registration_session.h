@@ -11,8 +11,10 @@
 #include <optional>
 #include <vector>
 
+#include "common/base/strong_id.h"
+#include "common/sensor/sensor_frame.h"
+#include "common/time/timestamp.h"
 #include "fusion-server/core/coverage.h"
-#include "fusion-server/flow.h"
 #include "fusion-server/registration/registration.h"
 #include "fusion-server/status/session_status.h"
 

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "fusion-server/associate/association_config.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
+#include "fusion-server/flow/registration.h"
+#include "fusion-server/flow/snapshot.h"
 
 namespace chorus::core {
 

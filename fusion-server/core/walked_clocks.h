@@ -12,7 +12,9 @@
 #include <map>
 #include <optional>
 
-#include "fusion-server/flow.h"
+#include "common/sensor/sensor_frame.h"
+#include "fusion-server/flow/clock_offset.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::core {
 

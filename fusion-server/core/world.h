@@ -9,7 +9,7 @@
 #include <map>
 
 #include "common/base/result.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::core {
 

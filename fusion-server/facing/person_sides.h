@@ -12,8 +12,8 @@
 #include <array>
 #include <map>
 
+#include "common/base/strong_id.h"
 #include "fusion-server/facing/exchange_habit.h"
-#include "fusion-server/flow.h"
 
 namespace chorus::facing {
 

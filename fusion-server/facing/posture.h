@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::facing {
 

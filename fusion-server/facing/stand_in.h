@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::facing {
 

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::facing {
 

@@ -1,7 +1,8 @@
 // A body that no sensor sees any more, placed where the person is expected.
 #pragma once
 
-#include "fusion-server/flow.h"
+#include "common/base/duration.h"
+#include "fusion-server/flow/fused_body.h"
 
 namespace chorus::fusion {
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <memory>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 #include "fusion-server/fusion/noise_model.h"
 
 namespace chorus::fusion {

@@ -7,7 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/fused_body.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::fusion {
 

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/fused_body.h"
+#include "fusion-server/flow/person.h"
 #include "fusion-server/fusion/estimator.h"
 #include "fusion-server/fusion/fusion_config.h"
 #include "fusion-server/fusion/methods.h"

@@ -3,7 +3,8 @@
 
 #include <map>
 
-#include "fusion-server/flow.h"
+#include "common/base/duration.h"
+#include "common/base/strong_id.h"
 #include "fusion-server/fusion/body_model.h"
 #include "fusion-server/fusion/noise_model.h"
 #include "fusion-server/fusion/pose_error.h"

@@ -13,8 +13,9 @@
 
 #include <Eigen/Core>
 
+#include "common/base/duration.h"
+#include "common/base/strong_id.h"
 #include "common/body/skeleton.h"
-#include "fusion-server/flow.h"
 
 namespace chorus::fusion {
 

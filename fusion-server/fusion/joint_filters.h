@@ -4,6 +4,7 @@
 #include <array>
 
 #include "common/body/skeleton.h"
+#include "fusion-server/flow/fused_body.h"
 #include "fusion-server/fusion/joint_view.h"
 #include "fusion-server/fusion/point_filter.h"
 

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "common/body/skeleton.h"
-#include "fusion-server/flow.h"
+#include "common/sensor/shares.h"
+#include "fusion-server/flow/person.h"
 #include "fusion-server/fusion/error_model.h"
 
 namespace chorus::fusion {

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 
 #include "common/time/timestamp.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/fused_body.h"
 
 namespace chorus::fusion {
 

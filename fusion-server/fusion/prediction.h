@@ -4,7 +4,8 @@
 // lengths that they have.
 #pragma once
 
-#include "fusion-server/flow.h"
+#include "common/base/duration.h"
+#include "fusion-server/flow/fused_body.h"
 
 namespace chorus::fusion {
 

@@ -1,7 +1,7 @@
 // How good one view of a person is as a whole.
 #pragma once
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::fusion {
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/snapshot.h"
 
 namespace chorus::outlet {
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "common/sensor/sensor_frame.h"
 #include "fusion-server/registration/registration.h"
 
 namespace chorus::pipeline {

@@ -8,7 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "common/time/timestamp.h"
+#include "fusion-server/flow/fused_body.h"
 
 namespace chorus::pipeline {
 

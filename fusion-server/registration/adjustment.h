@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 
+#include "common/geometry/plane.h"
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/pair_registration.h"
 

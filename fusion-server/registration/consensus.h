@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/pairwise_registration.h"
 
 namespace chorus::registration {
 

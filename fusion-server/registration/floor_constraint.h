@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/plane.h"
 #include "fusion-server/registration/registration.h"
 
 namespace chorus::registration {

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "common/base/units.h"
-#include "fusion-server/flow.h"
+#include "common/sensor/sensor_frame.h"
+#include "fusion-server/flow/pairwise_registration.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::registration {
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/body/skeleton.h"
 #include "fusion-server/registration/registration.h"
 
 namespace chorus::registration {

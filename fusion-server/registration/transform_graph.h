@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/pairwise_registration.h"
 
 namespace chorus::registration {
 

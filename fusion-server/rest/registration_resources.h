@@ -11,7 +11,7 @@
 #include "common/http/router.h"
 #include "common/service/serving.h"
 #include "fusion-server/core/world.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/session_status.h"
 

@@ -247,19 +247,19 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   SensorStatus status;
   status.id = report.sensor.id;
   status.url = report.sensor.url;
-  const auto walked = core_.walked_clock(report.sensor.id);
+  const auto walked = core_.walked_clocks().of(report.sensor.id);
   if (report.newest) status.age = now - *report.newest - (walked ? walked->added : Duration{0});
   const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
-  if (status.last_error.empty()) status.last_error = core_.complaint(report.sensor.id, now);
+  if (status.last_error.empty()) status.last_error = core_.fates().complaint(report.sensor.id, now);
   if (status.last_error.empty() && silent) status.last_error = stale(*status.age);
   status.streaming = report.streaming;
   status.rate_hz = report.rate_hz;
   status.frames = report.frames;
   status.missed = report.missed;
   status.failures = report.failures;
-  status.fates = core_.fates(report.sensor.id);
+  status.fates = core_.fates().of(report.sensor.id);
   status.fates.early += report.early;
   status.fates.stale += report.stale;
   status.refused = refused(status.fates);
@@ -284,7 +284,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   });
   if (own != reports.end() && core_.uses_weights()) status.weight = own->weight;
   status.bodies = core_.bodies(report.sensor.id, now);
-  status.shift = core_.shift(report.sensor.id);
+  status.shift = core_.guard().shift_of(report.sensor.id);
   status.alarm = core_.alarm_text(report.sensor.id, now);
   return status;
 }

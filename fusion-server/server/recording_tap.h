@@ -8,7 +8,8 @@
 
 #include "common/service/recordings.h"
 #include "common/time/clock.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
+#include "fusion-server/flow/snapshot.h"
 #include "fusion-server/sink.h"
 
 namespace chorus::server {

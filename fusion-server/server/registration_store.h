@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/base/result.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::server {
 

@@ -2,7 +2,7 @@
 // any more.
 #pragma once
 
-#include "fusion-server/core/registrar.h"
+#include "fusion-server/core/solve_job.h"
 
 namespace chorus::server {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/server/registration_store.h"
 #include "fusion-server/server/worker.h"
 #include "fusion-server/status/registration_progress.h"

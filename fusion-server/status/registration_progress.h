@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/strong_id.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/session_status.h"
 
 namespace chorus {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/histogram.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/sensor_status.h"
 

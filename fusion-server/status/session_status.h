@@ -9,7 +9,7 @@
 
 #include "common/base/strong_id.h"
 #include "common/time/timestamp.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus {
 

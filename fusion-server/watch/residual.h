@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::watch {
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 #include "fusion-server/watch/shift_test.h"
 #include "fusion-server/watch/watch_config.h"
 

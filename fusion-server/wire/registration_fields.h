@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/result.h"
-#include "fusion-server/flow.h"
+#include "common/base/strong_id.h"
 
 namespace chorus::wire {
 

@@ -6,7 +6,7 @@
 
 #include "common/base/result.h"
 #include "common/record/recorder.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 
 namespace chorus::wire {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/resource/node.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/session_status.h"
 

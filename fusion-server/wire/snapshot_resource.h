@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/resource/frame_resource.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/snapshot.h"
 
 namespace chorus::wire {
 

@@ -6,7 +6,8 @@
 
 #include "common/base/result.h"
 #include "common/resource/frame_resource.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
+#include "fusion-server/flow/snapshot.h"
 
 namespace chorus::ctl {
 

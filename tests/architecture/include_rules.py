@@ -16,7 +16,7 @@ ROWS = [
     ["common/motion", "common/resource"],
     ["common/record"],
     ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration"],
-    ["fusion-server/flow.h"],
+    ["fusion-server/flow"],
     ["fusion-server/status", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],
     ["fusion-server/registration"],
@@ -30,13 +30,13 @@ ROWS = [
 ]
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 
-# Values that rooms of the fusion server pass to each other; each header is a room of its own.
-VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/sink.h"}
+# A header of values that is a room of its own.
+VALUE_HEADERS = {"fusion-server/sink.h"}
 
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
-NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline", "fusion-server/status"} | VALUE_HEADERS | STAGES
+NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
 # These rooms implement protocols other than HTTP: they may use sockets, but no HTTP.
 NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
 
@@ -45,7 +45,7 @@ FORBIDDEN_ROOMS = [
     (FUSION_SERVER, {"common/synthetic"}, "what judges an algorithm must not feed it"),
     (STAGES, {"common/net", "common/http", "common/resource", "common/record", "common/service", "common/rdf"},
      "stages know values, not their wire forms"),
-    (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow.h only"),
+    (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow only"),
     ({"fusion-server/registration"}, STAGES - {"fusion-server/align"}, "registration may use align only"),
     (NO_SOCKET, {"common/net", "common/http", "common/service"}, "no socket here"),
     (NO_HTTP, {"common/http", "common/service"}, "a tracker protocol needs sockets, not HTTP"),
@@ -150,7 +150,7 @@ def linked_rooms(root):
     for file in sorted(root.glob("*/**/CMakeLists.txt")):
         relative = file.parent.relative_to(root).as_posix()
         for name, arguments in LIBRARY.findall(file.read_text(encoding="utf-8")):
-            room = f"fusion-server/{name}.h" if f"fusion-server/{name}.h" in VALUE_HEADERS else room_of(relative + "/CMakeLists.txt")
+            room = room_of(relative + "/CMakeLists.txt")
             if room is None:
                 continue
             room_by_name[name] = room

@@ -57,7 +57,7 @@ class BrokenRules(unittest.TestCase):
         self.assert_caught("common/body/a.cpp", '#include "common/magic/wand.h"\n', "in no row")
 
     def test_stage_includes_stage(self):
-        self.assert_caught("fusion-server/fusion/a.cpp", '#include "fusion-server/align/aligner.h"\n', "flow.h only")
+        self.assert_caught("fusion-server/fusion/a.cpp", '#include "fusion-server/align/aligner.h"\n', "flow only")
         self.assert_caught("fusion-server/registration/a.cpp", '#include "fusion-server/fusion/fuse.h"\n',
                            "align only")
         self.assertEqual(

@@ -1,7 +1,8 @@
 // Mean joint errors against the truth, and the fraction of joints seen.
 #pragma once
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
+#include "fusion-server/flow/snapshot.h"
 #include "tests/judge/judge.h"
 
 namespace chorus::bench {

@@ -140,7 +140,7 @@ void Room::push() {
 void Room::note_alarms(Timestamp now) {
   for (std::size_t i = 0; i < setting_.sensors; ++i) {
     const SensorId sensor = sensor_of(i);
-    const auto alarm = core_->alarm(sensor);
+    const auto alarm = core_->guard().alarm_of(sensor);
     if (!alarm) {
       alarmed_.erase(sensor);
     } else if (alarmed_.insert(sensor).second) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 #include "tests/judge/judge.h"
 
 namespace chorus::bench {

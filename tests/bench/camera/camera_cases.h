@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/importers/formats.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "tests/bench/report/report.h"
 
 namespace chorus::bench {

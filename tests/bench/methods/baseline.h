@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::bench::baselines {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::bench::baselines {
 

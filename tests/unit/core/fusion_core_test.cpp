@@ -107,7 +107,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
   SensorFrame back = sight(0, milliseconds(300));
   back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
-  EXPECT_EQ(core.fates(sensor_id("s1")).backwards, 1u);
+  EXPECT_EQ(core.fates().of(sensor_id("s1")).backwards, 1u);
   SensorFrame stranger = sight(0, milliseconds(600));
   stranger.sensor = sensor_id("s9");
   core.take(stranger);
@@ -341,12 +341,12 @@ TEST(FusionCore, WithoutLateFramesNothingIsAmended) {
 TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, milliseconds(500));
-  EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   SensorFrame back = sight(0, milliseconds(300));
   back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
-  EXPECT_NE(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
-  EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + std::chrono::seconds(4)), "");
+  EXPECT_NE(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.fates().complaint(sensor_id("s1"), kStart + std::chrono::seconds(4)), "");
 }
 
 TEST(FusionCore, ASensorThatWasTakenOutComesBackWithoutItsPast) {
@@ -355,13 +355,13 @@ TEST(FusionCore, ASensorThatWasTakenOutComesBackWithoutItsPast) {
   SensorFrame back = sight(0, milliseconds(300));
   back.sequence = ~std::uint64_t{0};
   core.take(back);
-  ASSERT_NE(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  ASSERT_NE(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   ASSERT_GT(core.share(sensor_id("s1")).in_time, 0.0);
   CoreConfig fewer = config();
   fewer.sensors.erase(sensor_id("s1"));
   core.reconfigure(fewer);
   core.reconfigure(config());
-  EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   EXPECT_EQ(core.share(sensor_id("s1")).in_time, 0.0);
 }
 
@@ -381,9 +381,10 @@ TEST(FusionCore, BodiesThatNobodyHasAreLeftOutByName) {
     }
     while (const auto snapshot = core.tick(kStart + t)) EXPECT_LE(snapshot->bodies.size(), 1u);
   }
-  EXPECT_NE(core.complaint(sensor_id("s1"), kStart + std::chrono::seconds(2)).find("max_range_m"),
-            std::string::npos);
-  EXPECT_EQ(core.complaint(sensor_id("s2"), kStart + std::chrono::seconds(2)), "");
+  EXPECT_NE(
+      core.fates().complaint(sensor_id("s1"), kStart + std::chrono::seconds(2)).find("max_range_m"),
+      std::string::npos);
+  EXPECT_EQ(core.fates().complaint(sensor_id("s2"), kStart + std::chrono::seconds(2)), "");
 }
 
 }  // namespace

@@ -96,9 +96,9 @@ TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
   EXPECT_EQ(core_.registration().sensors.size(), 2u);
   EXPECT_THAT(core_.registration().verdicts.at(moved).reasons,
               Contains(HasSubstr("sensor s2 was moved")));
-  ASSERT_TRUE(core_.alarm(moved));
-  EXPECT_NEAR(core_.alarm(moved)->shift, 0.08, 0.03);
-  EXPECT_FALSE(core_.alarm(sensor_id("s1")));
+  ASSERT_TRUE(core_.guard().alarm_of(moved));
+  EXPECT_NEAR(core_.guard().alarm_of(moved)->shift, 0.08, 0.03);
+  EXPECT_FALSE(core_.guard().alarm_of(sensor_id("s1")));
   EXPECT_EQ(core_.displaced(), 1u);
 
   const auto job = [&] {
@@ -114,7 +114,7 @@ TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
   solved.sensors[moved].world_from_sensor.translation().x() += push_;
   EXPECT_EQ(core_.solved({job->session, job->kind, solved}, kStart + t_), Outcome::Adopted);
   EXPECT_TRUE(core_.registration().sensors.contains(moved));
-  EXPECT_FALSE(core_.alarm(moved));
+  EXPECT_FALSE(core_.guard().alarm_of(moved));
   EXPECT_LT(run(std::chrono::seconds(2)), usual + 0.005);
 }
 
@@ -124,7 +124,7 @@ TEST_F(Pushed, APlaceThatWasChangedOnPurposeIsNoAlarm) {
   neck_.reset();
   run(std::chrono::seconds(40));
   EXPECT_EQ(core_.displaced(), 0u);
-  for (int i = 0; i < kSensors; ++i) EXPECT_FALSE(core_.alarm(sensor_id(name(i))));
+  for (int i = 0; i < kSensors; ++i) EXPECT_FALSE(core_.guard().alarm_of(sensor_id(name(i))));
 }
 
 TEST_F(Pushed, ASensorThatWasCarriedAwayIsToldOfWhileItSeesSomebodyElsewhere) {

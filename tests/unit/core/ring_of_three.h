@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/registration.h"
 #include "tests/support/builders.h"
 
 namespace chorus::core {

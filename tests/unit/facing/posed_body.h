@@ -9,7 +9,7 @@
 #include "common/base/units.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::facing {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 
 namespace chorus::fusion {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/body/bones.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/person.h"
 #include "tests/judge/metrics.h"
 
 namespace chorus::bench {

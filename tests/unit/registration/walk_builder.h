@@ -9,6 +9,7 @@
 
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
+#include "common/sensor/sensor_frame.h"
 #include "fusion-server/registration/registration.h"
 
 namespace chorus::registration {

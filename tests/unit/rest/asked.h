@@ -6,7 +6,8 @@
 #include <string>
 
 #include "common/http/route_table.h"
-#include "fusion-server/flow.h"
+#include "fusion-server/flow/fused_body.h"
+#include "fusion-server/flow/snapshot.h"
 #include "tests/support/builders.h"
 
 namespace chorus::rest {

@@ -1,0 +1,47 @@
+// What fusion makes of a person's views.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/base/strong_id.h"
+#include "common/body/skeleton.h"
+#include "common/sensor/shares.h"
+
+namespace chorus {
+
+/// How a joint moves at the instant, according to the method's filter; all errors are alike on
+/// every axis.
+struct JointMotion {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+  double variance = 0.0;                               ///< Of the velocity, per axis [m^2/s^2].
+  double shared = 0.0;  ///< Covariance of position and velocity, per axis [m^2/s].
+  /// Spectral density of the white-noise acceleration, now and in the long run [m^2/s^3].
+  double density = 0.0;
+  double usual_density = 0.0;
+};
+
+struct FusedBody {
+  PersonId id;
+  Skeleton<WorldSpace> skeleton;
+  std::array<double, kJointCount> variance{};  ///< Mean per-axis variance [m^2].
+  /// Bit i: Snapshot::sensors[i] contributed.
+  std::array<std::uint64_t, kJointCount> contributors{};
+  std::array<Shares, kJointCount> shares{};  ///< Of Snapshot::sensors[i], at that index.
+  /// Time since a sensor last contributed to the joint [s]: 0 where one does now, more where the
+  /// joint is only expected.
+  std::array<double, kJointCount> age{};
+  std::optional<std::size_t> slot;  ///< The person's slot in every output; none: no slot.
+  std::optional<double> sides_confidence = {};  ///< Copied from Person.
+  /// For how long no sensor has seen the person [s]; meanwhile they are where they are expected.
+  /// None while they are seen.
+  std::optional<double> carried_for = {};
+  /// For predictions (fusion/prediction.h); none: the method has no velocities.
+  std::optional<std::array<JointMotion, kJointCount>> motion = {};
+};
+
+}  // namespace chorus

@@ -1,0 +1,60 @@
+// Where the sensors stand, and how far that can be trusted.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/base/strong_id.h"
+#include "common/time/timestamp.h"
+#include "fusion-server/flow/clock_offset.h"
+#include "fusion-server/flow/pairwise_registration.h"
+
+namespace chorus {
+
+/// The pose of a sensor: x_in_world = world_from_sensor * x_in_sensor.
+struct Extrinsics {
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
+  std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
+  double error = 0.0;           ///< Sum of the edge errors along the chain [m].
+  /// The best chain whose last edge is another one, and its error; they show why `chain` was
+  /// chosen.
+  std::vector<SensorId> next_chain = {};
+  double next_error = 0.0;
+  /// Covariance of (rotation vector, sensor position) in world axes, relative to the master [rad^2,
+  /// rad m, m^2].
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// What the sensor's points are multiplied by, about its origin, before they are placed: not 1
+  /// for a camera that guesses depth from a person's size, once a length is known.
+  double scale = 1.0;
+};
+
+enum class Verdict { None, Provisional, Good, Refused };
+
+/// How far one sensor's place can be trusted.
+struct SensorVerdict {
+  Verdict verdict = Verdict::None;   ///< Refused: the sensor has no place.
+  std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
+};
+
+/// The places of all sensors.  It is replaced as a whole, stored, and has a version.
+struct Registration {
+  std::uint64_t version = 0;
+  Timestamp solved;
+  /// The verdict on all sensors that have a place, taken together.
+  Verdict verdict = Verdict::None;
+  std::vector<std::string> reasons;  ///< Why the verdict is not Good, and why sensors are missing.
+  SensorId master;
+  std::map<SensorId, Extrinsics> sensors;
+  /// One for each sensor that took part in a walk, whether it has a place or not.
+  std::map<SensorId, SensorVerdict> verdicts;
+  std::vector<PairwiseRegistration> edges;
+  /// Offsets found from the walk because the clock of some sensor was not known; empty if all were
+  /// known.
+  std::map<SensorId, ClockOffset> clocks = {};
+};
+
+}  // namespace chorus
