@@ -40,7 +40,8 @@ Result<FloorPlane> parse_floor(std::string_view text) {
                 "must be four numbers a,b,c,d of the plane a x + b y + c z + d = 0 in sensor space "
                 "[m], such as 0,0.98,0.17,1.8.");
   auto plane = make_plane(p[0], p[1], p[2], p[3]);
-  if (plane && plane->normal.y() < 0) {
+  // A sensor stands above its floor, however it hangs; a ceiling's may look beyond straight down.
+  if (plane && (plane->offset < 0 || (plane->offset == 0 && plane->normal.y() < 0))) {
     plane->normal = -plane->normal;
     plane->offset = -plane->offset;
   }
