@@ -49,7 +49,8 @@ Result<FloorPlane> parse_floor(std::string_view text) {
     return fail(ErrorCode::InvalidArgument, "floor plane",
                 fmt::format("puts the sensor {:.0f} m above the floor; is that in millimetres?",
                             std::abs(plane->offset)));
-  if (plane && plane->normal.y() < 0) {
+  // A sensor stands above its floor, however it hangs; a ceiling's may look beyond straight down.
+  if (plane && (plane->offset < 0 || (plane->offset == 0 && plane->normal.y() < 0))) {
     plane->normal = -plane->normal;
     plane->offset = -plane->offset;
   }

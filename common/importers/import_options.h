@@ -55,7 +55,8 @@ struct ImportOptions {
 [[nodiscard]] Result<SensorId> sensor_for(const std::filesystem::path& file,
                                           const ImportOptions& options);
 
-/// Reads "a,b,c,d" as the plane a x + b y + c z + d = 0 in sensor space; the normal is turned up.
+/// Reads "a,b,c,d" as the plane a x + b y + c z + d = 0 in sensor space.  The normal
+/// points to the side where the sensor is, which is up.
 [[nodiscard]] Result<FloorPlane> parse_floor(std::string_view text);
 
 }  // namespace chorus::importers

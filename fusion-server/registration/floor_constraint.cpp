@@ -11,7 +11,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kMinUp = 0.17;        // cos(80 deg): with more tilt, up is undefined for a sensor
+constexpr double kMinUp = 0.5;         // cos(60 deg): a floor tilted more against people is a wall
 constexpr double kMinHeight = 0.10;    // [m] least height of the sensor above its floor
 constexpr double kFeetBelow = 0.25;    // [m] feet lower than this contradict the plane
 constexpr double kFeetAbove = 0.60;    // [m] feet that stay higher than this contradict it, too
@@ -80,7 +80,8 @@ std::optional<Eigen::Vector3d> middle_of_hips(const WalkTrack& walk) {
 }
 
 std::string objection_to(const FloorPlane& floor, const WalkTrack& walk) {
-  if (floor.normal.y() < kMinUp) return "its floor plane does not point up";
+  const auto up = upright(walk);
+  if (up && floor.normal.dot(*up) < kMinUp) return "its floor plane does not point up";
   if (floor.offset < kMinHeight) return "its floor plane is not below it";
   const auto feet = lowest_feet(walk, floor);
   if (feet && *feet < -kFeetBelow) {
@@ -102,7 +103,7 @@ WalkFloor floor_of(const WalkTrack& walk) {
   return {floor, {}};
 }
 
-std::optional<FloorPlane> floor_from_body(const WalkTrack& walk) {
+std::optional<Eigen::Vector3d> upright(const WalkTrack& walk) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   for (const SensorFrame& frame : walk.frames) {
     for (const BodyFrame& body : frame.bodies) {
@@ -115,7 +116,13 @@ std::optional<FloorPlane> floor_from_body(const WalkTrack& walk) {
   }
   const auto direction = make_plane(up.x(), up.y(), up.z(), 0.0);
   if (!direction) return std::nullopt;
-  FloorPlane floor = *direction;
+  return direction->normal;
+}
+
+std::optional<FloorPlane> floor_from_body(const WalkTrack& walk) {
+  const auto up = upright(walk);
+  if (!up) return std::nullopt;
+  FloorPlane floor{*up, 0.0};
   const auto feet = lowest_feet(walk, floor);
   floor.offset = feet ? kFootJointHeight - *feet : 0.0;
   return floor;

@@ -16,9 +16,13 @@ struct WalkFloor {
   std::string objection;  ///< "its floor plane is above the feet"; empty if there is none.
 };
 
-/// Median of the reported planes. The floor is plausible if its normal points up in sensor space,
-/// it lies below the sensor, and the person's feet are near it.
+/// Median of the reported planes. The floor is plausible if people stand upright on it (a sensor
+/// may hang on its side or look straight down, so its own axes do not tell), it lies below the
+/// sensor, and the person's feet are near it.
 [[nodiscard]] WalkFloor floor_of(const WalkTrack& walk);
+
+/// Mean direction from hips to neck, in sensor space; none if the sensor saw nobody.
+[[nodiscard]] std::optional<Eigen::Vector3d> upright(const WalkTrack& walk);
 
 /// For sensors without a floor plane: people walk upright, so the mean direction from hips to neck
 /// is up, and the lowest feet are on the floor.  Accurate to a few degrees.

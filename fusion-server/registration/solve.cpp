@@ -208,14 +208,14 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
 void place_sensors(Work& work) {
   const std::map<SensorId, Chain> chains = best_chains(work.result.master, work.result.edges);
   for (const auto& [sensor, found] : placed(work, chains)) {
-    const Chain& chain = chains.at(sensor);
     Extrinsics place;
     place.world_from_sensor = found.world_from_sensor;
-    place.chain = chain.sensors;
-    place.error = chain.error;
+    place.chain = chains.at(sensor).sensors;
+    place.error = chains.at(sensor).error;
     const Matrix6 shift = at_point(place.world_from_sensor.translation());
     place.covariance = shift * found.covariance * shift.transpose();
-    const auto why = impossible(place.world_from_sensor, work.floor_guessed);
+    const auto up = upright(*work.tracks.at(sensor));
+    const auto why = impossible(place.world_from_sensor, up, work.floor_guessed);
     if (why && sensor != work.result.master) {
       work.doubt(sensor,
                  fmt::format("sensor {} {}: its registration was refused", sensor.str(), *why));

@@ -87,6 +87,12 @@ TEST(Hello, SaysWhoWhatAndHow) {
   EXPECT_EQ(hello.focal_sigma, 0.1);
 }
 
+TEST(Hello, ACeilingCameraMayLookBeyondStraightDown) {
+  const Hello hello = hello_of(with(kHelloMessage, "floor", {0.0, -0.04, -1.0, 3.2}));
+  ASSERT_TRUE(hello.floor);
+  EXPECT_LT(hello.floor->normal.y(), 0.0);
+}
+
 TEST(Hello, AxesAreThreeDirectionsAtRightAngles) {
   for (const char* words : {"left up ahead", "ahead left up", "right up back", "down back left"}) {
     const auto axes = read_axes(words);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fusion-server/registration/impossible_place.h"
 #include "tests/unit/registration/walk_builder.h"
 
 namespace chorus::registration {
@@ -33,6 +34,32 @@ TEST(FloorOf, SaysWhatIsWrong) {
   EXPECT_THAT(with({-Eigen::Vector3d::UnitY(), 0.0}), HasSubstr("does not point up"));
   EXPECT_THAT(with({Eigen::Vector3d::UnitY(), -3.0}), HasSubstr("not below it"));
   EXPECT_EQ(floor_of({sensor(1), {}}).objection, "it reports no floor plane");
+}
+
+TEST(FloorOf, IsTakenHoweverTheSensorHangs) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  Eigen::Isometry3d down = Eigen::Isometry3d::Identity();  // from the ceiling, and a little beyond
+  down.linear() = Eigen::AngleAxisd(deg(92), x).toRotationMatrix();
+  down.translation() = Eigen::Vector3d(0, 3.2, 0);
+  const Eigen::Isometry3d portrait = kPlace * Eigen::AngleAxisd(deg(90), z);
+  const Eigen::Isometry3d head_down = kPlace * Eigen::AngleAxisd(deg(180), z);
+  for (const Eigen::Isometry3d& place : {down, portrait, head_down}) {
+    const WalkTrack walk = watch(1, place, {.length = 2});
+    const WalkFloor sight = floor_of(walk);
+    ASSERT_TRUE(sight.floor) << sight.objection;
+    EXPECT_NEAR(sight.floor->offset, place.translation().y(), 1e-6);
+    EXPECT_EQ(impossible(place, upright(walk), false), std::nullopt);
+  }
+  const WalkTrack wall = watch(1, kPlace, {.length = 2, .floor_in_world = FloorPlane{z, 3.5}});
+  EXPECT_THAT(floor_of(wall).objection, HasSubstr("does not point up"));
+}
+
+TEST(Impossible, IsAPlaceFromWhichPeopleStandOnTheirHeads) {
+  const auto up = upright(watch(1, kPlace, {.length = 2}));
+  EXPECT_EQ(impossible(kPlace, up, false), std::nullopt);
+  const Eigen::Isometry3d turned = kPlace * Eigen::AngleAxisd(deg(180), Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(impossible(turned, up, false), "would see people head down");
 }
 
 TEST(FloorFromBody, StandsUnderTheFeetOfAnUprightPerson) {

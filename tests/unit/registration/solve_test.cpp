@@ -354,7 +354,7 @@ TEST(Solve, AHeadDownOrBuriedSensorIsRefusedAndNamed) {
   auto walk = ring(2, {.length = 1});  // with a floor of its own, sensor 1 would have a place
   for (SensorFrame& frame : walk[1].frames) frame.floor.reset();
   const Registration head_down = solve_with(estimate, walk, kWalkStart, config);
-  EXPECT_THAT(head_down.reasons, Contains(HasSubstr("sensor s1 would hang head down")));
+  EXPECT_THAT(head_down.reasons, Contains(HasSubstr("sensor s1 would see people head down")));
   EXPECT_FALSE(head_down.sensors.contains(sensor(1)));
   wrong.linear().setIdentity();
   wrong.translation().y() = -2.5;

@@ -21,6 +21,8 @@ constexpr Bounds kShare{0.0, 1.0};
 // No camera that sees people hangs this high [m].  A height of 1.6 m in millimetres or centimetres
 // is above this limit.
 constexpr double kHighest = 100.0;
+// y of a floor's normal: a camera on the ceiling may look beyond straight down.
+constexpr double kLeastUp = -0.5;
 
 struct Direction {
   std::string_view word;
@@ -155,7 +157,7 @@ Result<FloorPlane> read_floor(const Json& value, const Eigen::Matrix3d& sensor_f
                              offset));
   }
   const auto plane = make_plane(normal.x(), normal.y(), normal.z(), offset);
-  if (!plane || plane->normal.y() <= 0.0 || plane->offset < 0.0) {
+  if (!plane || plane->normal.y() < kLeastUp || plane->offset < 0.0) {
     return wrong(at,
                  "must be [nx, ny, nz, d]: the floor's normal, pointing up, in your axes, and the "
                  "camera's height over the floor [m]");

@@ -131,6 +131,10 @@ TEST(FloorOption, ReadsNormalisesAndTurnsUp) {
   ASSERT_THAT(floor, IsOk());
   EXPECT_DOUBLE_EQ(floor->normal.y(), 1.0);
   EXPECT_DOUBLE_EQ(floor->offset, 1.2);
+  const auto ceiling = parse_floor("0,-0.03,-1,3.4");  // the camera looks beyond straight down
+  ASSERT_THAT(ceiling, IsOk());
+  EXPECT_LT(ceiling->normal.z(), 0.0);
+  EXPECT_GT(ceiling->offset, 3.0);
   for (const char* wrong : {"", "1,2,3", "1,2,3,4,5", "a,b,c,d", "0,0,0,1", "nan,1,0,1"})
     EXPECT_FALSE(parse_floor(wrong).has_value()) << wrong;
 }
