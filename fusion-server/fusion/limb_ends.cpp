@@ -9,12 +9,10 @@ namespace {
 
 using enum JointId;
 
-constexpr double kUsualTime = 10.0;     // [s] over which the usual way is learned
-constexpr double kAlikeErrors = 0.5;    // [s] within which errors are the same
-constexpr double kShortestStep = 5e-3;  // [s] the least time that an instant counts for
-constexpr double kLongestStep = 0.1;    // [s] the most time that an instant counts for
-// The part of the views' errors that lasts: the usual way was learned with it.
-constexpr double kLasting = 0.5;
+constexpr double kUsualTime = 10.0;        // [s] over which the usual way is learned
+constexpr double kAlikeErrors = 0.5;       // [s] within which errors are the same
+constexpr double kShortestStep = 5e-3;     // [s] the least time that an instant counts for
+constexpr double kLongestStep = 0.1;       // [s] the most time that an instant counts for
 constexpr double kUnusual = 2.0;           // [standard deviations] from the usual way
 constexpr double kLeastClear = 1e-3;       // of a limb that points along the hips or shoulders
 constexpr double kClearSquareSine = 0.67;  // square of the sine from which its roll is clear
@@ -85,7 +83,7 @@ void LimbEnds::learn(const PlacedBody& seen, const StatedVariances& stated, doub
         axes->axes.transpose() * (seen[end].position - seen[index_of(limb.at)].position);
     const Eigen::Vector3d off = way - usual.way;
     usual.way += share * off;
-    usual.scatter += share * (off.squaredNorm() / 3.0 - variance - usual.scatter);
+    usual.scatter += share * ((1.0 - share) * off.squaredNorm() / 3.0 - usual.scatter);
   });
 }
 
@@ -98,16 +96,19 @@ PlacedBody LimbEnds::held(PlacedBody body, const StatedVariances& stated, const 
     const Usual& usual = usual_[end];
     const auto axes = axes_of(limb, body);
     if (!axes || !body[end].placed || !(usual.weight > 0)) return;
+    const double views = stated[end] + stated[at];
     const double bends = model.limb_end * usual.way.norm();
-    const double variance = std::max(bends * bends, usual.scatter) / axes->clear + stated[at] +
-                            kAlikeErrors / usual.weight;
+    const double variance = std::max(bends * bends, usual.scatter - views) / axes->clear +
+                            stated[at] + kAlikeErrors / usual.weight;
     const Eigen::Vector3d off = body[at].position + axes->axes * usual.way - body[end].position;
     const double distance = off.norm() / std::sqrt(stated[end] + variance);
     const double believed = distance > kUnusual ? kUnusual / distance : 1.0;
     const double share = believed * stated[end] / (stated[end] + variance);
     body[end].position += share * off;
     body[end].covariance *= 1.0 - share;
-    left_[end] = 1.0 - (1.0 - kLasting) * share;
+    // Errors that do not change are in the usual way, too: of somebody who stands still it tells
+    // nothing new.
+    left_[end] = 1.0 - std::min(1.0, usual.scatter / views) * share;
   });
   return body;
 }

@@ -34,7 +34,7 @@ class LimbEnds {
  private:
   struct Usual {
     Eigen::Vector3d way = Eigen::Vector3d::Zero();  ///< m [m]
-    double scatter = 0.0;  ///< Its variance beyond that of the views, per axis [m^2].
+    double scatter = 0.0;  ///< Its variance among the views' ways, per axis [m^2].
     double weight = 0.0;   ///< Sum of passed time over variance [s / m^2].
   };
   std::array<Usual, kJointCount> usual_;
