@@ -8,6 +8,7 @@
 #include "common/base/median.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/registration/block_variance.h"
+#include "fusion-server/registration/known_places.h"
 #include "fusion-server/registration/tukey.h"
 #include "fusion-server/registration/view_bias.h"
 #include "fusion-server/registration/walk_points.h"
@@ -28,12 +29,8 @@ constexpr double kSettled = 1e-6;
 constexpr double kNearly = 1e-4;
 // With more terms than this, only a part of the points is used for the bias.
 constexpr std::size_t kBiasTerms = 1'000'000;
-constexpr double kRidge = 1e-6;  // keeps the equations solvable where nothing is measured
-// Sigma with which the master's yaw and its position on the floor are held [rad], [m].
-constexpr double kGauge = 1e-5;
-constexpr double kFarthest = 0.5;    // [m] times along_ratio: limit for moving a sensor, see near()
-constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
-constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
+constexpr double kRidge = 1e-6;    // keeps the equations solvable where nothing is measured
+constexpr double kFarthest = 0.5;  // [m] times along_ratio: limit for moving a sensor, see near()
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
 constexpr double kIndependentAsSeen = 1.2;  // [1/s] independent instants per second, as seen
 constexpr double kIndependent = 6.0;        // [1/s] the same for points that are whitened fully
@@ -79,7 +76,8 @@ struct Adjustment {
   std::vector<WalkPoint> points;
   double along_ratio = 1.0;
   double view_bias = 0.0;  ///< [m]
-  double scale = 0.0;      ///< Standard deviation of a point, in units of its sigma.
+  DepthBias bias;
+  double scale = 0.0;  ///< Standard deviation of a point, in units of its sigma.
   double along = 1.0;
   double upward = 1.0;
   double independent = kIndependentAsSeen;  ///< [1/s]
@@ -89,29 +87,23 @@ struct Adjustment {
     for (const Station& station : stations) places.push_back(station.world_from_level);
     std::vector<FusedPoint> all;
     for (const WalkPoint& point : points)
-      all.push_back(fuse_point(as_seen ? point.seen : point.counted, places, along_ratio));
+      all.push_back(
+          fuse_point(as_seen ? point.seen : point.counted, places, along_ratio, bias.present));
     return all;
   }
   [[nodiscard]] double weight(const FusedPoint& fused) const {
     const double off = worst_norm(fused) / (kTukey * scale);
     return tukey_weight(off * off);
   }
-  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(6 * stations.size()); }
+  [[nodiscard]] Eigen::Index size() const {
+    return static_cast<Eigen::Index>(6 * stations.size() + 1);
+  }
 };
 
 double median_norm(const std::vector<FusedPoint>& all) {
   std::vector<double> norms;
   for (const FusedPoint& fused : all) norms.push_back(worst_norm(fused));
   return median(std::move(norms));
-}
-
-/// Squared misfit of a sensor's own floor, in sigmas; 0 without one.
-double floor_misfit(const Station& station) {
-  if (!(station.floor.tilt > 0)) return 0.0;
-  const Eigen::Vector3d up = station.world_from_level.linear().col(1);
-  const double height = station.world_from_level.translation().y() / station.floor.height;
-  return (up.x() * up.x() + up.z() * up.z()) / (station.floor.tilt * station.floor.tilt) +
-         height * height;
 }
 
 /// Tukey's loss of the points, from which their weights follow, divided by `factor`, plus the loss
@@ -125,59 +117,9 @@ double cost_of(const Adjustment& adjustment, double factor) {
     cost += limit * limit / 3.0 * (1.0 - rest * rest * rest);
   }
   cost /= factor;
-  constexpr double kFar = kFarFloor * kFarFloor;
-  for (const Station& station : adjustment.stations) {
-    const double misfit = floor_misfit(station);
-    cost += kFar * misfit / (kFar + misfit);  // Geman-McClure
-  }
-  return cost;
-}
-
-void add_floors(PlaceEquations& equations, const std::vector<Station>& stations) {
-  for (std::size_t i = 0; i < stations.size(); ++i) {
-    if (!(stations[i].floor.tilt > 0) || stations[i].fixed) continue;
-    Normal normal;
-    // A floor is best known right below its own sensor.
-    add_prior(normal, stations[i].floor, stations[i].world_from_level, Eigen::Vector3d::Zero());
-    const double root = 1.0 / (1.0 + floor_misfit(stations[i]) / (kFarFloor * kFarFloor));
-    const auto at = static_cast<Eigen::Index>(6 * i);
-    equations.information.block<6, 6>(at, at) += root * root * normal.information;
-    equations.right.segment<6>(at) += root * root * normal.right;
-  }
-}
-
-/// Holds the master's position on the floor, and its yaw.
-void hold_gauge(PlaceEquations& equations, const std::vector<Station>& stations) {
-  for (std::size_t i = 0; i < stations.size(); ++i) {
-    if (!stations[i].master) continue;
-    const Eigen::Isometry3d place = stations[i].world_from_sensor();
-    const Eigen::Vector3d view = place.linear().col(2);
-    const Matrix6 eye = at_point(place.translation());
-    Normal normal;
-    normal.add(eye.row(3), 0.0, 1.0 / (kGauge * kGauge));
-    normal.add(eye.row(5), 0.0, 1.0 / (kGauge * kGauge));
-    Row6 turn = Row6::Zero();
-    turn[1] = 1.0;
-    const Eigen::Vector3d aside(view.z(), 0.0, -view.x());
-    if (aside.norm() > kLevelView) {
-      turn.head<3>() = view.cross(aside).transpose() / aside.squaredNorm();
-    }
-    normal.add(turn, 0.0, 1.0 / (kGauge * kGauge));
-    const auto at = static_cast<Eigen::Index>(6 * i);
-    equations.information.block<6, 6>(at, at) += normal.information;
-  }
-}
-
-/// Sensors with too few points must not move: their rows become the identity.
-void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations) {
-  for (std::size_t i = 0; i < stations.size(); ++i) {
-    if (!stations[i].fixed) continue;
-    const auto at = static_cast<Eigen::Index>(6 * i);
-    equations.information.middleRows<6>(at).setZero();
-    equations.information.middleCols<6>(at).setZero();
-    equations.information.block<6, 6>(at, at).setIdentity();
-    equations.right.segment<6>(at).setZero();
-  }
+  for (const Station& station : adjustment.stations) cost += floor_loss(station);
+  const double off = adjustment.bias.beyond() / adjustment.bias.sigma;
+  return cost + off * off;
 }
 
 /// Indices of the parameters `of_each` of all sensors that can move relative to the master.
@@ -245,11 +187,12 @@ PlaceEquations walk_equations(Adjustment& adjustment) {
 }
 
 /// Adds what is known besides the walk.
-void add_knowledge(PlaceEquations& equations, const std::vector<Station>& stations) {
+void add_knowledge(PlaceEquations& equations, const Adjustment& adjustment) {
   equations.information.diagonal().array() += kRidge;
-  add_floors(equations, stations);
-  hold_gauge(equations, stations);
-  hold_fixed(equations, stations);
+  add_floors(equations, adjustment.stations);
+  hold_gauge(equations, adjustment.stations);
+  hold_fixed(equations, adjustment.stations);
+  add_depth_bias(equations, adjustment.bias);
 }
 
 PlaceEquations equations_of(Adjustment& adjustment) {
@@ -257,7 +200,7 @@ PlaceEquations equations_of(Adjustment& adjustment) {
   const double factor = std::max(adjustment.along, adjustment.upward);
   equations.information /= factor;
   equations.right /= factor;
-  add_knowledge(equations, adjustment.stations);
+  add_knowledge(equations, adjustment);
   return equations;
 }
 
@@ -271,7 +214,7 @@ Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
     shrink[i] = 1.0 / std::sqrt(upward ? adjustment.upward : adjustment.along);
   }
   equations.information = shrink.asDiagonal() * equations.information * shrink.asDiagonal();
-  add_knowledge(equations, adjustment.stations);
+  add_knowledge(equations, adjustment);
   return equations.information.ldlt().solve(
       Eigen::MatrixXd::Identity(adjustment.size(), adjustment.size()));
 }
@@ -289,6 +232,7 @@ bool iterate(Adjustment& adjustment, double settled) {
     step.translation() = own.tail<3>();
     adjustment.stations[i].world_from_level = step * adjustment.stations[i].world_from_level;
   }
+  adjustment.bias.present += motion[motion.size() - 1];
   return motion.lpNorm<Eigen::Infinity>() > settled;
 }
 
@@ -345,6 +289,20 @@ bool near(const Places& start, const Places& end, double along_ratio) {
   });
 }
 
+/// Directs the depth bias along the lines to the fused points.  Along the measured lines it would
+/// take part of the noise across them for its own: a smaller bias scales this noise down.
+void aim(Adjustment& adjustment) {
+  const std::vector<FusedPoint> all = adjustment.fuse_all(true);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    WalkPoint& point = adjustment.points[k];
+    for (PointMeasurement& measured : point.seen) {
+      const Eigen::Isometry3d& place = adjustment.stations[measured.sensor].world_from_level;
+      measured.nearer = (place.inverse() * all[k].x).normalized();
+    }
+    point.counted = point.seen;
+  }
+}
+
 /// From now on counts what is new in each point.
 void whiten(Adjustment& adjustment) {
   const std::vector<FusedPoint> all = adjustment.fuse_all();
@@ -362,6 +320,7 @@ void whiten(Adjustment& adjustment) {
 /// stopped.
 bool settle(Adjustment& adjustment, const Stopped& stopped) {
   for (int round = 0; round < kRounds; ++round) {
+    if (round < 2) aim(adjustment);
     if (round == 1) whiten(adjustment);
     adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
     const double settled = round + 1 < kRounds ? kNearly : kSettled;
@@ -379,6 +338,7 @@ bool fits_better(Adjustment& adjustment, const std::vector<Station>& start) {
   const double after = cost_of(adjustment, factor);
   Adjustment before = adjustment;
   before.stations = start;
+  before.bias.present = before.bias.expected;
   return after <= cost_of(before, factor);
 }
 
@@ -393,6 +353,7 @@ std::optional<Adjusted> adjust_together(const Places& places, const Walkers& wal
   hold_strangers(adjustment.stations, adjustment.points);
   adjustment.along_ratio = config.along_ratio;
   adjustment.view_bias = config.view_bias;
+  adjustment.bias = depth_bias_of(config);
   const std::vector<Station> start = adjustment.stations;
   if (!settle(adjustment, walkers.stopped)) return std::nullopt;
   if (!fits_better(adjustment, start)) return std::nullopt;

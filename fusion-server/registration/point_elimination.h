@@ -8,6 +8,8 @@
 // complement of x is (docs/papers/registration.md, Section 8):
 //   H_ij = delta_ij J_i^T S_i^-1 J_i - J_i^T S_i^-1 C S_j^-1 J_j
 //   g_i = J_i^T S_i^-1 (x - T_i m_i)
+// One more unknown is common to all sensors, the depth bias b: T_i m_i + b d_i takes the place of
+// T_i m_i, where d_i is the direction from the sensor to the point.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +28,8 @@ struct PointMeasurement {
   Eigen::Vector3d ray;     ///< Unit line of sight.
   double sigma = 0.0;      ///< Standard deviation across the line of sight [m].
   double lever = 1.0;      ///< How much of the sensor's position the measurement contains.
+  /// Derivative of x by the depth bias: the direction to the point, or the difference of two.
+  Eigen::Vector3d nearer = Eigen::Vector3d::Zero();
 };
 
 using PointMeasurements = std::vector<PointMeasurement>;  ///< From two or more sensors.
@@ -34,14 +38,16 @@ using PointMeasurements = std::vector<PointMeasurement>;  ///< From two or more 
 struct FusedPoint {
   std::vector<Eigen::Vector3d> seen;            ///< Each measurement in world space.
   std::vector<Eigen::Matrix3d> information;     ///< S^-1 of each measurement.
+  std::vector<Eigen::Vector3d> nearer;          ///< Derivatives of `seen` by the depth bias.
   Eigen::Vector3d x = Eigen::Vector3d::Zero();  ///< Inverse-variance mean.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// `along_ratio`: error along the line of sight over the error across it.
+/// `along_ratio`: error along the line of sight over the error across it.  `depth_bias`: by how
+/// much all measurements are too near [m].
 [[nodiscard]] FusedPoint fuse_point(const PointMeasurements& measurements,
                                     std::span<const Eigen::Isometry3d> world_from_level,
-                                    double along_ratio);
+                                    double along_ratio, double depth_bias = 0.0);
 
 /// J_i of a measurement, seen in world space: its derivative by (omega, tau) of its sensor.
 [[nodiscard]] Eigen::Matrix<double, 3, 6> derivative_of(const PointMeasurement& measured,
@@ -51,13 +57,13 @@ struct FusedPoint {
 /// a whole is trusted.
 [[nodiscard]] double worst_norm(const FusedPoint& fused);
 
-/// information * (omega, tau of every sensor) = right.
+/// information * (omega, tau of every sensor; depth bias) = right.
 struct PlaceEquations {
   Eigen::MatrixXd information;
   Eigen::VectorXd right;
 };
 
-/// Adds H and g of one point, multiplied by `weight`.
+/// Adds H and g of one point, multiplied by `weight`; the last row is that of the depth bias.
 void add_point(PlaceEquations& equations, const PointMeasurements& measurements,
                const FusedPoint& fused, double weight);
 

@@ -71,6 +71,11 @@ struct RegistrationConfig {
   /// errors of simulated walks (profiles A and B, seeds 101-120), by likelihood: 2.5 mm is best for
   /// sensors in pairs and rings, 3.5 mm for sensors in rows; this is in between.
   double view_bias = mm(3.0);
+  /// How much nearer than they are all sensors report joints, along the line of sight [m]: a body
+  /// fitted to depth images can lie towards its surface.  The walk moves it from here as far as its
+  /// sigma [m] allows; what remains open adds to the covariances.
+  double depth_bias = 0.0;
+  double depth_bias_sigma = 0.0;
   /// Lengths for sensors that guess depth from a person's size (common_scale.h); where distances
   /// are known, the stature is not used.
   std::vector<KnownDistance> known_distances = {};

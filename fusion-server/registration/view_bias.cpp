@@ -33,7 +33,7 @@ Eigen::Matrix3d axes_of(const Eigen::Vector3d& view) {
 
 ViewBias::ViewBias(std::vector<Eigen::Vector3d> eyes, double coefficient)
     : eyes_(std::move(eyes)), coefficient_(coefficient) {
-  const auto size = static_cast<Eigen::Index>(6 * eyes_.size());
+  const auto size = static_cast<Eigen::Index>(6 * eyes_.size() + 1);
   effects_.assign(eyes_.size(), Eigen::MatrixXd::Zero(size, 3 * kTerms));
 }
 
@@ -59,13 +59,16 @@ void ViewBias::add(const PointMeasurements& measurements, const FusedPoint& fuse
       for (Eigen::Index term = 0; term < kTerms; ++term) {
         effects_[sensor].block<6, 3>(row, 3 * term) +=
             terms[static_cast<std::size_t>(term)] * pulls[j] * off;
+        effects_[sensor].block<1, 3>(effects_[sensor].rows() - 1, 3 * term) +=
+            terms[static_cast<std::size_t>(term)] *
+            (fused.information[j] * fused.nearer[j]).transpose() * off;
       }
     }
   }
 }
 
 Eigen::MatrixXd ViewBias::scores() const {
-  const auto size = static_cast<Eigen::Index>(6 * eyes_.size());
+  const auto size = static_cast<Eigen::Index>(6 * eyes_.size() + 1);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
   for (const Eigen::MatrixXd& effect : effects_) sum += effect * effect.transpose();
   return coefficient_ * coefficient_ * sum;

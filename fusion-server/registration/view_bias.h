@@ -27,7 +27,7 @@ class ViewBias {
   void add(const PointMeasurements& measurements, const FusedPoint& fused, double weight,
            const Eigen::Vector3d& at, const std::optional<Eigen::Vector3d>& walking);
 
-  /// sum sigma^2 G G^T, of (omega, tau) of every sensor.
+  /// sum sigma^2 G G^T, of (omega, tau) of every sensor and the depth bias.
   [[nodiscard]] Eigen::MatrixXd scores() const;
 
  private:

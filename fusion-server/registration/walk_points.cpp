@@ -149,6 +149,7 @@ void whiten(std::vector<WalkPoint>& points, double memory) {
     for_both(points[k].seen, old.seen, [&](std::size_t i, std::size_t j) {
       PointMeasurement fresh = points[k].seen[i];
       fresh.x -= alike * old.seen[j].x;
+      fresh.nearer -= alike * old.seen[j].nearer;
       fresh.lever = 1.0 - alike;
       fresh.sigma *= std::sqrt(1.0 - alike * alike);
       news.push_back(fresh);

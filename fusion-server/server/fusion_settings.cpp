@@ -186,6 +186,8 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   out.joints = static_cast<JointChoice>(joints);
   reader.read("use_floor", out.use_floor);
   reader.read("along_ratio", out.along_ratio, 1.0, 100.0);
+  reader.read("depth_bias_m", out.depth_bias, 0.0, 0.2);
+  reader.read("depth_bias_sigma_m", out.depth_bias_sigma, 0.0, 0.2);
   reader.read("adjust_together", out.adjust_together);
   reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), std::chrono::seconds(1));
   reader.read("min_distance_m", out.min_distance, 0.0, 20.0);

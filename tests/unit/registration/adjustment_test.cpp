@@ -201,6 +201,50 @@ TEST(AdjustTogether, ACircleLeavesTheYawLessCertainThanAWalkAllOver) {
   EXPECT_GT(yaw_sigma(circle), 1.3 * yaw_sigma(wander));
 }
 
+/// The first `count` of the three sensors; all report joints too near.
+Scene near_scene(const WalkSpec& spec, double depth_bias, int count = 3) {
+  Scene scene;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Isometry3d at = ring_place(kAngles[static_cast<std::size_t>(i)]);
+    scene.add(nearer_by(depth_bias, watch(i, at, spec)), at);
+  }
+  return scene;
+}
+
+TEST(AdjustTogether, AKnownDepthBiasIsTakenOut) {
+  Scene scene = near_scene({.noise = 0.005}, mm(25));
+  EXPECT_GT(worst_error(scene.adjust(scene.truth), scene.truth), mm(25));
+  scene.config.depth_bias = mm(25);
+  EXPECT_LT(worst_error(scene.adjust(scene.truth), scene.truth), mm(5));
+}
+
+/// Depth and width of a walk tell it from places that are nearer to each other.
+TEST(AdjustTogether, AnUnknownDepthBiasIsEstimated) {
+  Scene scene = near_scene({.noise = 0.005}, mm(25));
+  const double without = worst_error(scene.adjust(scene.truth), scene.truth);
+  scene.config.depth_bias_sigma = mm(50);
+  EXPECT_LT(worst_error(scene.adjust(scene.truth), scene.truth), 0.4 * without);
+}
+
+/// A smaller depth bias would scale the noise across the lines of sight down.
+TEST(AdjustTogether, NoiseIsNotTakenForADepthBias) {
+  Scene scene = near_scene({.length = 60, .noise = 0.03}, 0.0);
+  scene.config.depth_bias_sigma = mm(50);
+  EXPECT_LT(worst_error(scene.adjust(scene.truth), scene.truth), mm(15));
+}
+
+TEST(AdjustTogether, WhatTheWalkLeavesOpenOfTheDepthBiasAddsToTheCovariances) {
+  const auto sigma = [](double depth_bias) {
+    Scene scene = near_scene({.length = 10, .noise = 0.01}, 0.0, 2);
+    scene.config.depth_bias_sigma = depth_bias;
+    const auto adjusted = scene.look(scene.truth);
+    if (!adjusted) return 0.0;
+    const Matrix6 shift = at_point(Eigen::Vector3d(0, 1.2, 0));
+    return std::sqrt((shift * adjusted->covariances.at(sensor(1)) * shift.transpose())(3, 3));
+  };
+  EXPECT_GT(sigma(mm(20)), 1.3 * sigma(0.0));
+}
+
 TEST(AdjustTogether, GivesUpWhenStopped) {
   const Scene scene = scene_of({.noise = 0.01});
   Walkers walkers{scene.walkers, sensor(0)};

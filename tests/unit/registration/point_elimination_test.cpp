@@ -18,16 +18,20 @@ PointMeasurements sights_of(const Eigen::Vector3d& x, double error) {
     const double turn = 2.0 * static_cast<double>(i);
     const Eigen::Vector3d off = error * Eigen::Vector3d(std::sin(turn), std::cos(turn), 0.5);
     const Eigen::Vector3d seen = kPlaces[i].inverse() * x + off;
-    measurements.push_back({i, seen, seen.normalized(), mm(10) * (1.0 + static_cast<double>(i))});
+    const Eigen::Vector3d direction = (kPlaces[i].inverse() * x).normalized();
+    measurements.push_back(
+        {i, seen, seen.normalized(), mm(10) * (1.0 + static_cast<double>(i)), 1.0, direction});
   }
   return measurements;
 }
 
+constexpr int kSize = 19;  // three places and the depth bias
 const Eigen::Vector3d kX(0.4, 1.3, 2.5);
 
 /// E(T) of point_elimination.h: the minimum over x of the sum.
-double energy(const PointMeasurements& measurements, const Places3& places, double along_ratio) {
-  const FusedPoint fused = fuse_point(measurements, places, along_ratio);
+double energy(const PointMeasurements& measurements, const Places3& places, double along_ratio,
+              double depth_bias) {
+  const FusedPoint fused = fuse_point(measurements, places, along_ratio, depth_bias);
   double sum = 0.0;
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     const Eigen::Vector3d off = fused.x - fused.seen[i];
@@ -46,7 +50,7 @@ Places3 moved(const Eigen::VectorXd& motion) {
 
 PlaceEquations equations_of(const PointMeasurements& measurements, double along_ratio,
                             double weight = 1.0) {
-  PlaceEquations equations{Eigen::MatrixXd::Zero(18, 18), Eigen::VectorXd::Zero(18)};
+  PlaceEquations equations{Eigen::MatrixXd::Zero(kSize, kSize), Eigen::VectorXd::Zero(kSize)};
   add_point(equations, measurements, fuse_point(measurements, kPlaces, along_ratio), weight);
   return equations;
 }
@@ -105,12 +109,12 @@ TEST(FusedPoint, WorstNormIsTheFarthestSightInSigmas) {
 void expect_numeric_gradient(const PointMeasurements& measurements) {
   const PlaceEquations equations = equations_of(measurements, 1.0);
   constexpr double kStep = 1e-6;
-  Eigen::VectorXd gradient(18);
-  for (int axis = 0; axis < 18; ++axis) {
-    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(18, axis);
-    gradient[axis] =
-        (energy(measurements, moved(step), 1.0) - energy(measurements, moved(-step), 1.0)) /
-        (2.0 * kStep);
+  Eigen::VectorXd gradient(kSize);
+  for (int axis = 0; axis < kSize; ++axis) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(kSize, axis);
+    gradient[axis] = (energy(measurements, moved(step), 1.0, step[kSize - 1]) -
+                      energy(measurements, moved(-step), 1.0, -step[kSize - 1])) /
+                     (2.0 * kStep);
   }
   EXPECT_LT((equations.right + 0.5 * gradient).norm(), 1e-4 * gradient.norm());
 }
@@ -136,13 +140,13 @@ TEST(Elimination, InformationIsTheNumericHessian) {
   const PlaceEquations equations = equations_of(measurements, 3.0);
   constexpr double kStep = 1e-4;
   const auto cost = [&](const Eigen::VectorXd& motion) {
-    return energy(measurements, moved(motion), 3.0);
+    return energy(measurements, moved(motion), 3.0, motion[kSize - 1]);
   };
-  Eigen::MatrixXd hessian(18, 18);
-  for (int i = 0; i < 18; ++i) {
-    for (int j = 0; j < 18; ++j) {
-      const Eigen::VectorXd a = kStep * Eigen::VectorXd::Unit(18, i);
-      const Eigen::VectorXd b = kStep * Eigen::VectorXd::Unit(18, j);
+  Eigen::MatrixXd hessian(kSize, kSize);
+  for (int i = 0; i < kSize; ++i) {
+    for (int j = 0; j < kSize; ++j) {
+      const Eigen::VectorXd a = kStep * Eigen::VectorXd::Unit(kSize, i);
+      const Eigen::VectorXd b = kStep * Eigen::VectorXd::Unit(kSize, j);
       hessian(i, j) =
           (cost(a + b) - cost(a - b) - cost(b - a) + cost(-a - b)) / (4 * kStep * kStep);
     }
@@ -154,21 +158,22 @@ TEST(Elimination, InformationIsTheNumericHessian) {
 TEST(Elimination, EqualsTheFullSystemWithThePointKept) {
   const PointMeasurements measurements = sights_of(kX, mm(30));
   const FusedPoint fused = fuse_point(measurements, kPlaces, 3.0);
-  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(21, 21);
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(kSize + 3, kSize + 3);
   for (std::size_t i = 0; i < measurements.size(); ++i) {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, 21);  // d (T_i m_i - x)
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, kSize + 3);  // d (T_i m_i - x)
     for (int axis = 0; axis < 6; ++axis) {
       const Vector6 xi = unit6(axis, 1e-6);
       rows.col(6 * static_cast<int>(i) + axis) =
           (small_motion(xi) * fused.seen[i] - small_motion(-xi) * fused.seen[i]) / 2e-6;
     }
+    rows.col(kSize - 1) = fused.nearer[i];
     rows.rightCols<3>() = -Eigen::Matrix3d::Identity();
     full += rows.transpose() * fused.information[i] * rows;
   }
   const Eigen::MatrixXd point = full.bottomRightCorner(3, 3);
-  const Eigen::MatrixXd across = full.topRightCorner(18, 3);
+  const Eigen::MatrixXd across = full.topRightCorner(kSize, 3);
   const Eigen::MatrixXd schur =
-      full.topLeftCorner(18, 18) - across * point.inverse() * across.transpose();
+      full.topLeftCorner(kSize, kSize) - across * point.inverse() * across.transpose();
   const PlaceEquations equations = equations_of(measurements, 3.0);
   EXPECT_LT((equations.information - schur).norm(), 1e-6 * schur.norm());
 }
@@ -177,8 +182,8 @@ TEST(Elimination, MovingEverythingTogetherCostsNothing) {
   const PlaceEquations exact = equations_of(sights_of(kX, 0.0), 3.0);
   const PlaceEquations noisy = equations_of(sights_of(kX, mm(30)), 1.0);
   for (int axis = 0; axis < 6; ++axis) {
-    Eigen::VectorXd together(18);
-    together << unit6(axis, 1.0), unit6(axis, 1.0), unit6(axis, 1.0);
+    Eigen::VectorXd together(kSize);
+    together << unit6(axis, 1.0), unit6(axis, 1.0), unit6(axis, 1.0), 0.0;
     EXPECT_LT((exact.information * together).norm(), 1e-6 * exact.information.norm());
     EXPECT_LT(std::abs(noisy.right.dot(together)), 1e-6 * noisy.right.norm());
   }

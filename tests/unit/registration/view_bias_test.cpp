@@ -22,7 +22,7 @@ struct BiasScene {
       Eigen::Isometry3d place(about_y(yaw));
       place.translation() = place.linear() * Eigen::Vector3d(0, 1.6, -3);
       const Eigen::Vector3d own = place.inverse() * x;
-      seen.push_back({places.size(), own, own.normalized(), 0.01});
+      seen.push_back({places.size(), own, own.normalized(), 0.01, 1.0, own.normalized()});
       places.push_back(place);
     }
   }
@@ -39,7 +39,7 @@ struct BiasScene {
   [[nodiscard]] Eigen::VectorXd score(std::size_t sensor, const Eigen::Vector3d& off) const {
     PointMeasurements wrong = seen;
     wrong[sensor].x += places[sensor].linear().transpose() * off;
-    PlaceEquations equations{Eigen::MatrixXd::Zero(12, 12), Eigen::VectorXd::Zero(12)};
+    PlaceEquations equations{Eigen::MatrixXd::Zero(13, 13), Eigen::VectorXd::Zero(13)};
     add_point(equations, wrong, fuse_point(wrong, places, kRatio), 1.0);
     return equations.right;
   }
@@ -53,7 +53,7 @@ struct BiasScene {
 TEST(ViewBias, IsWhatDisplacedSightsDoToTheScores) {
   const BiasScene scene;
   constexpr double kStep = 1e-6;
-  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(12, 12);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(13, 13);
   for (std::size_t sensor = 0; sensor < 2; ++sensor) {
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::VectorXd score =

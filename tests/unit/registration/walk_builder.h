@@ -127,6 +127,15 @@ inline WalkTrack with_depth_error(WalkTrack track, double sigma, unsigned seed) 
   return track;
 }
 
+/// Moves every joint towards the sensor.
+inline WalkTrack nearer_by(double depth_bias, WalkTrack track) {
+  for (SensorFrame& frame : track.frames) {
+    for (Joint& joint : frame.bodies[0].skeleton.joints)
+      joint.position -= depth_bias * joint.position.normalized();
+  }
+  return track;
+}
+
 struct PlaceError {
   double position = 0.0;  ///< [m]
   double angle = 0.0;     ///< [rad]
