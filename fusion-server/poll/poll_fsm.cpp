@@ -87,7 +87,10 @@ Step PollFsm::on(const Woke&, Duration now, double) { return go_on(now); }
 Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
   if (streaming_) return beside_stream(answer, now);
   if (answer.status == http::status::kUnavailable) {
-    return fail(gone(), "the sensor service answers 503: its device delivers no frames", jitter);
+    return fail(
+        gone(),
+        "the sensor service answers 503: its device delivers no frames; its /healthz says why",
+        jitter);
   }
   if (answer.status != http::status::kNotModified &&
       (answer.status != http::status::kOk || !answer.captured)) {

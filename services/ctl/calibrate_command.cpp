@@ -155,6 +155,15 @@ Result<void> write_coverage(const CalibrateArguments& arguments, const Calibrati
   return write_text(coverage_file(arguments.out), *picture);
 }
 
+/// Said before anybody moves a board before the camera for a minute.
+Result<void> has_folder(const std::string& out) {
+  const std::filesystem::path folder = std::filesystem::path(out).parent_path();
+  std::error_code ignored;
+  if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return {};
+  return fail(ErrorCode::NotFound, folder.string(),
+              "there is no such folder for --out; make it first");
+}
+
 struct Judged {
   Calibration calibration;
   std::vector<std::string> weaknesses;
@@ -201,6 +210,7 @@ Result<int> from_board(const CalibrateArguments& arguments) {
   if (!board) return pass(board);
   if (arguments.json && arguments.out == "-")
     return fail(ErrorCode::InvalidArgument, "--json", "needs --out FILE for the lens");
+  if (auto ok = has_folder(arguments.out); !ok) return pass(ok);
   const auto found = look(arguments, *board);
   if (!found) return pass(found);
   const auto outcome = judged(*found);

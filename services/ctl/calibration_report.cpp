@@ -15,6 +15,7 @@ using calibration::SolvedView;
 
 struct Term {
   const char* name;
+  const char* unit;
   double value;
   double sigma;
 };
@@ -23,15 +24,15 @@ std::array<Term, 9> terms_of(const Calibration& calibration) {
   const Intrinsics& c = calibration.intrinsics;
   const auto& [k1, k2, p1, p2, k3] = c.distortion;
   const auto& s = calibration.sigma;
-  return {{{"fx", c.fx, s[0]},
-           {"fy", c.fy, s[1]},
-           {"cx", c.cx, s[2]},
-           {"cy", c.cy, s[3]},
-           {"k1", k1, s[4]},
-           {"k2", k2, s[5]},
-           {"p1", p1, s[6]},
-           {"p2", p2, s[7]},
-           {"k3", k3, s[8]}}};
+  return {{{"fx", " px", c.fx, s[0]},
+           {"fy", " px", c.fy, s[1]},
+           {"cx", " px", c.cx, s[2]},
+           {"cy", " px", c.cy, s[3]},
+           {"k1", "", k1, s[4]},
+           {"k2", "", k2, s[5]},
+           {"p1", "", p1, s[6]},
+           {"p2", "", p2, s[7]},
+           {"k3", "", k3, s[8]}}};
 }
 
 std::string view_table(const Calibration& calibration) {
@@ -44,6 +45,19 @@ std::string view_table(const Calibration& calibration) {
   return table(std::move(rows));
 }
 
+/// Only for views that determine the lens: other deviations would seem small where nothing is
+/// known.
+std::string term_lines(const Calibration& calibration) {
+  std::string text;
+  for (const Term& term : terms_of(calibration)) {
+    text += term.sigma > 0.0 ? fmt::format("{} {:.5g} +- {:.2g}{}\n", term.name, term.value,
+                                           term.sigma, term.unit)
+                             : fmt::format("{} 0, not needed\n", term.name);
+  }
+  return text + fmt::format("mean error {:.2f} px; the focal length is known to {:.2f} %\n",
+                            calibration.error_px, 100.0 * calibration.focal_sigma());
+}
+
 }  // namespace
 
 std::string calibration_text(const Calibration& calibration, const BoardViews& found,
@@ -53,16 +67,9 @@ std::string calibration_text(const Calibration& calibration, const BoardViews& f
                                  found.size.height, calibration.views.size());
   for (const std::string& note : found.notes) text += "note: " + printable(note) + "\n";
   const bool solved = calibration.error_px > 0.0;
-  if (solved) {
-    text += view_table(calibration);
-    for (const Term& term : terms_of(calibration))
-      text += term.sigma > 0.0
-                  ? fmt::format("{} {:.5g} +- {:.2g}\n", term.name, term.value, term.sigma)
-                  : fmt::format("{} 0, not needed\n", term.name);
-    text += fmt::format("mean error {:.2f} px; the focal length is known to {:.2f} %\n",
-                        calibration.error_px, 100.0 * calibration.focal_sigma());
-  }
-  if (weaknesses.empty()) return text;
+  if (solved) text += view_table(calibration);
+  if (weaknesses.empty()) return text + term_lines(calibration);
+  if (solved) text += fmt::format("mean error {:.2f} px\n", calibration.error_px);
   text += "not good enough, and not written:\n";
   for (const std::string& weakness : weaknesses) text += "  - " + weakness + "\n";
   return text;

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/importers/doubts.h"
 #include "common/importers/formats.h"
 #include "common/record/frame_recording.h"
 #include "common/record/frame_schema.h"
@@ -205,6 +206,20 @@ void tell_what_is_missing(const importers::ImportedSet& set) {
     std::cerr << fmt::format("chorus: {}; the other files were imported\n", to_string(error));
 }
 
+std::vector<std::string> doubts_of(const ImportArguments& arguments,
+                                   const importers::ImportOptions& options,
+                                   const importers::ImportedSet& set) {
+  std::vector<std::string> doubts = importers::doubts_about(set.recordings);
+  if (arguments.format == "video" && arguments.lenses.empty())
+    doubts.emplace_back(
+        "no --intrinsics: a field of view of 65 +- 6 degrees is assumed for each camera "
+        "(chorus calibrate camera measures it)");
+  if (arguments.format != "openpose" && arguments.format != "mmpose") return doubts;
+  const auto more = importers::numbering_doubts(set.recordings, options.start, arguments.rate_hz);
+  doubts.insert(doubts.end(), more.begin(), more.end());
+  return doubts;
+}
+
 nlohmann::json summary_json(const importers::ImportedSet& set,
                             const std::vector<fs::path>& written) {
   nlohmann::json out{{"files", nlohmann::json::array()}, {"recordings", nlohmann::json::array()}};
@@ -284,14 +299,19 @@ Result<importers::ImportedSet> read_set(const ImportArguments& arguments,
 
 Result<int> run_import(const ImportArguments& arguments) {
   if (auto ok = check_options(arguments); !ok) return pass(ok);
-  const auto set = read_set(arguments, options_of(arguments));
+  const importers::ImportOptions options = options_of(arguments);
+  const auto set = read_set(arguments, options);
   if (!set) return pass(set);
   const auto written = write_set(arguments.out, *set);
   if (!written) return pass(written);
   warn_of_strangers(arguments.out, *written);
   tell_what_is_missing(*set);
+  const auto doubts = doubts_of(arguments, options, *set);
+  for (const std::string& doubt : doubts) std::cerr << "note: " << doubt << '\n';
   if (arguments.json) {
-    std::cout << summary_json(*set, *written).dump(2) << '\n';
+    auto summary = summary_json(*set, *written);
+    summary["doubts"] = doubts;
+    std::cout << summary.dump(2) << '\n';
   } else {
     print_summary(*set, *written);
   }

@@ -31,6 +31,10 @@ Result<camera::CameraSettings> read_lens_file(const std::string& file) {
   auto reader = ConfigReader::parse(R"({"intrinsics": )" + *lens + "}", file);
   if (!reader) return pass(reader);
   auto settings = camera::read_camera_settings(*reader);
+  if (!settings.intrinsics)
+    return fail(ErrorCode::InvalidArgument, file,
+                "holds no lens: width, height, fx, fy, cx and cy are needed, in pixels, as "
+                "`chorus calibrate camera --out` writes them");
   if (auto ok = reader->finish(); !ok) return pass(ok);
   return settings;
 }

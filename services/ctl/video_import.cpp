@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -70,10 +71,16 @@ Result<camera::CameraSettings> settings_for(const fs::path& video, const VideoIm
 /// minutes for each.
 Result<void> check_inputs(const std::vector<fs::path>& inputs, const VideoImport& how,
                           const importers::ImportOptions& options) {
+  std::set<SensorId> sensors;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     std::error_code ignored;
     if (fs::file_size(inputs[i], ignored) == 0) continue;  // the others are imported without it
-    if (const auto sensor = importers::sensor_for(inputs[i], options); !sensor) return pass(sensor);
+    const auto sensor = importers::sensor_for(inputs[i], options);
+    if (!sensor) return pass(sensor);
+    if (!sensors.insert(*sensor).second)
+      return fail(ErrorCode::Conflict, sensor->str(),
+                  "is the sensor of two inputs, since sensors are named after their files; rename "
+                  "one, or import one take at a time");
     const auto settings = settings_for(inputs[i], how, i);
     if (!settings) return pass(settings);
     auto video = camera::open_video(*settings);

@@ -115,6 +115,14 @@ class Senders(BridgeRig):
             self.assertLess(len(told[0]), 200, "not the whole page")
             self.assertIn("40", told[0])
 
+    def test_a_stream_that_is_no_bridge_is_told_and_nothing_is_thrown(self):
+        sensor = self.bridge()
+        for url, advice in ((sensor.ws[:-len("push")] + "frame", "ends in /push"), (sensor.ws.replace("ws://", "wss://"), "write ws://")):
+            told = []
+            pusher = chorus_push.Pusher(url, {"name": "astray", "layout": "coco_17"}, tell=told.append)
+            self.assertFalse(pusher.push([]))
+            self.assertIn(advice, told[0])
+
     def test_a_message_that_is_too_long_is_told_by_each_way(self):
         sensor = self.bridge()
         crowd = [{"id": i, "points": [[0.001 * i, 0.8 - 0.1 * j, 2.123456789] for j in range(17)], "remark": "x" * 5000} for i in range(60)]

@@ -60,7 +60,7 @@ TEST_F(CalibrateCommand, PhotosBecomeALensThatTheCameraDeviceReads) {
   EXPECT_THAT(done.out, HasSubstr("of 16 pictures of 640 x 480"));
   EXPECT_THAT(done.out, HasSubstr("999.png: is no picture"));
   EXPECT_THAT(done.out, HasSubstr("1 picture is not 640 x 480"));
-  EXPECT_THAT(done.out, HasSubstr("fx "));
+  EXPECT_THAT(done.out, ::testing::ContainsRegex("fx [0-9.]+ \\+- [0-9.]+ px\n"));
   const auto settings = lens_in(at("lens.json"));
   EXPECT_NEAR(settings.intrinsics->fx / kFocal, 1.0, 0.005);
   EXPECT_GT(settings.focal_sigma, 0.0);
@@ -79,6 +79,20 @@ TEST_F(CalibrateCommand, AWeakSetIsRefusedWithWhatToDo) {
   EXPECT_EQ(report["views"].size(), 5u);
   EXPECT_FALSE(fs::exists(at("lens.json")));
   EXPECT_TRUE(fs::exists(at("lens.coverage.png"))) << "it shows where views are missing";
+}
+
+TEST_F(CalibrateCommand, NumbersThatTheViewsDoNotDetermineAreNotTold) {
+  photograph(folder_ / "photos", {.count = 5});
+  const Outcome done = run({at("photos"), "--out", at("lens.json")});
+  EXPECT_THAT(done.out, HasSubstr("mean error"));
+  EXPECT_THAT(done.out, ::testing::Not(HasSubstr("fx ")));
+  EXPECT_THAT(done.out, ::testing::Not(HasSubstr("focal length is known to")));
+}
+
+TEST_F(CalibrateCommand, AMissingFolderIsToldBeforeTheWork) {
+  const Outcome done = run({at("none.mp4"), "--out", at("nowhere/lens.json")});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("nowhere: there is no such folder for --out"));
 }
 
 TEST_F(CalibrateCommand, PicturesWithoutTheBoardAreNoCalibration) {

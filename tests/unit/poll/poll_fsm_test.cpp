@@ -180,7 +180,8 @@ TEST(PollFsm, A503IsADeviceThatIsNotReadyYet) {
   PollFsm fsm = at_first_frame(milliseconds(0));
   (void)fsm.resume(FrameAnswered{503}, milliseconds(1), kFull);
   EXPECT_EQ(fsm.state(), SensorState::Connecting);
-  EXPECT_EQ(fsm.last_error(), "the sensor service answers 503: its device delivers no frames");
+  EXPECT_EQ(fsm.last_error(),
+            "the sensor service answers 503: its device delivers no frames; its /healthz says why");
 }
 
 TEST(PollFsm, AnUnreadableBodyIsRefusedAndItsTagForgotten) {

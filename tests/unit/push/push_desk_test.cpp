@@ -15,6 +15,7 @@ using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Desk : public ::testing::Test {
  protected:
@@ -120,6 +121,17 @@ TEST_F(Desk, TheFloorOfAProgramEndsWithIt) {
   EXPECT_FALSE(begins_anew(*first, milliseconds(20))) << "a floor of its frames lasts";
   rig.desk->leave(*first, "it was ended");
   EXPECT_TRUE(begins_anew(*sit("second"), milliseconds(25)));
+}
+
+TEST_F(Desk, SaysWhyTheLastHelloWasRefused) {
+  const auto seat = sit("one");
+  rig.desk->note_refusal(0, {ErrorCode::Conflict, "s1", "\"one\" pushes to this sensor already"});
+  rig.desk->leave(*seat, "the connection ended");
+  EXPECT_THAT(rig.desk->status().reason, HasSubstr("left: the connection ended"));
+  rig.desk->note_refusal(0, {ErrorCode::Malformed, "layout", "there is no such layout"});
+  EXPECT_THAT(rig.desk->status().reason, HasSubstr("refused: layout: there is no such layout"));
+  rig.desk->leave(*sit("two"), "the connection ended");
+  EXPECT_THAT(rig.desk->status().reason, Not(HasSubstr("layout")));
 }
 
 TEST_F(Desk, SaysWhyNothingComes) {

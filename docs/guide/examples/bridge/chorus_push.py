@@ -31,8 +31,6 @@ import urllib.parse
 
 TIMEOUT_S = 5
 RETRY_S = 1
-
-
 _FIRST = time.time_ns() - time.perf_counter_ns()
 
 
@@ -90,6 +88,17 @@ def _reason(body, path):
         return ": ".join(part for part in (problem.get("context"), problem["detail"]) if part)
     except (ValueError, KeyError, TypeError, AttributeError):
         return "" if path.endswith("/push") else "the address of a sensor's bridge ends in /push"
+
+
+def _advice(problem):
+    """What to change, where the words of the system do not say it."""
+    if isinstance(problem, socket.timeout):
+        return "; the address of a sensor's bridge ends in /push"
+    if isinstance(problem, ssl.SSLCertVerificationError) and "issuer" in str(problem):
+        return "; name the ca.crt of the sensor's authority: Pusher(..., ca=\"ca.crt\") or CHORUS_CA"
+    if isinstance(problem, ssl.SSLError) and "WRONG_VERSION_NUMBER" in str(problem):
+        return "; this port does not speak TLS: write ws:// or http://, or give the sensor a certificate"
+    return ""
 
 
 def _trusting(ca):
@@ -251,11 +260,13 @@ class Talk:
         self.way, self.clock, self.tell = way, clock, tell
         self.over = None
         way.send(hello)
+        way.socket.settimeout(TIMEOUT_S)
         first = way.receive()
+        way.socket.settimeout(None)
         answer = json.loads(first) if first else {"type": "bye", "detail": "the connection was closed"}
-        if answer["type"] != "welcome":
+        if answer.get("type") != "welcome":
             way.close()
-            raise Refused(f"{answer.get('context', '')}: {answer['detail']}")
+            raise Refused(": ".join(filter(None, (answer.get("context"), answer.get("detail", "the address of a sensor's bridge ends in /push")))))
         self.welcome = answer
         self.last = "the sensor has gone"
         self.listener = threading.Thread(target=self._listen, daemon=True)
@@ -363,7 +374,7 @@ class Pusher:
             self._talk.push(frame)
             return True
         except (OSError, http.client.HTTPException) as problem:
-            self.tell(f"{self.url}: {problem}")
+            self.tell(f"{self.url}: {problem}{_advice(problem)}")
             self.dropped += 1
             self.close()
             return False

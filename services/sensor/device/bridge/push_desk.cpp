@@ -75,6 +75,7 @@ Result<PushDesk::Seat> PushDesk::sit_down(const Pusher& pusher) {
   holder.status.pusher = pusher;
   holder.status.since = now();
   holder_ = std::move(holder);
+  turned_away_.clear();
   log::info("a program pushes frames", {{"name", pusher.name},
                                         {"layout", pusher.layout},
                                         {"via", pusher.via},
@@ -143,6 +144,7 @@ void PushDesk::note_refusal(Seat seat, const Error& error) {
   const std::string text = shortened(to_string(error), kMaxReason);
   refusals_.hit(text);
   const std::lock_guard lock(mutex_);
+  if (!holder_ && seat == 0) turned_away_ = text;
   if (!holder_ || holder_->seat != seat) return;
   ++holder_->status.refused;
   holder_->status.last_error = text;
@@ -185,7 +187,11 @@ PushStatus PushDesk::status() const {
   if (!holder_) {
     status.state = "waiting";
     status.reason = "no program pushes frames";
-    if (!departed_.empty()) status.reason += "; " + departed_;
+    if (!turned_away_.empty()) {
+      status.reason += "; the last one that tried was refused: " + turned_away_;
+    } else if (!departed_.empty()) {
+      status.reason += "; " + departed_;
+    }
     return status;
   }
   const bool live = holder_->last_frame && !idle(*holder_);

@@ -84,6 +84,7 @@ class PushDesk {
   /// second, or by less and the next frame continues from there.  Conflict when another pusher
   /// holds the sensor.
   [[nodiscard]] Result<void> take(Seat seat, PushedFrame frame, const Hello& hello);
+  /// Seat 0: a pusher whose hello was refused.
   void note_refusal(Seat seat, const Error& error);
   void note_left_out(Seat seat);
   void note_doubt(Seat seat, const std::string& doubt);
@@ -116,7 +117,8 @@ class PushDesk {
   Handover<Capture> queue_;
   mutable std::mutex mutex_;  ///< Guards everything below.
   std::optional<Holder> holder_;
-  std::string departed_;  ///< Human-readable: how the last pusher left.
+  std::string departed_;     ///< Human-readable: how the last pusher left.
+  std::string turned_away_;  ///< Why the last hello was refused, if no pusher came in since.
   Seat last_seat_ = 0;
   std::size_t connections_ = 0;
   SteadyTime shut_until_{};
