@@ -9,6 +9,7 @@
 #include "common/base/log.h"
 #include "common/net/asio.h"
 #include "common/net/listen.h"
+#include "common/tls/certificate.h"
 
 namespace chorus::service {
 namespace {
@@ -31,6 +32,10 @@ std::error_code try_folder(const fs::path& folder) {
   std::error_code ignored;
   if (!error) fs::remove(probe, ignored);
   return error;
+}
+
+std::chrono::sys_seconds present() {
+  return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
 }
 
 }  // namespace
@@ -62,9 +67,23 @@ std::optional<std::string> clock_concern(const NtpStatus& clock) {
          "seen: install chrony (apt install chrony), or let it finish";
 }
 
+std::optional<std::string> certificate_concern(const http::ServerConfig& config,
+                                               std::chrono::sys_seconds now) {
+  if (!config.identity) return std::nullopt;
+  const auto facts = tls::facts_of(config.identity->certificate());
+  if (!facts || (now >= facts->not_before && now <= facts->not_after)) return std::nullopt;
+  if (now < facts->not_before)
+    return "http.tls.certificate is not good before " + tls::date_text(facts->not_before) +
+           ": set the clock of this host";
+  return "http.tls.certificate has expired on " + tls::date_text(facts->not_after) +
+         ", so nobody connects: chorus init certificate NAMES --renew where the authority is, copy "
+         "it here, and reload this service";
+}
+
 Concerns common_concerns(const http::ServerConfig& http, const RecordingConfig& recording) {
   Concerns all;
   if (const auto free = free_to_listen(http); !free) all.push_back(to_string(free.error()));
+  if (auto expired = certificate_concern(http, present())) all.push_back(std::move(*expired));
   if (!recording.folder.empty()) {
     if (const auto usable = usable_folder(recording.folder); !usable)
       all.push_back("nothing can be recorded: " + to_string(usable.error()));
@@ -73,7 +92,9 @@ Concerns common_concerns(const http::ServerConfig& http, const RecordingConfig& 
   return all;
 }
 
-void log_concerns(const RecordingConfig& recording) {
+void log_concerns(const http::ServerConfig& http, const RecordingConfig& recording) {
+  if (const auto expired = certificate_concern(http, present()))
+    log::error("programs will not connect", {{"reason", *expired}});
   if (!recording.folder.empty()) {
     if (const auto usable = usable_folder(recording.folder); !usable)
       log::error("nothing can be recorded", {{"reason", to_string(usable.error())}});

@@ -2,6 +2,7 @@
 // At the start, only those concerns are logged that do not end the service.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,12 +27,17 @@ using Concerns = std::vector<std::string>;
 
 [[nodiscard]] std::optional<std::string> clock_concern(const NtpStatus& clock);
 
-/// The concerns that all services share: the port, the folder for recordings, the clock.
+/// A sentence if the certificate of this server is not good at this time; none without TLS.
+[[nodiscard]] std::optional<std::string> certificate_concern(const http::ServerConfig& config,
+                                                             std::chrono::sys_seconds now);
+
+/// The concerns that all services share: the port, the certificate, the folder for recordings, the
+/// clock.
 [[nodiscard]] Concerns common_concerns(const http::ServerConfig& http,
                                        const RecordingConfig& recording);
 
-/// Logs, at the start, concerns about the clock and the folder for recordings; neither ends the
-/// service.
-void log_concerns(const RecordingConfig& recording);
+/// Logs, at the start, concerns about the certificate, the clock and the folder for recordings;
+/// none ends the service.
+void log_concerns(const http::ServerConfig& http, const RecordingConfig& recording);
 
 }  // namespace chorus::service

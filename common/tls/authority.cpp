@@ -34,6 +34,9 @@ bool is_name(const std::string& host) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
            c == '.' || c == '_';
   };
+  const auto counts = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+  // 10.0.0.300 is an address with a slip: no name ends in digits alone.
+  if (std::all_of(host.begin(), host.end(), counts)) return false;
   return !host.empty() && host.size() <= kLongestName && host.front() != '-' &&
          host.front() != '.' && std::all_of(host.begin(), host.end(), fits);
 }

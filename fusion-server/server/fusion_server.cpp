@@ -276,7 +276,7 @@ Result<void> FusionServer::start() {
   Impl& s = *impl_;
   const std::string folder =
       state_folder(s.config.at_start.state_dir, s.config.at_start.http.port, own_environment());
-  service::log_concerns({});
+  service::log_concerns(s.config.at_start.http, {});
   s.store = RegistrationStore(folder);
   s.store_trouble = probe_folders(s.config.at_start, folder);
   auto claim = StateClaim::take(folder);

@@ -118,7 +118,7 @@ service::Concerns SensorHost::concerns() const {
 
 Result<void> SensorHost::start() {
   const StartSettings& at_start = setup_.settings.at_start;
-  service::log_concerns(at_start.recording);
+  service::log_concerns(at_start.http, at_start.recording);
   if (auto ok = server_.start(); !ok) return ok;
   log::info("sensor serving",
             {{"sensor", at_start.id.str()},

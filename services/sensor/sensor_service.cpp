@@ -100,7 +100,8 @@ void SensorService::publish(Capture capture) {
 
 void SensorService::on_device_end(const Result<void>& how) {
   const std::lock_guard lock(mutex_);
-  ended_ = how ? "the device has come to its end" : "the device failed: " + to_string(how.error());
+  ended_ = how ? or_trouble("the device has come to its end")
+               : "the device failed: " + to_string(how.error());
 }
 
 /// The device's own reason if it gives one, otherwise `reason`.

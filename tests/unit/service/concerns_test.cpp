@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include "common/tls/authority.h"
+#include "common/tls/certificate.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::service {
@@ -38,6 +40,22 @@ TEST(FreeToListen, SeesWhoIsThereAlready) {
   EXPECT_TRUE(free_to_listen(config));
   config.address = "203.0.113.1";
   EXPECT_FALSE(free_to_listen(config)) << "no address of this host";
+}
+
+TEST(Concerns, ACertificateThatIsNotGoodNowIsNamed) {
+  using std::chrono::days;
+  const auto today = std::chrono::floor<days>(std::chrono::system_clock::now());
+  const tls::Validity week{today - days(7), today};
+  const auto authority = tls::new_authority("test", {today - days(30), today + days(30)});
+  const auto issued = tls::new_certificate(*authority, {"sensor-1.local"}, week);
+  http::ServerConfig config;
+  EXPECT_FALSE(certificate_concern(config, today)) << "no TLS";
+  config.identity = tls::Identity::of(issued->certificate, issued->key).value();
+  EXPECT_FALSE(certificate_concern(config, today - days(1)));
+  EXPECT_THAT(certificate_concern(config, today + days(1)).value_or(""),
+              HasSubstr("has expired on " + tls::date_text(today)));
+  EXPECT_THAT(certificate_concern(config, today - days(8)).value_or(""),
+              HasSubstr("clock of this host"));
 }
 
 TEST(Concerns, NameThePortTheFolderAndTheClock) {

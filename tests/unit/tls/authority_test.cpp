@@ -24,7 +24,8 @@ TEST(Authority, EveryKeyIsItsOwn) {
 
 TEST(Authority, RefusesWhatIsNoHost) {
   const testing::WorkshopAuthority workshop;
-  for (const char* host : {"", "a b", "a,IP:1.2.3.4", "http://a/", "*", "-a", "a\n"}) {
+  for (const char* host :
+       {"", "a b", "a,IP:1.2.3.4", "http://a/", "*", "-a", "a\n", "10.0.0.300"}) {
     const auto refused = new_certificate(workshop.files(), {host}, for_days(1));
     ASSERT_FALSE(refused) << host;
     EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
