@@ -59,8 +59,8 @@ TEST(CalibrationText, ShowsEachViewAndWhyItIsLeftOut) {
 
 TEST(CalibrationText, GivesEachNumberWithItsStandardDeviation) {
   const std::string text = calibration_text(lens(), found(), {});
-  EXPECT_THAT(text, HasSubstr("\nfx 1234.6 +- 1.2\n"));
-  EXPECT_THAT(text, HasSubstr("\ncy 360.25 +- 0.8\n"));
+  EXPECT_THAT(text, HasSubstr("\nfx 1234.6 +- 1.2 px\n"));
+  EXPECT_THAT(text, HasSubstr("\ncy 360.25 +- 0.8 px\n"));
   EXPECT_THAT(text, HasSubstr("\nk2 -0.05 +- 0.02\n"));
   EXPECT_THAT(text, HasSubstr("\np1 0.001 +- 0.0003\n"));
   EXPECT_THAT(text, HasSubstr("\nk3 0, not needed\n"));
