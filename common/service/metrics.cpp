@@ -117,7 +117,7 @@ void add_server(MetricsText& text, const http::ServerCounters& counters) {
       Row{"chorus_http_events_skipped_total", "Frames that slow event-stream readers did not get.",
           counters.events_skipped},
       Row{"chorus_http_sent_bytes_total", "Bytes sent.", counters.bytes_sent},
-      Row{"chorus_http_unauthorized_total", "Writing requests with a wrong token or none.",
+      Row{"chorus_http_unauthorized_total", "Requests refused for a wrong token or none.",
           counters.unauthorized},
       Row{"chorus_http_closed_for_room_total", "Idle connections that gave way to others.",
           counters.closed_for_room},
