@@ -74,7 +74,8 @@ std::vector<std::string> doubts_about(const std::vector<FrameRecording>& recordi
 
 std::vector<std::string> numbering_doubts(const std::vector<FrameRecording>& recordings,
                                           Timestamp start, double rate_hz) {
-  if (recordings.empty()) return {};
+  const auto has_none = [](const FrameRecording& recording) { return recording.frames.empty(); };
+  if (recordings.empty() || std::ranges::any_of(recordings, has_none)) return {};
   const auto by_begin = [](const FrameRecording& a, const FrameRecording& b) {
     return a.frames.front().captured < b.frames.front().captured;
   };

@@ -62,6 +62,8 @@ TEST(ImportDoubts, CamerasThatCountFromZeroAndFromOne) {
   EXPECT_THAT(numbering_doubts({standing("a"), late}, kStart, 30.0),
               ElementsAre(HasSubstr("a begins with picture 0, and b with picture 1, which is taken "
                                     "to be 33 ms later")));
+  late.frames.clear();
+  EXPECT_THAT(numbering_doubts({standing("a"), late}, kStart, 30.0), IsEmpty());
 }
 
 }  // namespace
