@@ -1,20 +1,19 @@
 // Who may read and who may write: proxies, pages of other origins, guessed tokens.
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "common/http/status.h"
 #include "tests/bench/faults/sockets.h"
 #include "tests/bench/faults/trial.h"
+#include "tests/bench/live/nginx_proxy.h"
 #include "tests/support/free_port.h"
 
 namespace chorus::bench {
 namespace {
 
 constexpr std::string_view kToken = "0123456789abcdef0123456789abcdef";
-constexpr const char* kNginx = "/usr/sbin/nginx";
 
 CellPlan with_token() {
   CellPlan plan;
@@ -33,29 +32,14 @@ std::string bearer(std::string_view token) {
 
 bool is_refused(int status) { return status == 401 || status == 403; }
 
-/// Starts nginx as the simplest guides configure it: proxy_pass, and nothing more.
-Result<ChildProcess> start_proxy(const Cell& cell, std::uint16_t port) {
-  const std::string folder = cell.folder().string();
-  std::ofstream config(cell.folder() / "nginx.conf");
-  config << "daemon off; master_process off; pid " << folder << "/pid; error_log " << folder
-         << "/error.log crit;\nevents { worker_connections 64; }\nhttp { access_log off;\n";
-  for (const auto* kind : {"client_body", "proxy", "fastcgi", "uwsgi", "scgi"})
-    config << kind << "_temp_path " << folder << "/" << kind << ";\n";
-  config << fmt::format(
-      "server {{ listen 127.0.0.1:{}; location / {{ proxy_pass http://127.0.0.1:{}; }} }} }}\n",
-      port, cell.port());
-  config.close();
-  return ChildProcess::start(
-      kNginx, {"-e", folder + "/error.log", "-p", folder, "-c", folder + "/nginx.conf"});
-}
-
 Result<void> same_host_proxy(Trial& trial) {
   if (!std::filesystem::exists(kNginx))
     return trial.leave_out("nginx is not installed"), Result<void>{};
   auto cell = Cell::start(with_token());
   if (!cell) return pass(cell);
   const End proxy{.port = testing::free_port()};
-  const auto nginx = start_proxy(*cell, proxy.port);
+  const auto nginx =
+      start_proxy({.folder = cell->folder(), .port = proxy.port, .upstream = cell->port()});
   if (!nginx) return pass(nginx);
   const auto ask = [&](std::string_view method, std::string_view path, std::string_view headers) {
     return status_of(head_of_answer(proxy, request_of(method, path, headers)));

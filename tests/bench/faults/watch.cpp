@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <iterator>
 #include <mutex>
 #include <thread>
@@ -36,10 +37,18 @@ bool follows(const FusedInstant& before, const FusedInstant& after) {
   return after.instant > before.instant;
 }
 
+// If more frames than this are missing, they are gone, or the server restarted.
+constexpr std::int64_t kMaxMissed = 60;
+
+http::ClientRequest request_of(std::int64_t sequence) {
+  return {"GET", "/frames/" + std::to_string(sequence), {{"Accept", "application/json"}}, {}};
+}
+
 }  // namespace
 
 struct Watch::Impl {
-  explicit Impl(std::uint16_t to) : port(to), client(io, "127.0.0.1", to), timer(io) {}
+  explicit Impl(std::uint16_t to)
+      : port(to), client(io, "127.0.0.1", to), past(io, "127.0.0.1", to), timer(io) {}
 
   void ask() {
     http::ClientRequest request{"GET", "/frame", {{"Accept", "application/json"}}, {}};
@@ -72,27 +81,63 @@ struct Watch::Impl {
     if (!frame) return;
     auto instant = instant_of(*frame, from_unix_ns(answer.received_ns));
     const std::scoped_lock lock(mutex);
-    if (seen.empty() || follows(seen.back(), instant)) seen.push_back(std::move(instant));
+    if (!seen.empty() && !follows(seen.back(), instant)) return;
+    if (!seen.empty() && instant.sequence - seen.back().sequence <= kMaxMissed) {
+      for (std::int64_t each = seen.back().sequence + 1; each < instant.sequence; ++each)
+        missed.push_back({each, instant.received});
+    }
+    seen.push_back(std::move(instant));
+    if (!fetching) fetch_next();
   }
 
-  /// Fetches a frame that the watcher missed; the frame counts as received together with its
-  /// successor.
-  void fetch(std::int64_t sequence, Timestamp received, std::vector<FusedInstant>& out) const {
-    const std::string path = "/frames/" + std::to_string(sequence);
-    const auto answer =
-        http::fetch({"127.0.0.1", port, path}, {"GET", path, {{"Accept", "application/json"}}, {}});
+  /// Fetches the frames that the watcher was too slow for, while the server still remembers them.
+  void fetch_next() {
+    fetching = !missed.empty();
+    if (!fetching) return;
+    const Missed next = missed.front();
+    missed.pop_front();
+    past.send(request_of(next.sequence), std::chrono::seconds(4),
+              [this, next](const Result<http::ClientResponse>& answer) {
+                const std::scoped_lock lock(mutex);
+                if (answer) insert(*answer, next);
+                fetch_next();
+              });
+  }
+
+  /// A missed frame; it counts as received together with the frame after it.
+  struct Missed {
+    std::int64_t sequence = 0;
+    Timestamp received;
+  };
+
+  void insert(const http::ClientResponse& answer, const Missed& which) {
+    const auto frame = resource::read_frame(answer.body, resource::Format::Json);
+    if (!frame) return;
+    auto instant = instant_of(*frame, which.received);
+    const auto after = std::ranges::lower_bound(seen, instant.instant, {}, &FusedInstant::instant);
+    if (after == seen.end() || after->instant != instant.instant)
+      seen.insert(after, std::move(instant));
+  }
+
+  /// Fetches a frame that is still missing, and waits for it.
+  void fetch(const Missed& which, std::vector<FusedInstant>& out) const {
+    const auto request = request_of(which.sequence);
+    const auto answer = http::fetch({"127.0.0.1", port, request.target}, request);
     if (!answer) return;
     const auto frame = resource::read_frame(answer->body, resource::Format::Json);
-    if (frame) out.push_back(instant_of(*frame, received));
+    if (frame) out.push_back(instant_of(*frame, which.received));
   }
 
   std::uint16_t port;
   asio::io_context io{1};
   http::AsyncClient client;
+  http::AsyncClient past;  ///< Asks for missed frames.
   net::Timer timer;
   std::string etag;
-  mutable std::mutex mutex;  ///< Guards the frames seen.
+  mutable std::mutex mutex;  ///< Guards what follows.
   std::vector<FusedInstant> seen;
+  std::deque<Missed> missed;
+  bool fetching = false;  ///< A request for a missed frame is under way.
   std::jthread thread;
 };
 
@@ -113,12 +158,11 @@ std::vector<FusedInstant> Watch::seen() const {
     seen = impl_->seen;
   }
   std::vector<FusedInstant> out;
-  constexpr std::int64_t kMax = 60;  // if more are missing they are gone, or the server restarted
   for (const FusedInstant& each : seen) {
     const std::int64_t last = out.empty() ? each.sequence - 1 : out.back().sequence;
-    if (each.sequence - last <= kMax) {
+    if (each.sequence - last <= kMaxMissed) {
       for (std::int64_t missed = last + 1; missed < each.sequence; ++missed)
-        impl_->fetch(missed, each.received, out);
+        impl_->fetch({missed, each.received}, out);
     }
     out.push_back(each);
   }

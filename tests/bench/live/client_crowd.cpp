@@ -205,9 +205,10 @@ void ClientCrowd::Impl::take_answer(Client& client) {
 ClientCrowd::ClientCrowd(const LiveCell& cell, const ClientCounts& counts)
     : impl_(std::make_unique<Impl>()) {
   for (int i = 0; i < counts.vrpn; ++i) impl_->add_vrpn(cell.vrpn_port);
-  for (int i = 0; i < counts.event_streams; ++i) impl_->add_reader(cell.port, Reads::Events);
-  for (int i = 0; i < counts.long_polls; ++i) impl_->add_reader(cell.port, Reads::LongPolls);
-  for (int i = 0; i < counts.websockets; ++i) impl_->add_reader(cell.port, Reads::WebSocket);
+  const std::uint16_t port = counts.http_port != 0 ? counts.http_port : cell.port;
+  for (int i = 0; i < counts.event_streams; ++i) impl_->add_reader(port, Reads::Events);
+  for (int i = 0; i < counts.long_polls; ++i) impl_->add_reader(port, Reads::LongPolls);
+  for (int i = 0; i < counts.websockets; ++i) impl_->add_reader(port, Reads::WebSocket);
   impl_->thread =
       std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->run(stop); });
 }

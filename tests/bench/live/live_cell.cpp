@@ -178,7 +178,7 @@ std::optional<Timestamp> ExactSensors::last_needed_capture(Timestamp instant) co
   return last;
 }
 
-Result<LiveCell> start_cell(int sensors, int persons) {
+Result<LiveCell> start_cell(int sensors, int persons, const std::vector<std::string>& settings) {
   auto folder = ScratchFolder::make();
   if (!folder) return pass(folder);
   LiveCell cell{std::make_unique<ExactSensors>(sensors, persons),
@@ -188,12 +188,16 @@ Result<LiveCell> start_cell(int sensors, int persons) {
                 testing::free_port()};
   const std::string places = (cell.folder.path() / "places.json").string();
   std::ofstream(places) << cell.sensors->places();
-  auto fusion = ChildProcess::start(
-      "chorus-fusion",
-      {"--config", "deploy/config/fusion.json", "--set", "http.port=" + std::to_string(cell.port),
-       "--set", "sensors=" + cell.sensors->settings(), "--set", "viewer_dir=", "--set",
-       "state_dir=", "--set", "registration.file=" + places, "--set", "outputs.vrpn.enabled=true",
-       "--set", "outputs.vrpn.port=" + std::to_string(cell.vrpn_port)});
+  std::vector<std::string> words{"--config", "deploy/config/fusion.json",
+                                 "--set",    "http.port=" + std::to_string(cell.port),
+                                 "--set",    "sensors=" + cell.sensors->settings(),
+                                 "--set",    "viewer_dir=",
+                                 "--set",    "state_dir=",
+                                 "--set",    "registration.file=" + places,
+                                 "--set",    "outputs.vrpn.enabled=true",
+                                 "--set",    "outputs.vrpn.port=" + std::to_string(cell.vrpn_port)};
+  for (const std::string& each : settings) words.insert(words.end(), {"--set", each});
+  auto fusion = ChildProcess::start("chorus-fusion", words);
   if (!fusion) return pass(fusion);
   cell.fusion.push_back(std::move(*fusion));
   const auto begun = std::chrono::steady_clock::now();

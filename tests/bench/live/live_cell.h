@@ -48,8 +48,10 @@ struct LiveCell {
   std::uint16_t vrpn_port = 0;
 };
 
-/// Starts a cell and waits until `persons` bodies are fused.
-[[nodiscard]] Result<LiveCell> start_cell(int sensors, int persons);
+/// Starts a cell and waits until `persons` bodies are fused.  `settings` of the server in addition,
+/// each "key=value".
+[[nodiscard]] Result<LiveCell> start_cell(int sensors, int persons,
+                                          const std::vector<std::string>& settings = {});
 
 /// Measurements of one VRPN client that reads the first person.
 struct Lateness {
@@ -65,6 +67,7 @@ struct ClientCounts {
   int long_polls = 0;
   int event_streams = 0;
   int websockets = 0;
+  std::uint16_t http_port = 0;  ///< Of what is between them and the server; 0: nothing is.
 };
 struct ClientAnswers {
   std::uint64_t vrpn_frames = 0;
