@@ -64,6 +64,7 @@ RegistrationConfig suited_to(const std::vector<WalkTrack>& walk, const Registrat
   if (config.along_ratio == RegistrationConfig{}.along_ratio) suited.along_ratio = kGuessedAlong;
   // Their scale, which is unknown, and a depth bias cannot be told apart.
   suited.depth_bias = suited.depth_bias_sigma = 0.0;
+  suited.find_large_bias = false;
   suited.view_bias = std::max(config.view_bias, kCameraBias);
   if (config.joints == JointChoice::Core) suited.joints = JointChoice::All;
   suited.min_spread = 0.0;

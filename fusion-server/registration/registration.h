@@ -76,6 +76,8 @@ struct RegistrationConfig {
   /// sigma [m] allows; what remains open adds to the covariances.
   double depth_bias = 0.0;
   double depth_bias_sigma = 0.0;
+  /// Where nothing is known of the depth bias (both 0): look whether the walk shows a large one.
+  bool find_large_bias = true;
   /// Lengths for sensors that guess depth from a person's size (common_scale.h); where distances
   /// are known, the stature is not used.
   std::vector<KnownDistance> known_distances = {};

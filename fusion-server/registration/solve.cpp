@@ -173,6 +173,14 @@ void level_by_bodies(const Work& work, const Places& places, std::map<SensorId, 
   }
 }
 
+void doubt_depth(Work& work, const FoundBias& bias) {
+  work.doubt(fmt::format(
+      "the sensors seem to report joints {:.0f} mm too near (+- {:.0f} mm): the places allow for "
+      "it; "
+      "measure it, and tell it by registration.depth_bias_m and registration.depth_bias_sigma_m",
+      1e3 * bias.too_near, 1e3 * bias.sigma));
+}
+
 /// The places along the chains, on the common floor; then adjusted all together if configured.
 std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& chains) {
   std::optional<FloorPlane> guessed;
@@ -202,6 +210,7 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
     if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
   }
   if (guessed) level_by_bodies(work, adjusted->places, all);
+  if (adjusted->bias) doubt_depth(work, *adjusted->bias);
   return all;
 }
 
