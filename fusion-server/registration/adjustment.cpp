@@ -276,6 +276,8 @@ Adjusted adjusted(Adjustment& adjustment) {
     const auto at = static_cast<Eigen::Index>(6 * i);
     result.covariances[station.id] = covariance.block<6, 6>(at, at);
   }
+  result.depth_bias = {adjustment.bias.present,
+                       std::sqrt(covariance(covariance.rows() - 1, covariance.cols() - 1))};
   return result;
 }
 

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "common/geometry/plane.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/pair_registration.h"
 
@@ -34,6 +35,7 @@ struct Adjusted {
   Places places;  ///< The world is level, with its origin on the floor.
   /// Covariances of (omega, tau), applied on the world's side; only for sensors that took part.
   std::map<SensorId, Matrix6> covariances;
+  WalkedDepthBias depth_bias;
 };
 
 /// Starts from `places`.  None if nothing was seen together, if the result fits the walk and the

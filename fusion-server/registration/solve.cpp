@@ -197,6 +197,7 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   const auto adjusted = adjust_together(
       places, {work.walkers, work.result.master, guessed, work.stopped}, work.config);
   if (!adjusted) return all;
+  if (work.config.depth_bias_sigma > 0.0) work.result.depth_bias = adjusted->depth_bias;
   for (auto& [sensor, place] : all) {
     place.world_from_sensor = adjusted->places.at(sensor);
     if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
