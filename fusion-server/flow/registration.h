@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct SensorVerdict {
   std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
 };
 
+/// By how much all sensors report joints too near, along their lines of sight, as a walk says.
+struct WalkedDepthBias {
+  double bias = 0.0;   ///< [m]
+  double sigma = 0.0;  ///< [m]
+};
+
 /// The places of all sensors.  It is replaced as a whole, stored, and has a version.
 struct Registration {
   std::uint64_t version = 0;
@@ -55,6 +62,9 @@ struct Registration {
   /// Offsets found from the walk because the clock of some sensor was not known; empty if all were
   /// known.
   std::map<SensorId, ClockOffset> clocks = {};
+  /// Only when the walk was asked for it (registration.depth_bias_sigma_m), or shows a large one;
+  /// not stored.
+  std::optional<WalkedDepthBias> depth_bias = {};
 };
 
 }  // namespace chorus

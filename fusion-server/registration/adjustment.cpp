@@ -284,7 +284,7 @@ Adjusted adjusted(Adjustment& adjustment) {
     result.covariances[station.id] = covariance.block<6, 6>(at, at);
   }
   const Eigen::Index last = covariance.rows() - 1;
-  result.bias = {adjustment.bias.present, std::sqrt(covariance(last, last))};
+  result.depth_bias = {adjustment.bias.present, std::sqrt(covariance(last, last))};
   return result;
 }
 
@@ -368,8 +368,9 @@ std::optional<Adjusted> with_large_bias(const Adjustment& settled, const Places&
   freed.independent = kIndependentAsSeen;
   if (!settle(freed, stopped)) return std::nullopt;
   Adjusted result = adjusted(freed);
-  const double least = std::max(kLargeBias, kSureBias * result.bias->sigma);
-  if (result.bias->too_near < least) return std::nullopt;
+  const double least = std::max(kLargeBias, kSureBias * result.depth_bias.sigma);
+  result.found_bias = result.depth_bias.bias >= least;
+  if (!result.found_bias) return std::nullopt;
   if (!fits_better(freed, settled.stations)) return std::nullopt;
   if (!near(chains, result.places, settled.along_ratio)) return std::nullopt;
   return result;
@@ -392,7 +393,6 @@ std::optional<Adjusted> adjust_together(const Places& places, const Walkers& wal
   if (!fits_better(adjustment, start)) return std::nullopt;
   Adjusted result = adjusted(adjustment);
   if (!near(places, result.places, config.along_ratio)) return std::nullopt;
-  result.bias.reset();
   const bool told = config.depth_bias != 0.0 || config.depth_bias_sigma != 0.0;
   if (told || !config.find_large_bias) return result;
   return with_large_bias(adjustment, places, walkers.stopped).value_or(std::move(result));

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "common/geometry/plane.h"
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/pair_registration.h"
 
@@ -30,18 +31,14 @@ struct Walkers {
   Stopped stopped = {};  ///< Asked before each iteration.
 };
 
-/// A depth bias that the walk itself shows; the places take it into account.
-struct FoundBias {
-  double too_near = 0.0;  ///< By how much all sensors report joints too near [m].
-  double sigma = 0.0;     ///< [m]
-};
-
 struct Adjusted {
   Places places;  ///< The world is level, with its origin on the floor.
   /// Covariances of (omega, tau), applied on the world's side; only for sensors that took part.
   std::map<SensorId, Matrix6> covariances;
-  /// Only if nothing was told of the depth bias, and it is above 30 mm and 3.5 sigma.
-  std::optional<FoundBias> bias;
+  /// What is told, as far as the walk has moved it; or a large one that nobody told, see below.
+  WalkedDepthBias depth_bias;
+  /// Nothing was told of the depth bias, and the walk shows one above 30 mm and 3.5 sigma.
+  bool found_bias = false;
 };
 
 /// Starts from `places`.  None if nothing was seen together, if the result fits the walk and the

@@ -173,12 +173,12 @@ void level_by_bodies(const Work& work, const Places& places, std::map<SensorId, 
   }
 }
 
-void doubt_depth(Work& work, const FoundBias& bias) {
+void doubt_depth(Work& work, const WalkedDepthBias& depth) {
   work.doubt(fmt::format(
       "the sensors seem to report joints {:.0f} mm too near (+- {:.0f} mm): the places allow for "
       "it; "
       "measure it, and tell it by registration.depth_bias_m and registration.depth_bias_sigma_m",
-      1e3 * bias.too_near, 1e3 * bias.sigma));
+      1e3 * depth.bias, 1e3 * depth.sigma));
 }
 
 /// The places along the chains, on the common floor; then adjusted all together if configured.
@@ -205,12 +205,14 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   const auto adjusted = adjust_together(
       places, {work.walkers, work.result.master, guessed, work.stopped}, work.config);
   if (!adjusted) return all;
+  if (work.config.depth_bias_sigma > 0.0 || adjusted->found_bias)
+    work.result.depth_bias = adjusted->depth_bias;
   for (auto& [sensor, place] : all) {
     place.world_from_sensor = adjusted->places.at(sensor);
     if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
   }
   if (guessed) level_by_bodies(work, adjusted->places, all);
-  if (adjusted->bias) doubt_depth(work, *adjusted->bias);
+  if (adjusted->found_bias) doubt_depth(work, adjusted->depth_bias);
   return all;
 }
 

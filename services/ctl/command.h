@@ -34,8 +34,8 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 5> kRecordingCommandNames{"import", "replay", "fuse",
-                                                                        "export", "calibrate"};
+inline constexpr std::array<std::string_view, 6> kRecordingCommandNames{
+    "import", "replay", "fuse", "export", "calibrate", "characterise"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -50,6 +50,7 @@ Run add_fuse(CLI::App& options);
 Run add_export(CLI::App& options);
 Run add_camera(CLI::App& options);
 Run add_calibrate(CLI::App& options);
+Run add_characterise(CLI::App& options);
 Run add_discover(CLI::App& options);
 
 /// The whole program: parses, runs, prints errors to standard error.  Never throws.

@@ -54,6 +54,15 @@ constexpr std::array kRecordingCommands{
             "printed.\n"
             "Then: device.camera.intrinsics, or chorus import video --intrinsics lens.json.",
             &add_calibrate},
+    Command{"characterise", "Measures what a kind of sensor errs by: jitter, sides, view, depth",
+            "Examples:\n"
+            "  chorus characterise turn.mcap                           a person who turns once\n"
+            "  chorus characterise turn.mcap --distance 2.50 --out kinect-v2\n"
+            "  chorus characterise rec                                 a walk, several sensors\n"
+            "Record somebody alone, 2 to 3 m before the sensor, who faces it for 5 s, turns once "
+            "in 20 to 60 s,\n"
+            "and turns back; or a mannequin.  What it says: docs/guide/research.md.",
+            &add_characterise},
 };
 
 }  // namespace

@@ -229,18 +229,18 @@ TEST(AdjustTogether, AnUnknownDepthBiasIsEstimated) {
 TEST(AdjustTogether, ALargeDepthBiasThatNobodyToldIsFoundAndSaid) {
   const Scene scene = near_scene({.noise = 0.01}, mm(80));
   const auto adjusted = scene.look(scene.truth);
-  ASSERT_TRUE(adjusted && adjusted->bias);
-  EXPECT_NEAR(adjusted->bias->too_near, mm(80), 4 * adjusted->bias->sigma);
-  EXPECT_LT(adjusted->bias->sigma, mm(20));
+  ASSERT_TRUE(adjusted && adjusted->found_bias);
+  EXPECT_NEAR(adjusted->depth_bias.bias, mm(80), 4 * adjusted->depth_bias.sigma);
+  EXPECT_LT(adjusted->depth_bias.sigma, mm(20));
   EXPECT_LT(worst_error(adjusted->places, scene.truth), mm(40));
 }
 
 TEST(AdjustTogether, ASmallDepthBiasIsNotLookedForNorOneThatWasTold) {
   Scene scene = near_scene({.noise = 0.01}, mm(20));
-  EXPECT_FALSE(scene.look(scene.truth)->bias.has_value());
+  EXPECT_FALSE(scene.look(scene.truth)->found_bias);
   scene = near_scene({.noise = 0.01}, mm(80));
   scene.config.depth_bias_sigma = mm(1);
-  EXPECT_FALSE(scene.look(scene.truth)->bias.has_value());
+  EXPECT_FALSE(scene.look(scene.truth)->found_bias);
 }
 
 /// A smaller depth bias would scale the noise across the lines of sight down.

@@ -1,0 +1,235 @@
+// chorus characterise REC: what a kind of sensor errs by, from a recording of somebody who stands
+// and turns.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include "fusion-server/client/recordings.h"
+#include "fusion-server/pipeline/offline.h"
+#include "services/ctl/characterise_report.h"
+#include "services/ctl/command.h"
+#include "services/ctl/console.h"
+#include "services/ctl/new_file.h"
+#include "services/ctl/number_range.h"
+#include "services/ctl/offline_options.h"
+#include "services/ctl/recorded_cell.h"
+#include "services/ctl/text_file.h"
+
+namespace chorus::ctl {
+namespace {
+
+using characteristics::Measured;
+using Tracks = std::map<SensorId, std::vector<SensorFrame>>;
+
+/// Of all sensors together: half an hour of one, a few minutes of eight.
+constexpr std::size_t kMostFrames = 54'000;
+/// What a walk is told of the depth bias before it says something itself: nothing within reach [m].
+constexpr double kOpenBias = 0.03;
+
+struct CharacteriseArguments {
+  std::vector<std::string> inputs;
+  std::string sensor;
+  double distance = 0.0;
+  double distance_sigma = 0.01;
+  std::string out;
+  OfflineOptions options;
+  bool json = false;
+};
+
+struct Recorded {
+  Tracks tracks;
+  std::vector<std::string> notes;
+};
+
+Result<Recorded> frames_of(RecordedCell& cell, const std::string& only) {
+  Recorded recorded;
+  std::size_t count = 0;
+  auto input = cell.input();
+  for (auto& lane : input.lanes) {
+    for (auto frame = lane.next(); true; frame = lane.next()) {
+      if (!frame) return pass(frame);
+      if (!*frame) break;
+      if (!only.empty() && (*frame)->sensor.str() != only) continue;
+      if (++count > kMostFrames) {
+        recorded.notes.push_back(fmt::format(
+            "only the first {} frames were read; --sensor reads one sensor alone", kMostFrames));
+        return recorded;
+      }
+      recorded.tracks[(*frame)->sensor].push_back(std::move(**frame));
+    }
+  }
+  return recorded;
+}
+
+/// Each sensor by itself; those that cannot be measured become notes.
+void measure_each(const Recorded& recorded, const CharacteriseArguments& arguments,
+                  SensorReport& report) {
+  std::optional<characteristics::Mark> mark;
+  if (arguments.distance > 0.0)
+    mark = characteristics::Mark{arguments.distance, arguments.distance_sigma};
+  for (const auto& [sensor, frames] : recorded.tracks) {
+    auto found = characteristics::characterise(frames, mark);
+    if (found) {
+      report.measured.sensors.push_back(std::move(*found));
+    } else {
+      report.notes.push_back(to_string(found.error()));
+    }
+  }
+}
+
+/// The tracks of the registered sensors by a common clock.
+Tracks in_step(const Tracks& tracks, const Registration& registration) {
+  Tracks placed;
+  for (const auto& [sensor, frames] : tracks) {
+    if (!registration.sensors.contains(sensor)) continue;
+    auto& own = placed[sensor] = frames;
+    const auto clock = registration.clocks.find(sensor);
+    if (clock == registration.clocks.end()) continue;
+    for (SensorFrame& frame : own) {
+      if (holds_for(clock->second, frame.clock_sigma)) move_in_time(frame, clock->second.added);
+    }
+  }
+  return placed;
+}
+
+/// All sensors together, registered from the walk; without a walk in the places that were recorded.
+Result<void> measure_together(RecordedCell& cell, const Recorded& recorded,
+                              pipeline::OfflineConfig config, SensorReport& report) {
+  if (config.registration.depth_bias_sigma == 0.0) config.registration.depth_bias_sigma = kOpenBias;
+  auto walked = pipeline::register_recordings(cell.input(), config);
+  auto given = cell.registration();
+  if (!given) return pass(given);
+  if (!walked) {
+    report.notes.push_back("depth bias: " + to_string(walked.error()) +
+                           "; it takes a walk, or a tape and one sensor (--sensor, --distance)");
+    if (!*given) return {};
+  }
+  const Registration& registration = walked ? *walked : **given;
+  const Tracks placed = in_step(recorded.tracks, registration);
+  std::vector<characteristics::PlacedTrack> tracks;
+  for (const auto& [sensor, frames] : placed)
+    tracks.push_back({registration.sensors.at(sensor).world_from_sensor, &frames});
+  report.measured.agreement = characteristics::agreement_of(tracks);
+  if (const auto& bias = registration.depth_bias)
+    report.measured.walked_bias = characteristics::DepthBias{bias->bias, bias->sigma};
+  return {};
+}
+
+Result<void> check_distance(const Recorded& recorded, const CharacteriseArguments& arguments) {
+  if (recorded.tracks.empty())
+    return fail(ErrorCode::NotFound, arguments.sensor.empty() ? "the recording" : arguments.sensor,
+                "has no frames of a sensor");
+  if (arguments.distance <= 0.0 || recorded.tracks.size() == 1) return {};
+  return fail(ErrorCode::InvalidArgument, "--distance",
+              "is that of one sensor; name which with --sensor");
+}
+
+constexpr std::array<const char*, 4> kFiles{"report.txt", "report.json", "fusion-profile.json",
+                                            "sensor-profile.json"};
+
+std::string in_folder(const std::string& folder, const char* file) {
+  return (std::filesystem::path(folder) / file).string();
+}
+
+Result<void> may_fill(const std::string& folder) {
+  if (folder.empty()) return {};
+  for (const char* file : kFiles) {
+    if (auto ok = may_create(in_folder(folder, file)); !ok) return ok;
+  }
+  return {};
+}
+
+Result<void> fill(const std::string& folder, const SensorReport& report) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return fail(ErrorCode::Io, folder, failed.message());
+  const std::array<std::string, kFiles.size()> texts{
+      characterise_text(report), json_text(characterise_json(report)), fusion_profile(report),
+      simulation_profile(report)};
+  for (std::size_t i = 0; i < kFiles.size(); ++i) {
+    const std::string file = in_folder(folder, kFiles.at(i));
+    if (auto ok = write_text(file, texts.at(i)); !ok) return ok;
+    std::cerr << "wrote " << file << '\n';
+  }
+  return {};
+}
+
+Result<SensorReport> measured(const CharacteriseArguments& arguments,
+                              const pipeline::OfflineConfig& config) {
+  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  if (!files) return pass(files);
+  auto cell = RecordedCell::open(*files);
+  if (!cell) return pass(cell);
+  auto recorded = frames_of(*cell, arguments.sensor);
+  if (!recorded) return pass(recorded);
+  if (auto ok = check_distance(*recorded, arguments); !ok) return pass(ok);
+  SensorReport report;
+  report.source = arguments.inputs.front();
+  report.notes = std::move(recorded->notes);
+  measure_each(*recorded, arguments, report);
+  if (recorded->tracks.size() > 1) {
+    if (auto ok = measure_together(*cell, *recorded, config, report); !ok) return pass(ok);
+  }
+  const Measured& all = report.measured;
+  if (all.sensors.empty() && !all.agreement && !all.walked_bias)
+    return fail(ErrorCode::InvalidArgument, report.source,
+                fmt::format("cannot be measured: {}", fmt::join(report.notes, "; ")));
+  const auto& noise = config.pipeline.fusion.noise;
+  report.kind = characteristics::kind_of(all, std::max(noise.along, noise.across));
+  return report;
+}
+
+Result<int> run_characterise(const CharacteriseArguments& arguments) {
+  if (auto ok = may_fill(arguments.out); !ok) return pass(ok);
+  const auto config = offline_config(arguments.options);
+  if (!config) return pass(config);
+  const auto report = measured(arguments, *config);
+  if (!report) return pass(report);
+  std::cout << (arguments.json ? json_text(characterise_json(*report))
+                               : characterise_text(*report));
+  if (!arguments.out.empty()) {
+    if (auto ok = fill(arguments.out, *report); !ok) return pass(ok);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+Run add_characterise(CLI::App& options) {
+  const auto arguments = std::make_shared<CharacteriseArguments>();
+  options
+      .add_option("recordings", arguments->inputs,
+                  "Folders or .mcap files of one person who stands and turns; of several sensors "
+                  "also of a walk")
+      ->required();
+  options.add_option("--sensor", arguments->sensor, "Only this sensor of the recordings");
+  options
+      .add_option("--distance", arguments->distance,
+                  "Measured along the floor from below the sensor to the mark on which the person "
+                  "turns [m]: says how much too near joints are")
+      ->check(number_range(0.3, 20.0));
+  options
+      .add_option("--distance-sigma", arguments->distance_sigma,
+                  "How well that was measured, as a standard deviation [m]")
+      ->check(number_range(0.0005, 0.5))
+      ->capture_default_str();
+  options.add_option("--out", arguments->out,
+                     "Folder to write: report.txt, report.json, fusion-profile.json, "
+                     "sensor-profile.json");
+  options.add_option("--config", arguments->options.config,
+                     "The fusion server's configuration (its defaults), for registering a walk");
+  options
+      .add_option("--set", arguments->options.overrides,
+                  "Override one key of it: path=value; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  options.add_flag("--json", arguments->json, "Report as JSON");
+  return [arguments] { return run_characterise(*arguments); };
+}
+
+}  // namespace chorus::ctl
