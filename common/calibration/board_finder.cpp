@@ -34,6 +34,21 @@ bool spread_out(const std::vector<Corner>& corners, double square) {
   return std::sqrt(std::max(0.0, least)) > 0.3 * square;
 }
 
+/// The corners to about a pixel, found in a smaller picture, because the time grows with the number
+/// of pixels.  findChessboardCorners would be faster where it finds the board, but searches for up
+/// to half a minute where it does not: in a picture of a board with other numbers of squares.
+std::vector<cv::Point2f> chessboard_in(const cv::Mat& grey, cv::Size inner) {
+  constexpr double kLongestSide = 1280.0;
+  const double scale = std::min(1.0, kLongestSide / std::max(grey.cols, grey.rows));
+  cv::Mat small = grey;
+  if (scale < 1.0) cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
+  std::vector<cv::Point2f> pixels;
+  if (!cv::findChessboardCornersSB(small, inner, pixels)) return {};
+  const auto whole = [&](float x) { return static_cast<float>((x + 0.5) / scale - 0.5); };
+  for (cv::Point2f& pixel : pixels) pixel = {whole(pixel.x), whole(pixel.y)};
+  return pixels;
+}
+
 }  // namespace
 
 struct BoardFinder::Pattern {
@@ -63,11 +78,8 @@ std::vector<Corner> BoardFinder::Pattern::find_charuco(const cv::Mat& grey) cons
 
 std::vector<Corner> BoardFinder::Pattern::find_chessboard(const cv::Mat& grey) const {
   const cv::Size inner(board.columns - 1, board.rows - 1);
-  std::vector<cv::Point2f> pixels;
-  if (!cv::findChessboardCorners(
-          grey, inner, pixels,
-          cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK))
-    return {};
+  std::vector<cv::Point2f> pixels = chessboard_in(grey, inner);
+  if (pixels.empty()) return {};
   // The search window must not reach neighbouring corners, so it is smaller than a square.
   double step = std::max(grey.cols, grey.rows);
   for (std::size_t i = 1; i < pixels.size(); ++i)

@@ -14,7 +14,10 @@ constexpr std::size_t kLeastViews = 3;
 constexpr int kRounds = 6;
 constexpr double kOddView = 2.5;      // times the median error of the views
 constexpr double kGoodViewPx = 0.25;  // a view this good is never left out
-constexpr std::size_t kTerms = 9;     // fx fy cx cy k1 k2 p1 p2 k3
+// An error of a flat board's corners, relative to the picture's longer side, that no lens's
+// distortion explains.  Solving for a lens would take minutes then, and find none.
+constexpr double kNoFlatBoard = 0.06;
+constexpr std::size_t kTerms = 9;  // fx fy cx cy k1 k2 p1 p2 k3
 
 /// The output of OpenCV.
 struct Solution {
@@ -143,6 +146,26 @@ std::size_t leave_out(const Solution& solution, Calibration& out, std::size_t mo
   return odd.size();
 }
 
+/// How far the corners of a view are from the best map of a flat board onto the picture [px]: the
+/// lens's distortion, and the mistake of another board.
+double flat_error(const std::vector<cv::Point3f>& corners, const std::vector<cv::Point2f>& pixels) {
+  std::vector<cv::Point2f> on_board;
+  for (const cv::Point3f& corner : corners) on_board.emplace_back(corner.x, corner.y);
+  const cv::Mat map = cv::findHomography(on_board, pixels);
+  if (map.empty()) return 0.0;
+  std::vector<cv::Point2f> mapped;
+  cv::perspectiveTransform(on_board, mapped, map);
+  return cv::norm(mapped, pixels) / std::sqrt(static_cast<double>(pixels.size()));
+}
+
+double median_flat_error(const std::vector<const View*>& views) {
+  const Points points = for_opencv(views);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    errors.push_back(flat_error(points.on_board[i], points.pixels[i]));
+  return median(errors);
+}
+
 }  // namespace
 
 double Calibration::focal_sigma() const {
@@ -156,9 +179,12 @@ Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size) 
     return fail(ErrorCode::InvalidArgument, "calibration",
                 "needs three views of the board or more");
   Calibration out;
+  out.intrinsics = {size.width, size.height, 0.0, 0.0, 0.0, 0.0, {}};
   for (const View& view : views) out.views.push_back({view});
   std::size_t may_leave = views.size() / 3;
   try {
+    out.error_px = median_flat_error(used_of(out));
+    if (out.error_px > kNoFlatBoard * std::max(size.width, size.height)) return out;
     for (int round = 0; round < kRounds; ++round) {
       const Solution solution = solve_well(used_of(out), size);
       tell(solution, out);

@@ -20,7 +20,7 @@ struct SolvedView {
 };
 
 struct Calibration {
-  Intrinsics intrinsics;
+  Intrinsics intrinsics;  ///< Only with width and height where these views are of another board.
   /// Standard deviations, in the intrinsics' units: fx, fy, cx, cy, k1, k2, p1, p2, k3.
   std::array<double, 9> sigma{};
   double error_px = 0.0;  ///< Root mean square reprojection error over all used views.
@@ -33,7 +33,8 @@ struct Calibration {
 
 /// Views that do not fit the others are left out, at most a third of them.  k3 is estimated only
 /// if the views show that it is needed.  InvalidArgument with fewer than three views, or if
-/// nothing fits.
+/// nothing fits.  Does not solve for a lens, and states the error, if the corners are so far from
+/// their places that the board is another one.
 [[nodiscard]] Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size);
 
 }  // namespace chorus::calibration

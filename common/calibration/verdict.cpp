@@ -85,13 +85,6 @@ void find_bad_fit(const Calibration& calibration, const Demands& demands,
                   std::vector<std::string>& out) {
   const Intrinsics& camera = calibration.intrinsics;
   const double side = std::max(camera.width, camera.height);
-  if (calibration.error_px > kAnotherBoard * side) {
-    out.push_back(
-        fmt::format("the corners miss their places by {:.0f} px: this is another board than "
-                    "--squares says, which counts squares, one more each way than inner corners",
-                    calibration.error_px));
-    return;  // What came out is no lens, so its faults say nothing.
-  }
   if (!(calibration.error_px <= demands.error_share * side))
     out.push_back(
         fmt::format("the corners miss their places by {:.1f} px, more than {:.1f}: is the "
@@ -111,6 +104,13 @@ void find_bad_fit(const Calibration& calibration, const Demands& demands,
 }  // namespace
 
 std::vector<std::string> weaknesses(const Calibration& calibration, const Demands& demands) {
+  const auto& [width, height] =
+      std::pair(calibration.intrinsics.width, calibration.intrinsics.height);
+  if (calibration.error_px > kAnotherBoard * std::max(width, height))
+    return {fmt::format(  // What came out is no lens, so its other faults say nothing.
+        "the corners miss their places by {:.0f} px: this is another board than --squares says, "
+        "which counts squares, one more each way than inner corners",
+        calibration.error_px)};
   std::vector<std::string> out;
   std::vector<const View*> used;
   for (const SolvedView& each : calibration.views) {

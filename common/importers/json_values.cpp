@@ -1,7 +1,11 @@
 #include "common/importers/json_values.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -9,10 +13,37 @@
 #include "common/importers/text_rows.h"
 
 namespace chorus::importers {
+namespace {
 
-Result<nlohmann::json> read_json(const std::filesystem::path& file, std::uintmax_t max_bytes) {
-  const auto text = read_bounded(file, max_bytes);
+/// The text with null for NaN and Infinity, which JSON does not have, but which Python's json
+/// writes for landmarks that were not seen.  Texts in quotes stay as they are.
+std::string without_nan(std::string_view text) {
+  constexpr std::array<std::string_view, 3> kWords{"NaN", "-Infinity", "Infinity"};
+  std::string out;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto word = std::find_if(kWords.begin(), kWords.end(), [&](std::string_view each) {
+      return !quoted && text.substr(i).starts_with(each);
+    });
+    if (word != kWords.end()) {
+      out += "null";
+      i += word->size();
+      continue;
+    }
+    if (text[i] == '"') quoted = !quoted;
+    if (quoted && text[i] == '\\' && i + 1 < text.size()) out += text[i++];
+    out += text[i++];
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<nlohmann::json> read_json(const std::filesystem::path& file, std::uintmax_t max_bytes,
+                                 Nan nan_in_file) {
+  auto text = read_bounded(file, max_bytes);
   if (!text) return pass(text);
+  if (nan_in_file == Nan::IsNull) text = without_nan(*text);
   auto parsed = parse_json(*text, {.bytes = max_bytes});
   if (!parsed) {
     const bool nan = text->find("NaN") != std::string::npos;
@@ -43,6 +74,21 @@ Result<void> read_numbers(const nlohmann::json& array, std::span<double> out, do
     if (!std::isfinite(out[i]) || std::abs(out[i]) > bound)
       return fail(ErrorCode::Malformed, at, fmt::format("value {} is beyond +-{}.", i + 1, bound));
   }
+  return {};
+}
+
+Result<void> read_numbers_or_null(const nlohmann::json& array, std::span<double> out, double bound,
+                                  const std::string& at) {
+  nlohmann::json given = array;
+  const double missing = std::nan("");
+  std::vector<std::size_t> holes;
+  for (std::size_t i = 0; given.is_array() && i < given.size(); ++i) {
+    if (!given[i].is_null()) continue;
+    given[i] = 0.0;
+    holes.push_back(i);
+  }
+  if (auto read = read_numbers(given, out, bound, at); !read) return read;
+  for (const std::size_t i : holes) out[i] = missing;
   return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -92,15 +93,22 @@ std::optional<std::uint64_t> id_in(const json& person) {
   return std::nullopt;
 }
 
+/// A landmark; not seen where a number is NaN.
+PosePoint point_of(double u, double v, double confidence) {
+  if (std::isnan(u + v + confidence)) return {{0.0, 0.0}, 0.0};
+  return {{u, v}, confidence_of(confidence)};
+}
+
 Result<PosePerson> read_flat(const json& numbers, const std::string& at) {
   constexpr std::size_t kEach = 3;
   if (!numbers.is_array() || numbers.size() % kEach != 0)
     return fail(ErrorCode::Malformed, at, "must be u, v and confidence of each landmark.");
   std::vector<double> values(numbers.size());
-  if (const auto read = read_numbers(numbers, values, kMaxPixel, at); !read) return pass(read);
+  if (const auto read = read_numbers_or_null(numbers, values, kMaxPixel, at); !read)
+    return pass(read);
   PosePerson person;
   for (std::size_t i = 0; i < values.size(); i += kEach)
-    person.points.push_back({{values[i], values[i + 1]}, confidence_of(values[i + 2])});
+    person.points.push_back(point_of(values[i], values[i + 1], values[i + 2]));
   return checked(std::move(person), at);
 }
 
@@ -112,15 +120,16 @@ Result<PosePerson> read_pairs(const json& instance, const std::string& at) {
   if (!(*points)->is_array())
     return fail(ErrorCode::Malformed, at, "\"keypoints\" must be an array.");
   std::vector<double> confidence((*points)->size());
-  if (const auto read = read_numbers(**scores, confidence, kMaxConfidence, at + ".keypoint_scores");
+  if (const auto read =
+          read_numbers_or_null(**scores, confidence, kMaxConfidence, at + ".keypoint_scores");
       !read)
     return pass(read);
   PosePerson person;
   for (std::size_t i = 0; i < confidence.size(); ++i) {
     std::array<double, 2> pixel{};
-    const auto read = read_numbers((**points)[i], pixel, kMaxPixel, at + ".keypoints");
+    const auto read = read_numbers_or_null((**points)[i], pixel, kMaxPixel, at + ".keypoints");
     if (!read) return pass(read);
-    person.points.push_back({{pixel[0], pixel[1]}, confidence_of(confidence[i])});
+    person.points.push_back(point_of(pixel[0], pixel[1], confidence[i]));
   }
   return checked(std::move(person), at);
 }
@@ -178,7 +187,7 @@ Result<void> read_video(const json& list, const std::string& at, Pictures& out) 
 Result<void> read_document(const fs::path& file, std::uint64_t number, const ImportLimits& limits,
                            Pictures& out) {
   const std::string at = file.string();
-  const auto document = read_json(file, limits.max_json_bytes);
+  const auto document = read_json(file, limits.max_json_bytes, Nan::IsNull);
   if (!document) return pass(document);
   if (const json* pictures = pictures_in(*document)) return read_video(*pictures, at, out);
   const json* people = &*document;

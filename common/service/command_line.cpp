@@ -1,6 +1,10 @@
 #include "common/service/command_line.h"
 
 #include <cstdio>
+#include <functional>
+#include <map>
+#include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -37,6 +41,34 @@ void assign(const Shortcut& shortcut, const std::string& value, std::vector<std:
   out.push_back(shortcut.key + "=" + (shortcut.quoted ? quoted(value) : value));
 }
 
+/// The key and value of an assignment "key=value".
+std::pair<std::string_view, std::string_view> parts_of(std::string_view assignment) {
+  const std::size_t sign = assignment.find('=');
+  return {assignment.substr(0, sign), assignment.substr(sign + 1)};
+}
+
+/// Why two of the given options cannot both hold: they assign different values to one key, such as
+/// --camera, which implies device.kind="camera", and --device simulated.  Empty if they can.
+std::string contradiction(const std::vector<Shortcut>& shortcuts,
+                          const std::vector<std::optional<std::string>>& given) {
+  std::map<std::string, std::pair<std::string, std::string>, std::less<>> chosen;
+  for (std::size_t i = 0; i < shortcuts.size(); ++i) {
+    if (!given[i]) continue;
+    std::vector<std::string> assignments;
+    assign(shortcuts[i], *given[i], assignments);
+    for (const std::string& assignment : assignments) {
+      const auto [key, value] = parts_of(assignment);
+      const auto [before, is_new] =
+          chosen.try_emplace(std::string(key), shortcuts[i].option, std::string(value));
+      const auto& [option, other] = before->second;
+      if (is_new || other == value) continue;
+      return option + " sets " + before->first + " to " + other + ", " + shortcuts[i].option +
+             " to " + std::string(value) + ": leave one of them out";
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 CommandLine read_command_line(const About& about, int argc, const char* const* argv) {
@@ -66,6 +98,11 @@ CommandLine read_command_line(const About& about, int argc, const char* const* a
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     out.exit = app.exit(error) == 0 ? kExitStopped : kExitMistaken;
+    return out;
+  }
+  if (const std::string why = contradiction(shortcuts, given); !why.empty()) {
+    std::fprintf(stderr, "%s: %s\n", about.name.c_str(), why.c_str());
+    out.exit = kExitMistaken;
     return out;
   }
   for (std::size_t i = 0; i < shortcuts.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "fusion-server/core/coverage.h"
+#include "fusion-server/registration/guessed_depth.h"
 
 namespace chorus::core {
 
@@ -61,9 +62,7 @@ bool hopeless(const Situation& s, const SensorId& sensor) {
 bool say_hopeless(const Situation& s, std::vector<std::string>& out) {
   const auto cameras = those(s, [&](const SensorId& sensor) { return hopeless(s, sensor); });
   if (cameras.empty()) return false;
-  out.push_back(named(cameras) + (cameras.size() == 1 ? " sends" : " send") +
-                " directions without depth, which no walk can place: switch "
-                "device.camera.depth_from_size on there, or state the places in registration.file");
+  out.push_back(registration::advice_on_rays_alone(named(cameras), cameras.size() > 1));
   return cameras.size() + 2 > s.sensors.size();
 }
 

@@ -75,6 +75,13 @@ RegistrationConfig suited_to(const std::vector<WalkTrack>& walk, const Registrat
   return suited;
 }
 
+std::string advice_on_rays_alone(std::string_view who, bool several) {
+  return fmt::format(
+      "{} {} directions without depth, which no walk can place: switch "
+      "device.camera.depth_from_size on there, or state where cameras stand in registration.file",
+      who, several ? "send" : "sends");
+}
+
 bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result) {
   const auto silent = [](const WalkTrack& track) { return track.frames.empty(); };
   if (std::ranges::all_of(walk, silent)) {
@@ -87,10 +94,7 @@ bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result) 
       others = others || saw_somebody(track);
       continue;
     }
-    const std::string reason = fmt::format(
-        "sensor {} sends directions without depth, which no walk can place: switch "
-        "device.camera.depth_from_size on there, or state its place in registration.file",
-        track.sensor.str());
+    const std::string reason = advice_on_rays_alone("sensor " + track.sensor.str(), false);
     result.verdicts[track.sensor] = {Verdict::Refused, {reason}};
     result.reasons.push_back(reason);
   }

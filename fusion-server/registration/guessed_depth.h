@@ -6,6 +6,9 @@
 // send nothing but rays are not registered at all: this room says so.
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "fusion-server/registration/registration.h"
 
 namespace chorus::registration {
@@ -22,5 +25,9 @@ namespace chorus::registration {
 /// cameras that send rays alone.  Each such camera, also one beside other sensors, is `Refused` in
 /// `result` with what to do about it.
 [[nodiscard]] bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result);
+
+/// What to do about sensors that send rays alone: a sentence about `who`, "sensor s1" (not several)
+/// or "sensors s1 and s2".
+[[nodiscard]] std::string advice_on_rays_alone(std::string_view who, bool several);
 
 }  // namespace chorus::registration

@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "common/base/log.h"
 #include "common/base/units.h"
 #include "fusion-server/server/solver.h"
@@ -44,9 +46,20 @@ Duration gathering_of(const core::CoreConfig& config) {
                             kMaxGathering);
 }
 
-std::string stale(Duration age) {
-  return "its newest frame was captured " + log::number_text(seconds(age)) +
-         " s ago by our clock; it delivers nothing, or the clock of its host is wrong";
+/// Why the newest frame of a connected sensor is so old.  That the clock of its host is wrong is
+/// said only where that host does not tell its time.
+std::string stale(const SensorStatus& sensor) {
+  const std::string clock =
+      sensor.clock_offset ? "" : ", or the clock of its host differs from ours by so much";
+  if (sensor.rate_hz > 0.0)
+    return fmt::format(
+        "its frames come, but late: the newest was captured {:.1f} s ago. Its device is slow (of a "
+        "camera, GET /camera there shows how long the runner takes){}",
+        seconds(*sensor.age), clock);
+  return fmt::format(
+      "no frame comes at present: the newest was captured {:.1f} s ago. Its device stands still, "
+      "or takes seconds for a frame (GET /healthz there){}",
+      seconds(*sensor.age), clock);
 }
 
 }  // namespace
@@ -253,7 +266,6 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
   if (status.last_error.empty()) status.last_error = core_.fates().complaint(report.sensor.id, now);
-  if (status.last_error.empty() && silent) status.last_error = stale(*status.age);
   status.streaming = report.streaming;
   status.rate_hz = report.rate_hz;
   status.frames = report.frames;
@@ -272,6 +284,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
     status.clock_uncertainty = report.clock->uncertainty;
     status.clock_corrected = correction(report.clock) != Duration{0};
   }
+  if (status.last_error.empty() && silent) status.last_error = stale(status);
   if (walked && walked->added != Duration{0}) {
     status.walked_offset = walked->added;
     status.walked_sigma = walked->sigma;

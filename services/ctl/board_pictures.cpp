@@ -22,8 +22,10 @@ namespace fs = std::filesystem;
 constexpr double kEvery = 0.25;
 constexpr std::size_t kMaxViews = 2000;
 
+/// Photos in HEIC count, although they cannot be read: the error says what to do about them.
 bool is_photo(const fs::path& file) {
-  constexpr std::array kEndings{".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff", ".webp"};
+  constexpr std::array kEndings{".jpg",  ".jpeg", ".png",  ".bmp", ".tif",
+                                ".tiff", ".webp", ".heic", ".heif"};
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -106,11 +108,11 @@ class Search {
 
   Result<void> video(const std::string& source) {
     camera::CameraSettings settings;
-    settings.source = source;
+    settings.source = camera::meant_source(source);
     const auto video = camera::open_video(settings);
     if (!video) return pass(video);
-    const bool film = camera::kind_of(source) == camera::SourceKind::File;
-    return watch(**video, film, fs::path(source).filename().string());
+    const bool film = camera::kind_of(settings.source) == camera::SourceKind::File;
+    return watch(**video, film, fs::path(settings.source).filename().string());
   }
 
   Result<void> watch(camera::Video& video, bool film, const std::string& name) {

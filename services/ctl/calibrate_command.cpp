@@ -127,12 +127,12 @@ Result<int> from_field_of_view(const CalibrateArguments& arguments) {
 Result<int> from_photo(const CalibrateArguments& arguments) {
   const auto bytes = read_file(arguments.photo, kMaxPhoto);
   if (!bytes) return pass(bytes);
+  const auto picture = camera::read_picture(arguments.photo);
+  if (!picture) return pass(picture);
   const auto focal = calibration::focal_on_35mm_film(*bytes);
   if (!focal)
     return fail(ErrorCode::NotFound, arguments.photo,
                 "does not tell the lens (Exif FocalLengthIn35mmFilm); state --fov and --size");
-  const auto picture = camera::read_picture(arguments.photo);
-  if (!picture) return pass(picture);
   auto [width, height] = picture->size;
   camera::Lens lens;
   lens.camera = {width, height, 0, 0, 0.5 * (width - 1), 0.5 * (height - 1), {}};

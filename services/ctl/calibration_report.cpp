@@ -66,7 +66,7 @@ std::string calibration_text(const Calibration& calibration, const BoardViews& f
                                  found.views.size(), found.pictures, found.size.width,
                                  found.size.height, calibration.views.size());
   for (const std::string& note : found.notes) text += "note: " + printable(note) + "\n";
-  const bool solved = calibration.error_px > 0.0;
+  const bool solved = calibration.error_px > 0.0 && calibration.intrinsics.fx > 0.0;
   if (solved) text += view_table(calibration);
   if (weaknesses.empty()) return text + term_lines(calibration);
   if (solved) text += fmt::format("mean error {:.2f} px\n", calibration.error_px);

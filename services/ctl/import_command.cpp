@@ -271,8 +271,20 @@ importers::ImportOptions options_of(const ImportArguments& arguments) {
   return options;
 }
 
+/// Refuses an input that reads as a floor plane and is no file: the second of `--floor A B`.
+Result<void> check_inputs(const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code ignored;
+    if (importers::parse_floor(input) && !fs::exists(input, ignored))
+      return fail(ErrorCode::InvalidArgument, "--floor",
+                  "takes one plane; say --floor before each: --floor " + input);
+  }
+  return {};
+}
+
 /// Refuses options that the format has no use for, because whoever gives one expects an effect.
 Result<void> check_options(const ImportArguments& arguments) {
+  if (auto ok = check_inputs(arguments.inputs); !ok) return ok;
   const bool cameras = is_of_cameras(arguments.format);
   if (arguments.unit_given && arguments.format != "bvh")
     return fail(ErrorCode::InvalidArgument, "--unit", "is for bvh only; leave it out");

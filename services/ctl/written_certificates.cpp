@@ -38,7 +38,15 @@ Result<void> write_authority(const AuthorityWishes& wishes) {
   if (auto ok = make_folder(wishes.folder, Readers::Owner); !ok) return ok;
   // The key is written first: a certificate without its key would look like an authority without
   // being one.
-  if (auto ok = write_file(wishes.folder + "/ca.key", issued->key, Readers::Owner); !ok) return ok;
+  if (auto ok = write_file(wishes.folder + "/ca.key", issued->key, Readers::Owner); !ok) {
+    if (ok.error().code == ErrorCode::InvalidArgument)
+      ok.error().message =
+          "exists: this authority is made already, and is not made anew, because hosts trust it.  "
+          "Go on with chorus init certificate HOST ADDRESS" +
+          (wishes.folder == kAuthorityFolder ? "" : " --authority " + wishes.folder) +
+          "; --out FOLDER makes another authority";
+    return ok;
+  }
   return write_file(wishes.folder + "/ca.crt", issued->certificate, Readers::Everybody);
 }
 

@@ -265,6 +265,7 @@ TEST(Camera, WhatWouldNotWorkIsFoundWithoutRunning) {
   EXPECT_NE(concern("runner", {"nosuchprogram"}).find("nosuchprogram"), std::string::npos);
   EXPECT_NE(concern("runner", {"python3", "-c", "import sys; sys.exit(3)"}), "");
   EXPECT_NE(concern("source", "docs/guide/cameras.md").find("is it a video?"), std::string::npos);
+  EXPECT_NE(concern("source", "/dev/no-such-camera").find("is it plugged in?"), std::string::npos);
   nlohmann::json tall = Rig().section()["intrinsics"];
   tall["height"] = 2 * kHeight;
   EXPECT_NE(concern("intrinsics", tall).find("is for pictures of"), std::string::npos);

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/base/log_queue.h"
+#include "tests/support/logged.h"
 #include "tests/support/matchers.h"
 
 namespace chorus {
@@ -17,16 +17,7 @@ using nlohmann::json;
 using ::testing::EndsWith;
 using testing::FailsWith;
 using ::testing::HasSubstr;
-
-/// What `write` prints to standard error, without the time stamp at the start of text lines.
-template <class Write>
-std::string logged(log::Level least, log::Format format, const Write& write) {
-  log::configure(least, format);
-  ::testing::internal::CaptureStderr();
-  write();
-  log::flush(std::chrono::seconds(10));
-  return ::testing::internal::GetCapturedStderr();
-}
+using testing::logged;
 
 TEST(LogText, IsOneLinePerEventWithItsFields) {
   const std::string line = logged(log::Level::Info, log::Format::Text, [] {

@@ -1,5 +1,7 @@
 // From rendered pictures to the lens: blur, noise, distortion, and a board partly outside the
 // picture.
+#include <chrono>
+
 #include <gtest/gtest.h>
 
 #include "common/calibration/board_finder.h"
@@ -39,6 +41,19 @@ TEST(PicturesOfABoard, AChessboardGivesTheLens) {
   Board board;
   board.kind = BoardKind::Chessboard;
   expect_the_webcam(from_pictures(board, {.count = 18, .share = 0.4, .reach = 0.22}));
+}
+
+TEST(PicturesOfABoard, AnotherNumberOfSquaresIsNotFoundAndNotSearchedForLong) {
+  Board board;
+  board.kind = BoardKind::Chessboard;
+  const chorus::testing::BoardCamera camera(board, webcam());
+  const auto pose = chorus::testing::board_poses(board, webcam(), {.share = 0.4}).front();
+  board.columns = 10;
+  board.rows = 7;
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_TRUE(BoardFinder(board).find(camera.picture(pose, {}, 1)).empty());
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5))
+      << "it takes a tenth of a second; OpenCV's older search took twenty";
 }
 
 }  // namespace

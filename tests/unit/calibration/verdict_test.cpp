@@ -53,6 +53,18 @@ TEST(Weaknesses, WithoutTiltTheFocalLengthIsUnknown) {
                                        "way: none is tilted")));
 }
 
+TEST(Weaknesses, CornersOfAnotherBoardAreNotSolvedFor) {
+  auto views = views_of({.count = 20});
+  for (View& view : views) {  // as if the rows were one corner shorter
+    for (std::size_t i = 0; i < view.corners.size(); ++i)
+      view.corners[i].on_board =
+          0.03 * Eigen::Vector2d(static_cast<double>(i % 6), static_cast<double>(i / 6));
+  }
+  const Calibration wrong = calibrate(views, kSize).value();
+  EXPECT_EQ(wrong.intrinsics.fx, 0.0) << "it would take a minute";
+  EXPECT_THAT(weaknesses(wrong), ElementsAre(HasSubstr("another board than --squares says")));
+}
+
 TEST(Weaknesses, AnotherBoardIsSaidAndNothingElseOfTheFit) {
   Calibration wrong = calibrate(views_of({.count = 20}), kSize).value();
   wrong.error_px = 60.0;

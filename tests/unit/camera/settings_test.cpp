@@ -31,6 +31,12 @@ TEST(CameraSettings, KindsOfSourcesAreToldByTheirNames) {
   EXPECT_EQ(kind_of("/data/walk.mp4"), SourceKind::File);
 }
 
+TEST(CameraSettings, ANumberIsThatWebcam) {
+  EXPECT_EQ(read(R"({"source": "0"})").settings.source, "/dev/video0");
+  EXPECT_EQ(read(R"({"source": "12"})").settings.source, "/dev/video12");
+  EXPECT_EQ(read(R"({"source": "0.mp4"})").settings.source, "0.mp4");
+}
+
 TEST(CameraSettings, APasswordIsNotTold) {
   EXPECT_EQ(told_source("rtsp://me:secret@10.0.0.5:554/a@b"), "rtsp://10.0.0.5:554/a@b");
   EXPECT_EQ(told_source("rtsp://me:p@ss@10.0.0.5"), "rtsp://10.0.0.5");

@@ -104,6 +104,22 @@ TEST_F(CalibrateCommand, PicturesWithoutTheBoardAreNoCalibration) {
   EXPECT_THAT(run({}).error, HasSubstr("pictures of a board"));
 }
 
+TEST_F(CalibrateCommand, PhotosInHeicAreAnsweredWithWhatConvertsThem) {
+  const std::string heic(
+      "\0\0\0\x18"
+      "ftypheic\0\0\0\0mif1heic",
+      24);
+  fs::create_directories(folder_ / "phone");
+  (void)folder_.write("phone/IMG_0001.HEIC", heic);
+  (void)folder_.write("renamed.jpg", heic);
+  for (const std::string& input : {at("phone"), at("phone/IMG_0001.HEIC"), at("renamed.jpg")}) {
+    const Outcome done = run({input, "--out", at("lens.json")});
+    EXPECT_EQ(done.code, kExitFailed);
+    EXPECT_THAT(done.error, HasSubstr("heif-convert")) << input;
+  }
+  EXPECT_THAT(run({"--photo", at("phone/IMG_0001.HEIC")}).error, HasSubstr("heif-convert"));
+}
+
 TEST_F(CalibrateCommand, AStatedFieldOfViewIsALensWithItsUncertainty) {
   const Outcome done =
       run({"--fov", "70", "--fov-sigma", "2", "--size", "1280x720", "--out", at("lens.json")});

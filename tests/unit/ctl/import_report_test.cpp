@@ -141,6 +141,13 @@ TEST_F(ImportReport, OptionsOfCamerasAreForCameras) {
   }
 }
 
+TEST_F(ImportReport, SeveralFloorsAfterOneOptionAreNoInputs) {
+  const Outcome told = run_chorus({"import", "csv", file("a.csv"), file("b.csv"), "--out", out(),
+                                   "--floor", "0,1,0,1.4", "0,1,0,1.2"});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("say --floor before each: --floor 0,1,0,1.2"));
+}
+
 TEST_F(ImportReport, AnImportMayBeRepeated) {
   const std::string left = file("left.csv");
   ASSERT_EQ(import({left}).code, kExitOk);

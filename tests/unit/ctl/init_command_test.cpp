@@ -195,7 +195,10 @@ TEST_F(InitTls, AnAuthorityVouchesForAHost) {
 TEST_F(InitTls, NothingIsOverwrittenUnlessRenewed) {
   ASSERT_EQ(run({"ca", "--out", at("ca")}).code, kExitOk);
   const std::string authority = testing::bytes_of(at("ca/ca.key"));
-  EXPECT_EQ(run({"ca", "--out", at("ca")}).code, kExitFailed);
+  const Outcome twice = run({"ca", "--out", at("ca")});
+  EXPECT_EQ(twice.code, kExitFailed);
+  EXPECT_THAT(twice.error, HasSubstr("chorus init certificate"));
+  EXPECT_THAT(twice.error, ::testing::Not(HasSubstr("edit it"))) << "nobody edits a key";
   EXPECT_EQ(testing::bytes_of(at("ca/ca.key")), authority);
   const std::vector<std::string> again{"certificate", "a",     "--authority",
                                        at("ca"),      "--out", at("t")};

@@ -135,6 +135,25 @@ TEST_F(PoseFrames, ADamagedOrEmptyFileCostsItsPictureOnly) {
   EXPECT_THAT(read_->notes.at("damage.1"), HasSubstr("1.json"));
 }
 
+TEST_F(PoseFrames, NanIsALandmarkThatWasNotSeen) {
+  const auto without_left_wrist = [](std::string text) {  // landmark 9, at 100 + 5 * 9
+    return text.replace(text.find("145.0"), 5, "NaN");
+  };
+  const json pairs = json::array({instance(17, 300)});
+  for (const std::string& text : {frame_text({flat_person(17, 300)}), pairs.dump()}) {
+    write("0.json", without_left_wrist(text));
+    const auto read_ = read();
+    ASSERT_THAT(read_, IsOk());
+    const Skeleton<SensorSpace>& seen = read_->frames.at(0).bodies.at(0).skeleton;
+    EXPECT_FALSE(seen[JointId::WristLeft].given());
+    EXPECT_TRUE(seen[JointId::WristRight].given());
+  }
+  write("0.json", R"({"people": [], "note": "a \"NaN\" stays", "scale": -Infinity})");
+  EXPECT_THAT(read(), IsOk());
+  write("0.json", R"({"people": [NaNa]})");
+  EXPECT_THAT(refusal(read()), HasSubstr("no file that can be used"));
+}
+
 TEST_F(PoseFrames, TwoPicturesOfOneNumberAreRefused) {
   write("1.json", frame_text({flat_person(17, 300)}));
   write("01.json", frame_text({flat_person(17, 200)}));

@@ -1,14 +1,21 @@
-// The pipeline's thread survives exceptions from its sinks.
+// The pipeline's thread survives exceptions from its sinks, and says what is wrong with sensors.
 #include "fusion-server/server/pipeline_loop.h"
 
 #include <condition_variable>
+#include <future>
 #include <mutex>
 #include <new>
+#include <utility>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include "tests/support/builders.h"
 
 namespace chorus::server {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Throws at the first snapshot and accepts the others.
 class BrokenSink final : public Sink {
@@ -55,6 +62,39 @@ TEST(PipelineLoop, GoesOnAfterASinkHasThrownAndCountsIt) {
   EXPECT_EQ(counters.steps_failed, 1u);
   EXPECT_GT(counters.step_seconds, 0.0);
   EXPECT_EQ(counters.jobs_failed, 0u);
+}
+
+/// What is said of a connected sensor whose newest frame is 5.936 s old.
+std::string said_of_old_frames(double rate_hz, const std::optional<ClockEstimate>& offset) {
+  std::promise<std::string> said;
+  bool done = false;
+  LoopOptions options;
+  options.clock = std::make_shared<SystemClock>();
+  options.poll_reports = [&, clock = options.clock] {
+    poll::PollReport report;
+    report.sensor.id = chorus::testing::sensor_id("cam1");
+    report.state = poll::SensorState::Live;
+    report.newest = clock->now() - std::chrono::milliseconds(5936);
+    report.rate_hz = rate_hz;
+    report.clock = offset;
+    return std::vector<poll::PollReport>{report};
+  };
+  options.on_status = [&](const Status& status) {
+    if (!std::exchange(done, true)) said.set_value(status.sensors.at(0).last_error);
+  };
+  PipelineLoop loop(std::move(options));
+  loop.start();
+  return said.get_future().get();
+}
+
+TEST(PipelineLoop, OldFramesOfASlowDeviceAreToldFromNone) {
+  const std::string slow = said_of_old_frames(0.5, {});
+  EXPECT_THAT(slow, HasSubstr("its frames come, but late: the newest was captured 5.9 s ago"));
+  EXPECT_THAT(slow, HasSubstr("GET /camera there"));
+  EXPECT_THAT(slow, HasSubstr("the clock of its host"));
+  EXPECT_THAT(said_of_old_frames(0.0, {}), HasSubstr("no frame comes at present"));
+  EXPECT_THAT(said_of_old_frames(0.5, ClockEstimate{}), Not(HasSubstr("clock")))
+      << "that host tells its time";
 }
 
 }  // namespace

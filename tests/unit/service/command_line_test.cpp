@@ -51,6 +51,24 @@ TEST(CommandLine, AServicesOwnOptionsAreTextsAndMayImply) {
                           "device.replay.recording=\"a \\\"b\\\".mcap\""));
 }
 
+TEST(CommandLine, OptionsThatContradictEachOtherAreRefused) {
+  About about = example();
+  about.shortcuts.push_back({"--camera", "source", "A camera", true, "device.kind=\"camera\""});
+  about.shortcuts.push_back({"--device", "device.kind", "Its kind"});
+  const auto with = [&](std::vector<const char*> words) {
+    words.insert(words.begin(), "chorus-example");
+    return read_command_line(about, static_cast<int>(words.size()), words.data()).exit;
+  };
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(with({"--device", "simulated", "--camera", "a.mp4"}), kExitMistaken);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr("--camera sets device.kind to \"camera\", --device to \"simulated\""));
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(with({"--recording", "a.mcap", "--camera", "a.mp4"}), kExitMistaken);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("leave one of them out"));
+  EXPECT_FALSE(with({"--device", "camera", "--camera", "a.mp4"})) << "they say the same";
+}
+
 TEST(CommandLine, HelpAndVersionEndWell) {
   ::testing::internal::CaptureStdout();
   EXPECT_EQ(read({"--help"}).exit, kExitStopped);

@@ -89,12 +89,15 @@ Result<void> check_file(const CameraSettings& settings) {
   return {};
 }
 
-/// Neither a webcam nor a stream is opened: another program may be using it.  The shipped runner
-/// was checked when the device was made.
+/// No pictures are taken from a webcam or a stream: another program may be using it.  The shipped
+/// runner was checked when the device was made.
 std::vector<std::string> Camera::concerns() const {
   std::vector<std::string> all;
-  if (kind_of(parts_.settings.source) == SourceKind::File) {
+  const std::string& source = parts_.settings.source;
+  if (kind_of(source) == SourceKind::File) {
     if (const auto ok = check_file(parts_.settings); !ok) all.push_back(to_string(ok.error()));
+  } else if (const std::string why = why_closed(parts_.settings); !why.empty()) {
+    all.push_back(source + ": " + why);
   }
   if (parts_.settings.runner.empty()) return all;
   const auto looker = Looker::start(parts_.settings, parts_.command, {});
@@ -157,6 +160,11 @@ Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const
 Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   Pictures pictures(parts_);
   const bool once = kind_of(parts_.settings.source) == SourceKind::File && !parts_.settings.loop;
+  if (kind_of(parts_.settings.source) == SourceKind::Device) {
+    if (const std::string why = why_closed(parts_.settings); !why.empty())
+      log::warn("the camera is not there yet",
+                {{"source", parts_.settings.source}, {"reason", why}});
+  }
   // A file that plays only once does not begin before the runner is ready.
   if (!once) pictures.begin();
   RestartPause pause(kShortestPause, kLongestPause);
@@ -181,7 +189,6 @@ Result<void> check_source(const CameraSettings& settings) {
   if (kind_of(settings.source) == SourceKind::File)
     return fail(ErrorCode::NotFound, settings.source,
                 "there is no such file; device.camera.source names a video");
-  log::warn("the camera is not there yet", {{"source", settings.source}});
   return {};
 }
 

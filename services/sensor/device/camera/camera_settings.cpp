@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/sensor/impossible_lens.h"
 
@@ -73,6 +74,12 @@ SourceKind kind_of(const std::string& source) {
   return source.starts_with("/dev/") ? SourceKind::Device : SourceKind::File;
 }
 
+std::string meant_source(std::string source) {
+  const bool number =
+      !source.empty() && source.find_first_not_of("0123456789") == std::string::npos;
+  return number ? "/dev/video" + source : source;
+}
+
 std::string told_source(const std::string& source) {
   const std::size_t scheme = source.find("://");
   if (scheme == std::string::npos) return source;
@@ -86,6 +93,7 @@ std::string told_source(const std::string& source) {
 CameraSettings read_camera_settings(ConfigReader& section) {
   CameraSettings settings;
   section.read("source", settings.source);
+  settings.source = meant_source(std::move(settings.source));
   if (settings.source.empty())
     section.complain("source", "is empty; say /dev/video0, an rtsp:// address or a video file");
   section.read("label", settings.label);

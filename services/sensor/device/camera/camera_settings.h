@@ -42,6 +42,9 @@ struct CameraSettings {
   double fov_sigma = deg(6.0);  ///< Standard deviation of that value [rad].
 };
 
+/// The source as it is opened: of a number, as programs that use OpenCV take it, that webcam
+/// ("0" is /dev/video0).
+[[nodiscard]] std::string meant_source(std::string source);
 [[nodiscard]] SourceKind kind_of(const std::string& source);
 /// The source in a form that may be shown: without the user name and the password in a URL.
 [[nodiscard]] std::string told_source(const std::string& source);

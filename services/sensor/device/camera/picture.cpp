@@ -1,5 +1,9 @@
 #include "services/sensor/device/camera/picture.h"
 
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -8,6 +12,21 @@
 
 namespace chorus::camera {
 
+namespace {
+
+/// Whether the file begins like a picture in HEIF, as phones take them (ISO/IEC 23008-12): a box
+/// "ftyp" with one of the brands of HEVC or of any HEIF.
+bool is_heif(const std::string& file) {
+  std::array<char, 12> head{};
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  const std::string_view brand(head.data() + 4, 8);
+  constexpr std::array<std::string_view, 6> kBrands{"ftypheic", "ftypheix", "ftyphevc",
+                                                    "ftypheim", "ftypheis", "ftypmif1"};
+  return std::find(kBrands.begin(), kBrands.end(), brand) != kBrands.end();
+}
+
+}  // namespace
+
 Result<Picture> read_picture(const std::string& file) {
   auto pixels = std::make_shared<cv::Mat>();
   try {
@@ -15,6 +34,11 @@ Result<Picture> read_picture(const std::string& file) {
   } catch (const cv::Exception&) {
     pixels->release();
   }
+  if (pixels->empty() && is_heif(file))
+    return fail(ErrorCode::Unsupported, file,
+                "is a photo in HEIC, which is not read here; convert it: heif-convert IN.HEIC "
+                "OUT.jpg (package libheif-examples), or have the phone take JPEG (iOS: Settings, "
+                "Camera, Formats, Most Compatible)");
   if (pixels->empty()) return fail(ErrorCode::Malformed, file, "is no picture that can be read");
   const Size size{pixels->cols, pixels->rows};
   return Picture{std::move(pixels), size};

@@ -26,23 +26,6 @@ Duration since_boot() {
   return std::chrono::seconds(now.tv_sec) + Duration(now.tv_nsec);
 }
 
-/// Why the file or device cannot be opened for reading; empty if it can.
-std::string why_closed(const CameraSettings& settings) {
-  const bool device = kind_of(settings.source) == SourceKind::Device;
-  const int descriptor = open(settings.source.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor >= 0) {
-    close(descriptor);
-    return "";
-  }
-  const int reason = errno;
-  if (reason == ENOENT && device)
-    return "there is no such camera; is it plugged in?  `chorus camera list` shows those there are";
-  if (reason == ENOENT) return "there is no such file";
-  if (reason == EACCES && device)
-    return "this user may not read the camera; add it to the group video";
-  return std::strerror(reason);
-}
-
 /// Asks for the configured mode; a webcam uses the nearest mode that it has.
 void ask_webcam(cv::VideoCapture& capture, const CameraSettings& settings) {
   if (settings.width > kSmallWebcam)
@@ -142,12 +125,27 @@ bool open_capture(cv::VideoCapture& capture, const CameraSettings& settings) {
 
 }  // namespace
 
+std::string why_closed(const CameraSettings& settings) {
+  if (kind_of(settings.source) == SourceKind::Stream) return "";
+  const bool device = kind_of(settings.source) == SourceKind::Device;
+  const int descriptor = open(settings.source.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor >= 0) {
+    close(descriptor);
+    return "";
+  }
+  const int reason = errno;
+  if (reason == ENOENT && device)
+    return "there is no such camera; is it plugged in?  `chorus camera list` shows those there are";
+  if (reason == ENOENT) return "there is no such file";
+  if (reason == EACCES && device)
+    return "this user may not read the camera; add it to the group video";
+  return std::strerror(reason);
+}
+
 Result<std::unique_ptr<Video>> open_video(const CameraSettings& settings) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  if (kind_of(settings.source) != SourceKind::Stream) {
-    if (auto why = why_closed(settings); !why.empty())
-      return fail(ErrorCode::NotFound, settings.source, std::move(why));
-  }
+  if (auto why = why_closed(settings); !why.empty())
+    return fail(ErrorCode::NotFound, settings.source, std::move(why));
   cv::VideoCapture capture;
   try {
     if (!open_capture(capture, settings)) return refused(settings);

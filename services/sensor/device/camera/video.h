@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "services/sensor/device/camera/file_pace.h"
 #include "services/sensor/device/camera/picture.h"
@@ -28,6 +29,10 @@ class Video {
   /// For files only: continues near this position.
   virtual void skip_to(Duration position) = 0;
 };
+
+/// Why this webcam or file cannot be opened for reading, and what to do; empty if it can, and for
+/// streams.  Does not disturb another program that uses the webcam.
+[[nodiscard]] std::string why_closed(const CameraSettings& settings);
 
 /// Opens the source.  An error says what is wrong and what to do.
 [[nodiscard]] Result<std::unique_ptr<Video>> open_video(const CameraSettings& settings);
