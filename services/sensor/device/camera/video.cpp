@@ -118,7 +118,8 @@ bool open_capture(cv::VideoCapture& capture, const CameraSettings& settings) {
                           {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kPatienceMs,
                            cv::CAP_PROP_READ_TIMEOUT_MSEC, kPatienceMs});
     case SourceKind::File:
-      return capture.open(settings.source);
+      // Only this backend: the others are asked in vain, and libdc1394 leaks whenever it is asked.
+      return capture.open(settings.source, cv::CAP_FFMPEG);
   }
   return false;
 }
