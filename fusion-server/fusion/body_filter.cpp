@@ -11,6 +11,7 @@
 #include "fusion-server/fusion/bone_lengths.h"
 #include "fusion-server/fusion/handover.h"
 #include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/learned_errors.h"
 #include "fusion-server/fusion/limb_ends.h"
 #include "fusion-server/fusion/misfit_size.h"
 #include "fusion-server/fusion/motion_filter.h"
@@ -52,7 +53,7 @@ class BodyFilter final : public Estimator {
  public:
   explicit BodyFilter(const FusionConfig& config)
       : config_(std::make_shared<const FusionConfig>(config)),
-        errors_(line_of_sight_errors(config.noise, config.sensor_noise)),
+        errors_(errors_of(config)),
         filters_(motion_filters(config.body, std::make_index_sequence<kJointCount>{})) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {

@@ -50,15 +50,16 @@ class LineOfSightErrors final : public ErrorModel {
   LineOfSightErrors(const NoiseModel& noise, const std::map<SensorId, NoiseModel>& of_sensors)
       : noise_(noise), of_sensors_(of_sensors) {}
 
-  [[nodiscard]] Eigen::Matrix3d covariance(const SensorView& view, JointId id) const override {
+  [[nodiscard]] JointError error(const SensorView& view, JointId id) const override {
     const Joint& joint = view.skeleton[id];
     if (joint.covariance.known()) {
-      return believable(joint.covariance.matrix(), joint.bears() ? kLeastStatedRay : kLeastStated);
+      return {believable(joint.covariance.matrix(), joint.bears() ? kLeastStatedRay : kLeastStated),
+              true};
     }
     const auto own = of_sensors_.find(view.sensor);
     const NoiseModel& noise = own == of_sensors_.end() ? noise_ : own->second;
-    if (joint.bears()) return ray_covariance(joint, noise);
-    return line_of_sight_covariance(joint, view.eye, noise);
+    if (joint.bears()) return {ray_covariance(joint, noise), false};
+    return {line_of_sight_covariance(joint, view.eye, noise), false};
   }
 
  private:

@@ -14,13 +14,24 @@
 
 namespace chorus::fusion {
 
+struct JointError {
+  /// Covariance of the joint's position [m^2], or of its ray's direction [rad^2], in world axes.  A
+  /// position's is positive definite; a direction's need not be, because only its part across the
+  /// ray counts.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  /// True if it contains the pose error (pose_error.h), which otherwise comes on top of it.
+  bool whole = false;
+};
+
 class ErrorModel {
  public:
   virtual ~ErrorModel() = default;
-  /// Covariance of the joint's position [m^2], or of its ray's direction [rad^2], in world axes.  A
-  /// position's is positive definite; a direction's need not be, because only its part across the
-  /// ray counts.  Call this only for joints that have a position or direction in the view.
-  [[nodiscard]] virtual Eigen::Matrix3d covariance(const SensorView& view, JointId joint) const = 0;
+  /// Call this only for joints that have a position or direction in the view.
+  [[nodiscard]] virtual JointError error(const SensorView& view, JointId joint) const = 0;
+
+  [[nodiscard]] Eigen::Matrix3d covariance(const SensorView& view, JointId joint) const {
+    return error(view, joint).covariance;
+  }
 };
 
 /// The same noise for all sensors except those that have their own.

@@ -6,6 +6,7 @@
 #include "common/base/duration.h"
 #include "common/base/strong_id.h"
 #include "fusion-server/fusion/body_model.h"
+#include "fusion-server/fusion/error_predictor.h"
 #include "fusion-server/fusion/noise_model.h"
 #include "fusion-server/fusion/pose_error.h"
 
@@ -35,6 +36,9 @@ struct FusionConfig {
   double zero_weight_floor = 0.02;
   NoiseModel noise;  ///< For sensors without an entry of their own.
   std::map<SensorId, NoiseModel> sensor_noise;
+  /// Learned errors of the sensors without an entry of their own; none: their noise and pose error.
+  SharedPredictor errors = {};
+  std::map<SensorId, SharedPredictor> sensor_errors = {};
   /// InverseVariance and BodyFilter add this to the covariance that they state, for views that
   /// state none themselves.
   PoseError pose_error;

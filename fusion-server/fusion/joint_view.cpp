@@ -18,7 +18,9 @@ JointView joint_view_of(const SensorView& view, JointId joint, std::uint64_t con
   JointView found;
   found.joint = view.skeleton[joint];
   found.weight = Weight::clamped(view.weight).value();
-  found.covariance = errors.covariance(view, joint);
+  const JointError error = errors.error(view, joint);
+  found.covariance = error.covariance;
+  found.whole = error.whole;
   found.contributor = contributor;
   found.eye = view.eye;
   return found;

@@ -18,6 +18,7 @@ struct JointView {
   double weight = 0.0;  ///< Weight of the view, Eqs. (1)-(3); >= 0.
   /// The error model's covariance of a point's position [m^2], or of a ray's direction [rad^2].
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  bool whole = false;  ///< The covariance contains the pose error, JointError::whole.
   /// Variance of its additional pose error, per axis [m^2] (pose_error.h).
   double pose_variance = 0.0;
   std::uint64_t contributor = 0;                  ///< The sensor's bit in FusedBody::contributors.

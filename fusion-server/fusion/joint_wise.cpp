@@ -6,6 +6,7 @@
 
 #include "fusion-server/fusion/inverse_variance.h"
 #include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/learned_errors.h"
 #include "fusion-server/fusion/view_score.h"
 #include "fusion-server/fusion/weight.h"
 #include "fusion-server/fusion/weighted_mean.h"
@@ -40,8 +41,7 @@ void lift_zero_weights(std::vector<JointView>& views, double floor) {
 class JointWise final : public Estimator {
  public:
   explicit JointWise(const FusionConfig& config)
-      : config_(std::make_shared<const FusionConfig>(config)),
-        errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
+      : config_(std::make_shared<const FusionConfig>(config)), errors_(errors_of(config)) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
     if (config_->method == Method::BestView) {
@@ -59,7 +59,7 @@ class JointWise final : public Estimator {
     return joint_by_joint(person.id, [&](JointId joint) {
       auto views = joint_views_of(joint, person, instant.sensors, *errors_);
       for (JointView& view : views) {
-        if (!view.joint.covariance.known())
+        if (!view.whole)
           view.pose_variance = pose_variance(config_->pose_error, joint, view.joint.state);
       }
       return fuse_joint(std::move(views));

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/learned_errors.h"
 #include "fusion-server/fusion/weighted_mean.h"
 
 namespace chorus::fusion {
@@ -13,8 +14,7 @@ constexpr double kWeightFloor = 0.02;  // decision 0007: a view of weight zero c
 
 class OttoKalman final : public Estimator {
  public:
-  explicit OttoKalman(const FusionConfig& config)
-      : config_(config), errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
+  explicit OttoKalman(const FusionConfig& config) : config_(config), errors_(errors_of(config)) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
     return joint_by_joint(person.id, [&](JointId joint) {

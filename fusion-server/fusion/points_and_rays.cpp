@@ -7,6 +7,7 @@
 
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/learned_errors.h"
 #include "fusion-server/fusion/least_squares.h"
 
 namespace chorus::fusion {
@@ -41,8 +42,7 @@ FusedJoint finish(std::span<const JointView> views, const LeastSquares& found, d
 class PointsAndRays final : public Estimator {
  public:
   explicit PointsAndRays(const FusionConfig& config)
-      : config_(std::make_shared<const FusionConfig>(config)),
-        errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
+      : config_(std::make_shared<const FusionConfig>(config)), errors_(errors_of(config)) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
     return joint_by_joint(person.id, [&](JointId joint) {

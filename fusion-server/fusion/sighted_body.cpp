@@ -76,7 +76,7 @@ SightedBody::Weighing SightedBody::weighed(JointView& view, JointId joint,
                                            const Offsets* biases) const {
   Weighing weighing;
   weighing.stated = mean_variance(view.covariance);
-  if (view.joint.seen() && !view.joint.covariance.known()) {
+  if (view.joint.seen() && !view.whole) {
     weighing.stated += pose_variance(config_.pose_error, joint, view.joint.state);
     view.covariance += round_covariance(weighed_pose(config_, joint, view.joint.state));
   }

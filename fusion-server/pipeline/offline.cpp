@@ -105,7 +105,7 @@ class Replay {
     if (!input.sensors.empty()) config_.polled.emplace(input.sensors.begin(), input.sensors.end());
   }
 
-  Result<void> run(const TakeSnapshot& take) {
+  Result<void> run(const std::function<Result<void>(Step)>& take) {
     const auto first = frames_.next_after(Timestamp::min());
     if (!first) return pass(first);
     if (!*first) return no_frame();
@@ -114,22 +114,22 @@ class Replay {
       const Timestamp instant = grid_.at(*index);
       if (auto ok = frames_.read_to(instant); !ok) return ok;
       if (frames_.ended() && instant > frames_.newest()) break;
-      auto snapshot = answer(instant);
-      if (!snapshot) {
+      auto answered = answer(instant);
+      if (!answered) {
         const auto next = after_gap(*index);
         if (!next) return pass(next);
         index = *next;
         continue;
       }
-      if (auto ok = take(std::move(*snapshot)); !ok) return ok;
+      if (auto ok = take(std::move(*answered)); !ok) return ok;
       ++*index;
     }
     return {};
   }
 
  private:
-  /// The snapshot; none if no registered sensor covers the instant.
-  std::optional<Snapshot> answer(Timestamp instant) {
+  /// What step() makes of it; none if no registered sensor covers the instant.
+  std::optional<Step> answer(Timestamp instant) {
     frames_.advance(instant, histories_);
     for (const auto& [sensor, history] : histories_) {
       if (config_.polled) config_.polled->insert(sensor);
@@ -139,7 +139,7 @@ class Replay {
     memory_ = std::move(next.memory);
     if (!covered(next.snapshot)) return std::nullopt;
     ++answered_;
-    return std::move(next.snapshot);
+    return next;
   }
 
   /// The index of the first instant after `index` that a frame could cover; none at the end.
@@ -211,7 +211,17 @@ Result<Registration> register_recordings(OfflineInput input, const OfflineConfig
 Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                              const OfflineConfig& config, const TakeSnapshot& take) {
   if (auto ok = check_rate(config); !ok) return ok;
-  return Replay(std::move(input), registration, config).run(take);
+  return Replay(std::move(input), registration, config).run([&take](Step step) {
+    return take(std::move(step.snapshot));
+  });
+}
+
+Result<void> visit_recordings(OfflineInput input, const Registration& registration,
+                              const OfflineConfig& config, const TakeStep& take) {
+  if (auto ok = check_rate(config); !ok) return ok;
+  return Replay(std::move(input), registration, config).run([&take](const Step& step) {
+    return take(step.snapshot, step.people);
+  });
 }
 
 Result<OfflineResult> fuse_offline(const std::vector<registration::WalkTrack>& sensors,

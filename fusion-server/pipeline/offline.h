@@ -44,6 +44,13 @@ using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 
+/// Takes what was fused at an instant, with the views it was fused from; an error stops the fusion.
+using TakeStep = std::function<Result<void>(const Snapshot&, const std::vector<Person>&)>;
+
+/// fuse_recordings() for those who want to see the views, too.
+[[nodiscard]] Result<void> visit_recordings(OfflineInput input, const Registration& registration,
+                                            const OfflineConfig& config, const TakeStep& take);
+
 /// Fuses recordings in memory; registers from the whole walk unless `extrinsics` are given.
 [[nodiscard]] Result<OfflineResult> fuse_offline(
     const std::vector<registration::WalkTrack>& sensors,

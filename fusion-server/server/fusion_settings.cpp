@@ -7,6 +7,7 @@
 #include "common/base/config_reader.h"
 #include "common/sensor/limits.h"
 #include "common/service/http_config.h"
+#include "fusion-server/learn/error_file.h"
 #include "fusion-server/server/facing_settings.h"
 #include "fusion-server/wire/session_limits.h"
 
@@ -20,6 +21,16 @@ void read_noise(ConfigReader& reader, fusion::NoiseModel& out) {
   reader.read("across_m", out.across, 1e-4, 1.0);
   reader.read("inferred_factor", out.inferred_factor, 1.0, 100.0);
   reader.read_deg("ray_deg", out.ray, 0.01, 45.0);
+}
+
+/// The learned errors in a file; none for "".
+void read_errors(ConfigReader& reader, fusion::SharedPredictor& out) {
+  std::string file;
+  reader.read("errors", file);
+  if (file.empty()) return;
+  auto predictor = learn::load_predictor(file);
+  if (!predictor) return reader.complain("errors", to_string(predictor.error()));
+  out = std::move(*predictor);
 }
 
 void read_sensor(ConfigReader& reader, LiveSettings& out, std::set<SensorId>& known) {
@@ -41,6 +52,7 @@ void read_sensor(ConfigReader& reader, LiveSettings& out, std::set<SensorId>& kn
     read_noise(child, noise);
     out.pipeline.fusion.sensor_noise[*id] = noise;
   }
+  if (reader.has("errors")) read_errors(reader, out.pipeline.fusion.sensor_errors[*id]);
   out.sensors.push_back(std::move(sensor));
 }
 
@@ -171,6 +183,7 @@ void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   reader.read("max_sigma_m", out.max_sigma, 1e-3, 100.0);
   read_pose_error(reader.child("pose_error"), out.pose_error);
   read_body(reader.child("body"), out.body);
+  read_errors(reader, out.errors);
   ConfigReader noise = reader.child("noise");
   read_noise(noise, out.noise);
 }

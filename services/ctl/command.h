@@ -35,7 +35,7 @@ struct Command {
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
 inline constexpr std::array<std::string_view, 6> kRecordingCommandNames{
-    "import", "replay", "fuse", "export", "calibrate", "characterise"};
+    "import", "replay", "fuse", "export", "train-error", "calibrate", "characterise"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -48,6 +48,7 @@ Run add_record(CLI::App& options);
 Run add_replay(CLI::App& options);
 Run add_fuse(CLI::App& options);
 Run add_export(CLI::App& options);
+Run add_train_error(CLI::App& options);
 Run add_camera(CLI::App& options);
 Run add_calibrate(CLI::App& options);
 Run add_characterise(CLI::App& options);

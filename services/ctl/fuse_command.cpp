@@ -11,13 +11,13 @@
 #include "fusion-server/client/recordings.h"
 #include "fusion-server/fusion/methods.h"
 #include "fusion-server/pipeline/offline.h"
-#include "fusion-server/server/registration_store.h"
 #include "fusion-server/wire/registration_file.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/fused_file.h"
 #include "services/ctl/offline_options.h"
 #include "services/ctl/recorded_cell.h"
+#include "services/ctl/recorded_places.h"
 #include "services/ctl/registration_report.h"
 #include "services/ctl/text_file.h"
 
@@ -27,87 +27,35 @@ namespace {
 struct FuseArguments {
   std::vector<std::string> inputs;
   std::string out;
-  std::string registration;
+  PlaceOptions places;
   std::string save_registration;
-  bool from_walk = false;
   OfflineOptions options;
   bool json = false;
 };
 
-/// Extrinsics, and a remark for the user on where they are from.
-struct Places {
-  std::optional<Registration> registration;  ///< None: they are to be solved from the walk.
-  std::string note;
-};
-
-/// The extrinsics that lie beside the recordings, as `chorus import` writes them.
-Result<Places> places_beside(const std::vector<std::filesystem::path>& files,
-                             const RecordedCell& cell) {
-  const auto beside = registration_beside(files);
-  if (!beside) return pass(beside);
-  if (!*beside) return Places{};
-  const std::string file = (*beside)->string();
-  auto registration = server::load_registration_file(file);
-  if (!registration) {
-    return fail(registration.error().code, file,
-                registration.error().message +
-                    "; it lies beside the recordings: name another with --registration, or "
-                    "register from the person with --from-walk");
-  }
-  const auto sensors = cell.sensors();
-  if (std::ranges::none_of(
-          sensors, [&](const SensorId& sensor) { return registration->sensors.contains(sensor); }))
-    return Places{std::nullopt, file + " is of other sensors, and is not used"};
-  return Places{std::move(*registration),
-                "the sensors stand where " + file +
-                    " says, which lies beside the recordings; --from-walk registers anew"};
-}
-
-/// The extrinsics from a file, from the recording, or from beside it.
-Result<Places> given_extrinsics(const FuseArguments& arguments,
-                                const std::vector<std::filesystem::path>& files,
-                                const RecordedCell& cell) {
-  if (arguments.from_walk) return Places{};
-  if (!arguments.registration.empty()) {
-    auto registration = server::load_registration_file(arguments.registration);
-    if (!registration) return pass(registration);
-    return Places{std::move(*registration), {}};
-  }
-  auto recorded = cell.registration();
-  if (!recorded) return pass(recorded);
-  if (*recorded) return Places{std::move(*recorded), {}};
-  return places_beside(files, cell);
-}
-
-/// The given extrinsics, or those solved from the walk.
-Result<Places> extrinsics(Places given, RecordedCell& cell, const FuseArguments& arguments,
-                          const pipeline::OfflineConfig& config) {
-  if (given.registration) {
-    const OfflineOptions& options = arguments.options;
-    if (!options.distance.empty() || !options.stature.empty() || !options.joints.empty())
-      given.note +=
-          (given.note.empty() ? "" : "; ") +
-          std::string("--distance, --stature and --joints change nothing without --from-walk");
-    return given;
-  }
-  auto solved = pipeline::register_recordings(cell.input(), config);
-  if (!solved) return pass(solved);
-  given.registration = std::move(*solved);
-  return given;
-}
-
 /// Refuses to write to any of the input files, which would destroy it.
 Result<void> check_outputs(const FuseArguments& arguments,
                            std::vector<std::filesystem::path> read) {
-  if (const auto beside = registration_beside(read); beside && *beside && !arguments.from_walk)
+  if (const auto beside = registration_beside(read);
+      beside && *beside && !arguments.places.from_walk)
     read.push_back(**beside);
-  read.emplace_back(arguments.registration);
+  read.emplace_back(arguments.places.registration);
   read.emplace_back(arguments.options.config);
   if (auto ok = may_write(arguments.out, read); !ok) return ok;
   if (auto ok = may_write(arguments.save_registration, read); !ok) return ok;
   if (!same_file(arguments.out, arguments.save_registration)) return {};
   return fail(ErrorCode::InvalidArgument, "--save-registration",
               "names the file of --out, which would lose what is fused; name another");
+}
+
+/// Says so if the places were given, but options for solving them were, too.
+void note_unused(const FuseArguments& arguments, Places& places) {
+  const OfflineOptions& options = arguments.options;
+  if (places.solved) return;
+  if (options.distance.empty() && options.stature.empty() && options.joints.empty()) return;
+  places.note +=
+      (places.note.empty() ? "" : "; ") +
+      std::string("--distance, --stature and --joints change nothing without --from-walk");
 }
 
 struct Fused {
@@ -177,12 +125,11 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
   auto cell = RecordedCell::open(*files);
   if (!cell) return pass(cell);
-  auto places = given_extrinsics(arguments, *files, *cell).and_then([&](Places&& given) {
-    return extrinsics(std::move(given), *cell, arguments, *config);
-  });
+  auto places = places_of(arguments.places, *files, *cell, *config);
   if (!places) return pass(places);
   auto fused = fuse_into(arguments.out, *cell, std::move(*places->registration), *config);
   if (!fused) return pass(fused);
+  note_unused(arguments, *places);
   auto& notes = fused->told.notes;
   if (!places->note.empty()) notes.insert(notes.begin(), places->note);
   if (!arguments.save_registration.empty()) {
@@ -206,15 +153,7 @@ Run add_fuse(CLI::App& options) {
   options
       .add_option("--out", arguments->out, "File to write: .mcap, or NDJSON; - is standard output")
       ->required();
-  auto* registration = options.add_option(
-      "--registration", arguments->registration,
-      "Extrinsics as JSON; without it those of the recording, else registration.json "
-      "beside it, else from the person");
-  options
-      .add_flag("--from-walk", arguments->from_walk,
-                "Register from the person, though the recording has a registration, in it or "
-                "beside it")
-      ->excludes(registration);
+  add_place_options(options, arguments->places);
   options.add_option("--save-registration", arguments->save_registration,
                      "Write the extrinsics used to this file");
   add_offline_options(options, arguments->options);

@@ -43,6 +43,16 @@ constexpr std::array kRecordingCommands{
             "  chorus export fused.ndjson --format csv --person 2 --out - | head\n"
             "What each format holds, and what is lost: docs/guide/export.md.",
             &add_export},
+    Command{"train-error", "Learns how much a kind of sensor errs, from recordings with a truth",
+            "Examples:\n"
+            "  chorus train-error rec --truth rec/truth.ndjson --out kinect.json\n"
+            "  chorus train-error walk.mcap --truth optical.ndjson --registration places.json "
+            "--out kinect.json\n"
+            "  chorus train-error rec --truth fused.ndjson --model boosting --out kinect.json\n"
+            "Exit code 0: the model is written; 1: what is missing, and what to record, is "
+            "printed.\n"
+            "Then: fusion.errors, or \"errors\" of a sensor, in the fusion server's configuration.",
+            &add_train_error},
     Command{"calibrate", "Measures the lens of a camera, or states what is known of it",
             "Examples:\n"
             "  chorus calibrate camera --print-board board.pdf\n"

@@ -21,7 +21,7 @@ ROWS = [
     ["fusion-server/status", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],
     ["fusion-server/registration"],
-    ["fusion-server/pipeline", "fusion-server/poll"],
+    ["fusion-server/pipeline", "fusion-server/poll", "fusion-server/learn"],
     ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "services/sensor"],
     ["fusion-server/vrpn", "fusion-server/dtrack", "fusion-server/natnet", "fusion-server/trackd",
      "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest", "fusion-server/client"],
@@ -37,7 +37,7 @@ VALUE_HEADERS = {"fusion-server/sink.h"}
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
-NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
+NO_SOCKET = {"fusion-server/core", "fusion-server/learn", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
 # These rooms implement protocols other than HTTP: they may use sockets, but no HTTP.
 NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
 

@@ -1,3 +1,4 @@
+#include <regex>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -43,7 +44,8 @@ TEST(CommandLine, PrintsItsManualAndItsCompletion) {
   EXPECT_EQ(completion.code, kExitOk);
   for (const Command& command : all_commands()) {
     const std::string name(command.name);
-    EXPECT_THAT(manual.out, HasSubstr(".SS \"chorus " + name + "\"\n"));
+    const std::string in_manual = std::regex_replace(name, std::regex("-"), "\\-");
+    EXPECT_THAT(manual.out, HasSubstr(".SS \"chorus " + in_manual + "\"\n"));
     EXPECT_THAT(completion.out, HasSubstr("\n    " + name + ") words=' --"));
   }
   EXPECT_THAT(manual.out, HasSubstr("\\fB\\-\\-cancel\\fR"));

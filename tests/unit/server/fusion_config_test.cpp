@@ -6,8 +6,10 @@
 #include "common/base/file.h"
 #include "common/service/config_source.h"
 #include "common/service/waiting_keys.h"
+#include "fusion-server/learn/error_file.h"
 #include "tests/support/builders.h"
 #include "tests/support/every_key.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::server {
 namespace {
@@ -60,6 +62,29 @@ TEST(FusionConfig, ASensorMayHaveANoiseOfItsOwn) {
   ASSERT_EQ(own.size(), 1u);
   EXPECT_EQ(own.at(testing::sensor_id("b")).across, 0.2);
   EXPECT_EQ(own.at(testing::sensor_id("b")).along, 0.05);  // inherited from the general `along`
+}
+
+TEST(FusionConfig, ReadsLearnedErrorsOfAllSensorsAndOfOne) {
+  const testing::TemporaryFolder folder;
+  fusion::ErrorPredictor predictor;
+  predictor.joints[index_of(JointId::Head)] = fusion::JointPredictor{};
+  const std::string file = (folder / "kinect.json").string();
+  ASSERT_TRUE(replace_file(file, learn::write_predictor(predictor)));
+  const auto config = read(R"({"fusion": {"errors": ")" + file + R"("},
+      "sensors": [{"id": "a", "url": "http://h/"},
+                  {"id": "b", "url": "http://i/", "errors": ""}]})");
+  ASSERT_TRUE(config) << to_string(config.error());
+  const fusion::FusionConfig& fusion = config->live.pipeline.fusion;
+  ASSERT_TRUE(fusion.errors.model);
+  EXPECT_EQ(*fusion.errors.model, predictor);
+  ASSERT_EQ(fusion.sensor_errors.size(), 1u);
+  EXPECT_FALSE(fusion.sensor_errors.at(testing::sensor_id("b")).model);
+  EXPECT_NE(why(R"({"fusion": {"errors": "no/such.json"}})").find("no/such.json"),
+            std::string::npos);
+  ASSERT_TRUE(replace_file(file, "{}"));
+  EXPECT_NE(
+      why(R"({"fusion": {"errors": ")" + file + R"("}})").find("no file of `chorus train-error`"),
+      std::string::npos);
 }
 
 TEST(FusionConfig, EveryMistakeIsNamedAtOnce) {
