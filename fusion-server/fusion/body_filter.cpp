@@ -9,6 +9,7 @@
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/bone_lengths.h"
+#include "fusion-server/fusion/disagreement.h"
 #include "fusion-server/fusion/handover.h"
 #include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/learned_errors.h"
@@ -22,7 +23,6 @@ namespace {
 
 constexpr double kHabit = 5.0;        // [s] time constant of a Habit
 constexpr double kUsualScale = 0.01;  // relative differences in size that noise alone causes
-constexpr double kFirstAgreement = 0.25;
 // [m]; shoulders that are closer together, seen from above, show no direction.
 constexpr double kNarrowShoulders = 0.1;
 // [rad]; shoulders of somebody who stands still waver by less than this.
@@ -54,7 +54,8 @@ class BodyFilter final : public Estimator {
   explicit BodyFilter(const FusionConfig& config)
       : config_(std::make_shared<const FusionConfig>(config)),
         errors_(errors_of(config)),
-        filters_(motion_filters(config.body, std::make_index_sequence<kJointCount>{})) {}
+        filters_(motion_filters(config.body, std::make_index_sequence<kJointCount>{})),
+        disagreement_(config.body.disagreement) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
     const double passed = last_ ? std::max(0.0, seconds(instant.at - *last_)) : 0.0;
@@ -70,7 +71,7 @@ class BodyFilter final : public Estimator {
     const PlacedBody whole =
         held(limb_ends_.held(handed_over(sighted.placed()), stated, model()), expected);
     if (model().bias_rate > 0) sighted.learn(biases_, whole, passed, turned(whole));
-    agreement_.follow(sighted.disagreement(whole), passed);
+    disagreement_.learn(sighted.disagreement(), passed);
     scale_square_.follow(sighted.scale_square(), passed);
     middle_ = middle_of(whole);
     if (!sighted.misfits().empty()) turn_sigma_ = sighted.turn_sigma();
@@ -134,13 +135,14 @@ class BodyFilter final : public Estimator {
     if (!determined) fused.joint.state = JointState::Inferred;
     PlacedJoint place = filtered(j, instant, now, determined);
     if (determined) {
+      plain_views_[j] = sighted.plain_views(j);
       const Eigen::Matrix3d beyond = limb_ends_.left(j) * sighted.stated(j) - now.covariance;
       beyond_[j] = std::max(0.0, mean_variance(beyond));
       place.covariance += beyond;
     } else {
       place.covariance += beyond_[j] * Eigen::Matrix3d::Identity();
     }
-    state(fused, place, turn_covariance(j, whole, turn_sigma_));
+    state(fused, place, plain_views_[j], turn_covariance(j, whole, turn_sigma_));
     if (fused.contributors != 0) contributed_[j] = instant;
     if (contributed_[j]) fused.age = seconds(instant - *contributed_[j]);
     return fused;
@@ -181,12 +183,16 @@ class BodyFilter final : public Estimator {
 
   /// Sets position and covariance.  Errors that all views have in common are added to the
   /// covariance, because no view's covariance contains them.
-  void state(FusedJoint& fused, const PlacedJoint& place, const Eigen::Matrix3d& turned) const {
+  void state(FusedJoint& fused, const PlacedJoint& place, std::size_t plain_views,
+             const Eigen::Matrix3d& turned) const {
     const BodyModel& body = model();
-    const double wider = body.agreement > 0 ? agreement_.value / body.agreement : 1.0;
+    // Covariances that sensors state themselves are believed as they are.
+    const bool adapted = body.disagreement > 0 && plain_views > 0;
+    const double wider = adapted ? disagreement_.value() * unseen_error(plain_views) : 1.0;
+    const double alike = adapted ? body.common * disagreement_.value() : 0.0;
     const double uneven = std::max(0.0, scale_square_.value - kUsualScale * kUsualScale);
     const double reach = middle_ ? (place.position - *middle_).squaredNorm() : 0.0;
-    const double common = config_->common_sigma * config_->common_sigma +
+    const double common = config_->common_sigma * config_->common_sigma + alike * alike +
                           body.proportion * body.proportion * uneven * reach;
     fused.joint.position = place.position;
     state_covariance(fused,
@@ -206,7 +212,10 @@ class BodyFilter final : public Estimator {
   /// because the stated error must not shrink then.
   std::array<double, kJointCount> beyond_{};
   std::array<std::optional<Timestamp>, kJointCount> contributed_;  ///< When a sensor last did.
-  Habit agreement_{kFirstAgreement};
+  /// Number of views that determined a joint, by points without a covariance of their own, when
+  /// it last was.
+  std::array<std::size_t, kJointCount> plain_views_{};
+  Disagreement disagreement_;
   Habit scale_square_;
   std::optional<Eigen::Vector3d> middle_;  ///< Middle of the trunk.
   double turn_sigma_ = 0.0;  ///< SightedBody::turn_sigma() when somebody last saw them.

@@ -48,13 +48,15 @@ struct BodyModel {
   double limb = 4.0;
   /// Fraction of a joint's standard deviation that is white noise, independent at each instant.
   double white = 0.15;
-  /// The next two affect the stated errors only; 0: unused.  Sensors that differ in scale also have
-  /// wrong proportions: the error is this fraction of the difference in scale, times a joint's
+  /// The next three affect the stated errors only; 0: unused.  Sensors that differ in scale also
+  /// have wrong proportions: the error is this fraction of the difference in scale, times a joint's
   /// distance from the trunk.
-  double proportion = 0.6;
-  /// Mean squared residual, in variances, of views that disagree no more than usual.  The stated
-  /// variances are multiplied by the ratio of the residual found to this.
-  double agreement = 0.4;
+  double proportion = 0.75;
+  /// Start of the estimate of how far views differ (disagreement.h), in units of their stated
+  /// variances, by which these are multiplied; 0: they are used as they are.
+  double disagreement = 0.5;
+  /// Standard deviation per axis of what all views have wrong alike [m], for each unit of that.
+  double common = 0.013;
   /// How long a joint that nobody sees is predicted.
   Duration carry = std::chrono::seconds(1);
 

@@ -247,22 +247,27 @@ StatedVariances SightedBody::stated_variances() const {
   return all;
 }
 
-std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
+std::size_t SightedBody::plain_views(std::size_t joint) const {
+  return sights_[joint].round ? sights_[joint].views.size() : 0;
+}
+
+std::optional<double> SightedBody::disagreement() const {
   constexpr double kDimensions = 3.0;
   double sum = 0.0;
-  double count = 0.0;
+  double free = 0.0;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Sights& sights = sights_[j];
-    if (!determined(j) || !sights.round || sights.views.size() < 2) continue;
+    if (!determined(j) || plain_views(j) < 2) continue;
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
-      const Eigen::Vector3d off = sights.views[v].joint.position - body[j].position;
-      sum += sights.weighings[v].trust * off.squaredNorm() /
-             (kDimensions * sights.weighings[v].variance);
-      count += 1.0;
+      const Weighing& weighing = sights.weighings[v];
+      const Eigen::Vector3d off =
+          sights.views[v].joint.position + weighing.bias - placed_[j].position;
+      sum += weighing.trust * off.squaredNorm() / (kDimensions * weighing.stated);
     }
+    free += static_cast<double>(sights.views.size() - 1);
   }
-  if (count == 0.0) return std::nullopt;
-  return sum / count;
+  if (free == 0.0) return std::nullopt;
+  return sum / free;
 }
 
 std::optional<double> SightedBody::scale_square() const {

@@ -50,10 +50,13 @@ class SightedBody {
   void learn(Biases& biases, const PlacedBody& body, double passed, double turned) const;
   /// How the views take part in the means of placed().
   [[nodiscard]] std::vector<ViewPulls> pulls() const;
-  /// Mean squared residual between the points and `body`, per axis, in units of the points'
-  /// variances; only over joints that several views show, all as points without a covariance of
-  /// their own; none if there is no such joint.
-  [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;
+  /// Mean squared distance of the points, biases included, from placed(), per axis and degree of
+  /// freedom, in units of the points' stated variances; only over joints that several views show,
+  /// all as points without a covariance of their own; none if there is no such joint.
+  [[nodiscard]] std::optional<double> disagreement() const;
+  /// Number of views that show a joint as points without a covariance of their own; 0 if any has
+  /// more.
+  [[nodiscard]] std::size_t plain_views(std::size_t joint) const;
   /// Mean square of the views' scale errors; none if fewer than two views have points.
   [[nodiscard]] std::optional<double> scale_square() const;
   /// State, orientation, contributors and their shares of a joint; its position is not set.

@@ -164,7 +164,8 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read("limb", out.limb, 0.1, 100.0);
   reader.read("white", out.white, 1e-3, 1.0);
   reader.read("proportion", out.proportion, 0.0, 10.0);
-  reader.read("agreement", out.agreement, 0.0, 10.0);
+  reader.read("disagreement", out.disagreement, 0.0, 10.0);
+  reader.read("common_m", out.common, 0.0, 1.0);
   reader.read_ms("carry_ms", out.carry, milliseconds(0), std::chrono::seconds(1));
 }
 

@@ -34,7 +34,7 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 6> kRecordingCommandNames{
+inline constexpr std::array<std::string_view, 7> kRecordingCommandNames{
     "import", "replay", "fuse", "export", "train-error", "calibrate", "characterise"};
 [[nodiscard]] std::vector<Command> all_commands();
 
