@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using enum JointId;
 
-constexpr double kKinectRate = 30.0;   // [Hz]
+constexpr double kUiprmdRate = 30.0;   // [Hz]
 constexpr double kViconRate = 100.0;   // [Hz]
 constexpr double kSensorHeight = 1.0;  // [m]; not published, so the elevation counts as unknown
 constexpr std::size_t kKinectJoints = 22;
@@ -146,7 +146,7 @@ Result<Episode> read_episode(const fs::path& folder, const std::string& name) {
 
 /// Where Vicon saw the joints at a frame of the Kinect; none beyond the ends of the recording.
 std::optional<Places> vicon_at(const Episode& episode, std::size_t frame, double shift) {
-  const double at = (static_cast<double>(frame) / kKinectRate + shift) * kViconRate;
+  const double at = (static_cast<double>(frame) / kUiprmdRate + shift) * kViconRate;
   if (at < 0.0 || at + 1.0 >= static_cast<double>(episode.vicon.size())) return std::nullopt;
   const auto before = static_cast<std::size_t>(at);
   const double part = at - static_cast<double>(before);

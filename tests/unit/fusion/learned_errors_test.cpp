@@ -163,7 +163,7 @@ TEST(LearnedErrors, ContainThePoseError) {
   for (const Method method : {Method::InverseVariance, Method::BodyFilter}) {
     FusionConfig config;
     config.method = method;
-    config.body.agreement = 0;
+    config.body.disagreement = 0.0;
     config.common_sigma = 0.0;
     config.errors = predictor_of(constant_of_head(0.05));
     const double before = stated_variance(config);
