@@ -8,7 +8,7 @@ namespace chorus::http {
 Result<Request> request_of(const RequestHead& head, const Peer& peer, std::string_view path) {
   auto query = decode_query(head.query);
   if (!query) return pass(query);
-  Request request{head.method, path, std::move(*query), {}, {}, peer.loopback};
+  Request request{head.method, path, std::move(*query), {}, {}, peer.loopback, {}, false, false};
   for (const Field& field : head.fields) {
     auto [known, added] = request.headers.try_emplace(to_lower(field.name), field.value);
     if (!added) known->second.append(", ").append(field.value);

@@ -53,7 +53,8 @@ void HttpConnection::begin(Beginning beginning) {
 void HttpConnection::seal(Beginning beginning) {
   deadline_ = core_.now + core_.config.limits.header_timeout;
   stream_.seal_as_server(
-      *core_.config.identity, [me = self(), beginning](const net::Stream::Sealing& sealing) {
+      *core_.config.identity, core_.handshakes,
+      [me = self(), beginning](const net::Stream::Sealing& sealing) {
         if (me->conversation_.closed()) return;
         if (sealing.failure) {
           count(me->core_.counters.handshakes_failed);

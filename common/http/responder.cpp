@@ -125,6 +125,7 @@ std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
 
 Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
     : guard_{all_tokens(config.bearer_token, config.tokens), !is_loopback(config.address)},
+      secure_(config.identity.has_value()),
       allowed_origin_(config.allowed_origin),
       challenge_("WWW-Authenticate: Bearer realm=\"" + config.policy.realm + "\"\r\n"),
       reading_challenge_(challenge_ + "WWW-Authenticate: Basic realm=\"" + config.policy.realm +
@@ -222,12 +223,25 @@ Reaction Responder::read(const RequestHead& head, const Router::Match& match, co
     return write(head, match, peer);
   const auto document = guarded<DocumentPtr>(head, [&]() -> Result<DocumentPtr> {
     if (entry.files) return entry.files->document(match.rest);
-    const auto request = request_of(head, peer, path);
+    auto request = request_of(head, peer, path);
     if (!request) return pass(request);
+    add_facts(*request, head, peer);
     return (entry.live ? entry.by_query : entry.getter)(*request, match.params);
   });
   if (!document) return Reaction::of(fault(document.error(), head, route));
   return Reaction::of(represent(*document, head, route));
+}
+
+/// Tells a getter by what name the client reached us, and what clients need.  A proxy that we trust
+/// says whether its client uses TLS.
+void Responder::add_facts(Request& request, const RequestHead& head, const Peer& peer) const {
+  request.guards_reading = guard_.guards_reading();
+  request.guards_writing = request.guards_reading || !guard_.tokens.empty();
+  if (head.host.empty()) return;
+  const auto scheme = request.headers.find("x-forwarded-proto");
+  const bool forwarded = peer.proxy && scheme != request.headers.end();
+  const bool secure = forwarded ? scheme->second == "https" : secure_;
+  request.root = (secure ? "https://" : "http://") + std::string(head.host) + "/";
 }
 
 Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entry) const {

@@ -74,6 +74,7 @@ class Responder {
  private:
   [[nodiscard]] Reaction read(const RequestHead& head, const Router::Match& match, const Peer& peer,
                               std::string_view path) const;
+  void add_facts(Request& request, const RequestHead& head, const Peer& peer) const;
   [[nodiscard]] Reaction read_live(const RequestHead& head, const Router::Entry& entry) const;
   [[nodiscard]] Reaction upgrade(const RequestHead& head, const Router::Entry& entry) const;
   [[nodiscard]] Reaction converse(const RequestHead& head, const Router::Entry& entry,
@@ -93,6 +94,7 @@ class Responder {
   [[nodiscard]] std::string_view route_lines(const Router::Entry& entry) const;
 
   Guard guard_;
+  bool secure_;  ///< True if all connections use TLS.
   std::string allowed_origin_;
   std::string challenge_;           ///< Header line of a 401.
   std::string reading_challenge_;   ///< The same for GET and HEAD, with Basic authentication added.

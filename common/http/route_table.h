@@ -1,4 +1,4 @@
-// What the router holds: one entry per pattern.  Only the server reads it.
+// What the router holds: one entry per pattern.  The server reads it, and what describes a service.
 #pragma once
 
 #include <map>

@@ -1,5 +1,6 @@
 #include "common/http/router.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <span>
@@ -70,6 +71,17 @@ Router::Router() = default;
 Router::~Router() = default;
 Router::Router(Router&&) noexcept = default;
 Router& Router::operator=(Router&&) noexcept = default;
+
+const Router::Entry* Router::entry_like(std::string_view pattern) const {
+  const auto wanted = split<std::string_view>(pattern);
+  const auto alike = [&](const std::unique_ptr<Entry>& entry) {
+    return std::ranges::equal(entry->segments, wanted, [](std::string_view a, std::string_view b) {
+      return a == b || (is_parameter(a) && is_parameter(b));
+    });
+  };
+  const auto found = std::ranges::find_if(entries_, alike);
+  return found == entries_.end() ? nullptr : found->get();
+}
 
 Router::Entry& Router::entry_of(const std::string& pattern) {
   assert(!pattern.empty() && pattern.front() == '/');

@@ -27,6 +27,11 @@ struct Request {
   std::map<std::string, std::string, std::less<>> headers;  ///< Lower-case names.
   std::string_view body;
   bool from_loopback = false;
+  // Only for getters:
+  /// By what the client reached `/`, "https://tracker.local:8080/"; empty if it named no host.
+  std::string root = {};
+  bool guards_reading = false;  ///< Whether reading needs a token, at least from other hosts.
+  bool guards_writing = false;  ///< The same of writing.
 };
 
 /// The values that the {name} parts of the pattern have in the path.
@@ -84,6 +89,8 @@ class Router {
   /// NotFound when no pattern fits the (decoded) path.
   [[nodiscard]] Result<Match> match(std::string_view path) const;
   [[nodiscard]] const std::vector<std::unique_ptr<Entry>>& entries() const { return entries_; }
+  /// The entry of this pattern, whatever its {name} parts are called there; null: there is none.
+  [[nodiscard]] const Entry* entry_like(std::string_view pattern) const;
 
  private:
   Entry& entry_of(const std::string& pattern);

@@ -26,6 +26,7 @@ ServerCore::ServerCore(ServerConfig server_config, std::shared_ptr<const Router>
       responder(config, std::move(routes)),
       accepting(io, "accept failed", [this](net::Socket socket) { welcome(std::move(socket)); }),
       sweeping(io, kSweepInterval, [this] { sweep(); }),
+      handshakes(io),
       now(std::chrono::steady_clock::now()) {
   const std::size_t entries = responder.router().entries().size();
   waiting.resize(entries);

@@ -16,6 +16,7 @@
 #include "common/net/asio.h"
 #include "common/net/every.h"
 #include "common/net/listen.h"
+#include "common/net/turns.h"
 
 namespace chorus::http {
 
@@ -52,6 +53,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   AtomicCounters counters;
   net::AcceptLoop accepting;
   net::Every sweeping;
+  net::Turns handshakes;
   RateReport failed_handshakes{"TLS handshake failed"};
 
   SteadyTime now;  ///< The time of the last sweep.

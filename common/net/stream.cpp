@@ -20,6 +20,7 @@ struct Stream::Secret : std::enable_shared_from_this<Secret> {
   Secret(Socket of_peer, tls::Seal made) : socket(std::move(of_peer)), seal(std::move(made)) {}
 
   void shake(const Sealed& done);
+  void shake_in_turn(const Sealed& done);
   void read(asio::mutable_buffer room, Done done);
   void pump();
   void pumped(error_code failed);
@@ -34,6 +35,7 @@ struct Stream::Secret : std::enable_shared_from_this<Secret> {
   std::string outgoing;  ///< The bytes being sent; empty when nothing is being sent.
   Done written;          ///< Called when all output of the seal has been sent.
   std::size_t written_size = 0;
+  Turns* turns = nullptr;  ///< Where the steps of the handshake queue; null: nowhere.
 };
 
 template <class Then>
@@ -57,11 +59,19 @@ void Stream::Secret::shake(const Sealed& done) {
   }
   pump();
   hear([me = shared_from_this(), done](error_code failed) {
-    if (!failed) return me->shake(done);
+    if (!failed) return me->shake_in_turn(done);
     done({Error{ErrorCode::Unavailable,
                 {},
                 "hung up during the TLS handshake (" + failed.message() +
                     "); does it speak TLS on this port, and believe our certificate?"}});
+  });
+}
+
+void Stream::Secret::shake_in_turn(const Sealed& done) {
+  if (turns == nullptr) return shake(done);
+  turns->take([me = shared_from_this(), done] {
+    if (me->socket.is_open()) return me->shake(done);
+    done({Error{ErrorCode::Unavailable, {}, "closed during the TLS handshake"}});
   });
 }
 
@@ -118,9 +128,9 @@ void Stream::seal_as_client(const tls::Trust& trust, const std::string& host, Se
   secret_->shake(done);
 }
 
-void Stream::seal_as_server(const tls::Identity& identity, Sealed done) {
+void Stream::seal_as_server(const tls::Identity& identity, Turns& turns, Sealed done) {
   socket_.async_wait(
-      Socket::wait_read, [this, identity, done = std::move(done)](error_code broken) {
+      Socket::wait_read, [this, identity, &turns, done = std::move(done)](error_code broken) {
         char first = 0;
         if (!broken) socket_.non_blocking(true, broken);
         if (!broken)
@@ -129,6 +139,7 @@ void Stream::seal_as_server(const tls::Identity& identity, Sealed done) {
           return done({Error{ErrorCode::Unavailable, {}, "hung up before the TLS handshake"}});
         if (!tls::begins_tls(first)) return done({.plain = true});
         secret_ = std::make_shared<Secret>(std::move(socket_), tls::Seal::of_server(identity));
+        secret_->turns = &turns;
         secret_->shake(done);
       });
 }

@@ -16,6 +16,7 @@
 
 #include "common/base/error.h"
 #include "common/net/asio.h"
+#include "common/net/turns.h"
 #include "common/tls/credentials.h"
 
 namespace chorus::net {
@@ -42,7 +43,9 @@ class Stream {
 
   /// Seal a connected socket.  These functions have no time-out: to give up, call close().
   void seal_as_client(const tls::Trust& trust, const std::string& host, Sealed done);
-  void seal_as_server(const tls::Identity& identity, Sealed done);
+  /// The steps of the handshake, each of which computes for a while, take turns with those of other
+  /// streams, so that many handshakes at once do not hold up whoever is connected.
+  void seal_as_server(const tls::Identity& identity, Turns& turns, Sealed done);
   [[nodiscard]] bool sealed() const { return secret_ != nullptr; }
 
   [[nodiscard]] executor_type get_executor() { return socket().get_executor(); }

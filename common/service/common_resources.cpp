@@ -13,6 +13,7 @@
 #include "common/resource/node.h"
 #include "common/resource/place.h"
 #include "common/service/metrics.h"
+#include "common/service/thing_description.h"
 #include "common/time/ntp_status.h"
 #include "proto/embedded.h"
 
@@ -106,6 +107,21 @@ DocumentPtr void_document() {
   return resource::document_of(std::move(node), std::move(options), place);
 }
 
+/// The description for the Web of Things, as this client needs it: with the address by which it
+/// asks.
+Result<DocumentPtr> thing_document(const Self& self, const http::Router& router,
+                                   const Request& request) {
+  const auto text = std::make_shared<const std::string>(thing_description(
+      self, router, {request.root, request.guards_reading, request.guards_writing}));
+  DocumentOptions options;
+  options.version = version_of(*text);
+  std::vector<Variant> variants;
+  for (const char* type : {"application/td+json", "application/json"})
+    variants.push_back({type, [text] { return *text; }});
+  return std::make_shared<const http::Document>(linked(std::move(variants), Kind::Other),
+                                                std::move(options));
+}
+
 void add_fixed(http::Router& router) {
   serve(router, "/openapi.json",
         fixed_document({"application/json", "application/vnd.oai.openapi+json"},
@@ -141,6 +157,11 @@ void add_routes(http::Router& router, const CommonResources& options) {
                });
   }
   add_fixed(router);
+  if (!options.self) return;
+  router.get("/.well-known/wot",
+             [&router, self = options.self](const Request& request, const PathParams&) {
+               return thing_document(self(), router, request);
+             });
 }
 
 }  // namespace chorus::service

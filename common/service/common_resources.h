@@ -1,5 +1,6 @@
 // The resources that every Chorus service has in the same form:
 // /clock /healthz /metrics /openapi.json /ns /shapes /context.jsonld /.well-known/void
+// /.well-known/wot
 #pragma once
 
 #include <functional>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "common/http/router.h"
+#include "common/service/self_description.h"
 #include "common/time/clock.h"
 
 namespace chorus::service {
@@ -22,8 +24,12 @@ struct CommonResources {
   std::function<Health()> health;      ///< Empty: always ready.
   /// Returns the complete Prometheus text (metrics.h); empty: there is no /metrics.
   std::function<std::string()> metrics;
+  /// What the service is and has at present; empty: there is no /.well-known/wot.
+  std::function<Self()> self;
 };
 
+/// Call it when all other routes have been added.  The router must stay where it is, because its
+/// Thing Description tells what it answers.
 void add_routes(http::Router& router, const CommonResources& options);
 
 }  // namespace chorus::service

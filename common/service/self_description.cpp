@@ -21,15 +21,10 @@ std::vector<Listed> everywhere() {
           {"healthz", "", "whether frames are coming"},
           {"metrics", "", "counters for Prometheus"},
           {"openapi.json", "endpointDescription", "the interface for tools"},
+          {".well-known/wot", "", "the interface for the Web of Things"},
           {"ns", "", "the vocabulary"},
           {"shapes", "", "what valid Turtle looks like (SHACL)"},
           {"context.jsonld", "", "the JSON-LD context"}};
-}
-
-std::vector<Listed> all_of(const Self& self) {
-  std::vector<Listed> all = self.resources;
-  for (Listed& one : everywhere()) all.push_back(std::move(one));
-  return all;
 }
 
 constexpr std::string_view kPageStart =
@@ -49,6 +44,12 @@ constexpr std::string_view kPageEnd =
 
 }  // namespace
 
+std::vector<Listed> all_resources(const Self& self) {
+  std::vector<Listed> all = self.resources;
+  for (Listed& one : everywhere()) all.push_back(std::move(one));
+  return all;
+}
+
 Node self_node(const Self& self) {
   Node node{"", {self.type, "ldp:BasicContainer", "dcat:DataService"}, {}};
   auto& say = node.properties;
@@ -57,7 +58,7 @@ Node self_node(const Self& self) {
   say.insert(say.end(), self.facts.begin(), self.facts.end());
   say.emplace_back("endpointURL", Ref{""});
   std::vector<Ref> contains;
-  for (const Listed& one : all_of(self)) {
+  for (const Listed& one : all_resources(self)) {
     if (!one.key.empty()) say.emplace_back(one.key, Ref{one.path});
     contains.push_back({one.path});
   }
@@ -70,7 +71,7 @@ std::string self_page(const Self& self) {
   const std::string name = http::escaped_html(self.title);
   page += "<title>" + name + "</title></head><body>\n<h1>" + name + "</h1>\n<p>";
   page += http::escaped_html(self.description) + "</p>\n<table>\n";
-  for (const Listed& one : all_of(self)) {
+  for (const Listed& one : all_resources(self)) {
     const std::string path = http::escaped_html(one.path);
     page += "<tr><td><a href=\"" + path + "\">/" + path + "</a></td><td>" +
             http::escaped_html(one.what) + "</td></tr>\n";
@@ -90,7 +91,9 @@ http::DocumentPtr self_document(const Self& self, const Serving& serving,
   variants.push_back({"text/html; charset=utf-8", [self] { return self_page(self); }});
   http::DocumentOptions options;
   options.version = version + "." + serving.run;
-  options.headers = {{"Link", "</openapi.json>; rel=\"service-desc\""}};
+  options.headers = {
+      {"Link", "</openapi.json>; rel=\"service-desc\""},
+      {"Link", "</.well-known/wot>; rel=\"describedby\"; type=\"application/td+json\""}};
   return std::make_shared<const http::Document>(
       resource::linked(std::move(variants), resource::Kind::Container), std::move(options));
 }

@@ -28,6 +28,9 @@ struct Self {
   std::vector<Listed> resources;
 };
 
+/// All resources of the service: its own, and those that every service has.
+[[nodiscard]] std::vector<Listed> all_resources(const Self& self);
+
 /// A DCAT data service and LDP container whose links lead to every joint of every body:
 /// / -> skeletons/ -> skeletons/1 -> #Head.
 [[nodiscard]] resource::Node self_node(const Self& self);

@@ -204,6 +204,9 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   common.metrics = [this] {
     return rest::metrics_text(status_now(), sinks, http->counters()) + recordings->metrics_text();
   };
+  common.self = [self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty())] {
+    return self;
+  };
   service::add_routes(*router, common);
   return router;
 }

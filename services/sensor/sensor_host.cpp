@@ -103,6 +103,7 @@ std::shared_ptr<http::Router> SensorHost::routes() {
   options.metrics = [this] {
     return metrics_text(service_.counters(), server_.counters()) + recordings_.metrics_text();
   };
+  options.self = [this] { return service_.description(); };
   service::add_routes(*router, options);
   return router;
 }

@@ -69,6 +69,8 @@ class SensorService {
   /// For a separate thread: blocks until images are due and encodes them; false when told to stop.
   bool encode_next(const std::stop_token& stop) noexcept;
 
+  /// What this sensor is and has at present.
+  [[nodiscard]] service::Self description() const { return self_of(options_, images_.allowed()); }
   [[nodiscard]] service::Health health() const;
   [[nodiscard]] ServiceCounters counters() const;
 

@@ -70,6 +70,11 @@ class Promises(unittest.TestCase):
                 self.assertRegex(text, r"\nSystemCallFilter=.*adjtimex")
                 self.assertNotIn("ProtectClock", text)
 
+    def test_a_busy_host_does_not_pause_fusion(self):
+        text = (ROOT / "deploy/package/chorus-fusion.service").read_text(encoding="utf-8")
+        for line in ("CPUWeight=1000", "Nice=-10"):
+            self.assertIn(f"\n{line}\n", text)
+
 
 if __name__ == "__main__":
     unittest.main()

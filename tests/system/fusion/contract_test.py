@@ -1,9 +1,11 @@
 """The services answer as proto/openapi.json specifies: statuses and media types of every GET."""
 import json
 import unittest
-from urllib.parse import quote
+from urllib.parse import quote, urljoin
 
 from rig import BIN, ROOT, Rig, get, get_json
+
+import thing_rules  # in tests/support, which rig adds to the path
 
 DOCUMENT = json.loads((ROOT / "proto/openapi.json").read_text(encoding="utf-8"))
 GETS = {path: methods["get"]["responses"] for path, methods in DOCUMENT["paths"].items() if "get" in methods}
@@ -31,12 +33,37 @@ class Contract(Rig):
                         if accept in types:
                             self.assertEqual(bare(headers), accept)
 
+    def check_thing(self, service, properties, actions, events):
+        """The Thing Description keeps the rules, has at least these parts, and its forms hold."""
+        status, headers, body = get(service.url + ".well-known/wot", accept="application/td+json")
+        self.assertEqual((status, bare(headers)), (200, "application/td+json"))
+        thing = json.loads(body)
+        self.assertEqual(list(thing_rules.faults(thing)), [])
+        self.assertEqual(thing["base"], service.url)
+        for kind, names in (("properties", properties), ("actions", actions), ("events", events)):
+            self.assertLessEqual(names, set(thing[kind]), kind)
+        for name, one in thing["properties"].items():
+            for form in one["forms"]:
+                if "{" in form["href"]:
+                    continue
+                with self.subTest(property=name, type=form["contentType"]):
+                    status, headers, _ = get(urljoin(thing["base"], form["href"]), accept=form["contentType"])
+                    self.assertIn(status, (200, 503))
+                    if status == 200:
+                        self.assertEqual(bare(headers), form["contentType"])
+        self.assertIn('</.well-known/wot>; rel="describedby"', ", ".join(get(service.url)[1].get_all("Link")))
+        broken = {**thing, "security": "none", "events": {"frame": {"forms": []}}}
+        self.assertEqual(len(list(thing_rules.faults(broken))), 2, "the rules bite")
+
     def test_fusion_keeps_it(self):
         sensor = self.sensor(0)
         fusion = self.fusion({"s1": sensor.url}, viewer_dir=str(ROOT / "services/viewer"))
         plain = {path: path for path in GETS if "{" not in path and not path.startswith("/images/")}
         self.check(fusion, plain | {"/sensors/{id}": "/sensors/s1", "/sensors/{id}/frame": "/sensors/s1/frame",
                                     "/frames/{seq}": f"/frames/{get_json(fusion.url + 'frame')['sequence']}"})
+        self.check_thing(fusion, {"frame", "skeletons", "skeleton", "floorPlane", "sensors", "registration", "health", "clock"},
+                         {"startRegistration", "cancelRegistrationSession", "moveOrigin", "startRecording"},
+                         {"frame", "sensors", "registration"})
         self.check(fusion, {"/sensors/{id}": "/sensors/none", "/frames/{seq}": "/frames/1", "/recordings/{name}": "/recordings/none"})
         for at, expected in (("yesterday", 400), ("2001-01-01T00:00:00Z", 410)):
             status = get(fusion.url + "frame?at=" + quote(at))[0]
@@ -51,6 +78,7 @@ class Contract(Rig):
         sensor = self.sensor(0, images="true")
         self.check(sensor, {path: path for path in GETS if "{" not in path and path not in
                             ("/sensors/", "/registration", "/viewer/")})
+        self.check_thing(sensor, {"frame", "skeletons", "floorPlane", "colorImage", "depthImage", "health"}, {"startRecording"}, {"frame"})
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """The server behind a real nginx on the same host, in its simplest configuration: the token is still required."""
 import http.client
+import json
 import pathlib
 import shutil
 import subprocess
@@ -81,6 +82,14 @@ class BehindAProxy(Rig):
         port = self.proxy(fusion.port, "proxy_set_header X-Forwarded-For $proxy_add_x_forwarded_for;")
         self.assertEqual(ask(port, "GET", "/frame")[0], 200)
         self.assertEqual(ask(port, "POST", "/registration")[0], 403)
+
+    def test_a_listed_proxy_says_by_what_address_it_was_asked(self):
+        more = "proxy_set_header Host $http_host; proxy_set_header X-Forwarded-Proto https;"
+        for proxies, scheme in (('["127.0.0.1"]', "https"), ("[]", "http")):
+            fusion = self.tracker(**{"http.trusted_proxies": proxies})
+            port = self.proxy(fusion.port, more)
+            thing = json.loads(ask(port, "GET", "/.well-known/wot")[1])
+            self.assertEqual(thing["base"], f"{scheme}://127.0.0.1:{port}/", "only a listed proxy is believed")
 
     def test_the_name_that_a_proxy_hands_on_has_to_be_ours(self):
         fusion = self.tracker(**{"http.hosts": '["tracker.example"]'})

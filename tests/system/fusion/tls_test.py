@@ -88,6 +88,7 @@ class Tls(Rig):
         fusion = self.secure_fusion(self.secure_sensor())
         self.wait_live(fusion)
         self.assertEqual(self.state(fusion)["transport"], "stream")
+        self.assertEqual(self.get_json(fusion.url + ".well-known/wot")["base"], fusion.url)
         self.assertIn("s1", self.chorus("status", "--url", fusion.url))
         refused = self.chorus("status", "--url", fusion.url.replace("https", "http"), check=False)
         self.assertIn("https://", refused)

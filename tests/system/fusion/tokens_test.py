@@ -31,6 +31,9 @@ class Tokens(Rig):
     def test_the_tracker_is_let_in_with_its_token_and_without_it_says_what_is_wrong(self):
         url = self.guarded_sensor()
         self.assertEqual(get(url + "frame")[0], 401)
+        self.assertEqual(get(url + ".well-known/wot")[0], 401, "what there is, is for readers")
+        thing = get_json(url + ".well-known/wot", headers={"Authorization": f"Bearer {READER}"})
+        self.assertEqual((thing["security"], thing["actions"]["startRecording"]["forms"][0]["security"]), (["read"], ["control"]))
         config = self.write(url=url, token="another-token")
         fusion = Process("chorus-fusion", "--config", config, "--port", str(free_port()), "--log-level", "debug")
         self.processes.append(fusion)

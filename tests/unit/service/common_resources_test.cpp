@@ -17,7 +17,8 @@ using ::testing::StartsWith;
 class EndpointTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    add_routes(router_, {clock_, [this] { return health_; }, [] { return std::string("up 1\n"); }});
+    add_routes(router_,
+               {clock_, [this] { return health_; }, [] { return std::string("up 1\n"); }, {}});
   }
   Result<http::DocumentPtr> get(std::string_view path) const {
     const auto match = router_.match(path);

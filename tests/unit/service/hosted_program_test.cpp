@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/logged.h"
+
 namespace chorus::service {
 namespace {
 
@@ -50,9 +52,7 @@ ConfigReader config(const std::string& text) { return ConfigReader::parse(text, 
 
 /// What a reload with the configuration `text` logs.
 std::string reloaded(HostedProgram<Settings, Host>& program, const std::string& text) {
-  ::testing::internal::CaptureStderr();
-  EXPECT_TRUE(program.reload(config(text)));
-  return ::testing::internal::GetCapturedStderr();
+  return chorus::testing::logged([&] { EXPECT_TRUE(program.reload(config(text))); });
 }
 
 TEST(HostedProgram, TakesTheLivePartAndNamesTheOther) {
