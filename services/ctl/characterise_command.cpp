@@ -11,6 +11,7 @@
 
 #include "fusion-server/client/recordings.h"
 #include "fusion-server/pipeline/offline.h"
+#include "fusion-server/server/registration_store.h"
 #include "services/ctl/characterise_report.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
@@ -97,26 +98,38 @@ Tracks in_step(const Tracks& tracks, const Registration& registration) {
   return placed;
 }
 
-/// All sensors together, registered from the walk; without a walk in the places that were recorded.
+/// The places that were recorded, or lie beside the recordings.
+Result<std::optional<Registration>> given_places(const RecordedCell& cell,
+                                                 const std::vector<std::filesystem::path>& files) {
+  auto recorded = cell.registration();
+  if (!recorded || *recorded) return recorded;
+  const auto beside = registration_beside(files);
+  if (!beside) return pass(beside);
+  if (!*beside) return std::optional<Registration>();
+  return server::load_registration_file((*beside)->string());
+}
+
+/// All sensors together: the depth bias from their walk; how they differ in the places that are
+/// given, else in those of the walk.
 Result<void> measure_together(RecordedCell& cell, const Recorded& recorded,
-                              pipeline::OfflineConfig config, SensorReport& report) {
+                              pipeline::OfflineConfig config,
+                              const std::optional<Registration>& given, SensorReport& report) {
   if (config.registration.depth_bias_sigma == 0.0) config.registration.depth_bias_sigma = kOpenBias;
-  auto walked = pipeline::register_recordings(cell.input(), config);
-  auto given = cell.registration();
-  if (!given) return pass(given);
+  const auto walked = pipeline::register_recordings(cell.input(), config);
   if (!walked) {
     report.notes.push_back("depth bias: " + to_string(walked.error()) +
                            "; it takes a walk, or a tape and one sensor (--sensor, --distance)");
-    if (!*given) return {};
+    if (!given) return {};
   }
-  const Registration& registration = walked ? *walked : **given;
+  const Registration& registration = given ? *given : *walked;
   const Tracks placed = in_step(recorded.tracks, registration);
   std::vector<characteristics::PlacedTrack> tracks;
   for (const auto& [sensor, frames] : placed)
     tracks.push_back({registration.sensors.at(sensor).world_from_sensor, &frames});
   report.measured.agreement = characteristics::agreement_of(tracks);
-  if (const auto& bias = registration.depth_bias)
-    report.measured.walked_bias = characteristics::DepthBias{bias->bias, bias->sigma};
+  if (walked && walked->depth_bias)
+    report.measured.walked_bias =
+        characteristics::DepthBias{walked->depth_bias->bias, walked->depth_bias->sigma};
   return {};
 }
 
@@ -173,7 +186,10 @@ Result<SensorReport> measured(const CharacteriseArguments& arguments,
   report.notes = std::move(recorded->notes);
   measure_each(*recorded, arguments, report);
   if (recorded->tracks.size() > 1) {
-    if (auto ok = measure_together(*cell, *recorded, config, report); !ok) return pass(ok);
+    const auto given = given_places(*cell, *files);
+    if (!given) return pass(given);
+    const auto done = measure_together(*cell, *recorded, config, *given, report);
+    if (!done) return pass(done);
   }
   const Measured& all = report.measured;
   if (all.sensors.empty() && !all.agreement && !all.walked_bias)

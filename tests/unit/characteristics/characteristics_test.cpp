@@ -149,10 +149,11 @@ TEST(Coverage, CountsFramesThatAreMissing) {
 TEST(Refusal, SaysWhatToRecordInstead) {
   EXPECT_THAT(refusal_of({}), HasSubstr("saw nobody"));
   TurnSpec brief;
-  brief.seconds = 9;
-  EXPECT_THAT(refusal_of(record_turn(brief)), HasSubstr("record at least 10 s"));
+  brief.seconds = 4;
+  brief.turn = 0;
+  EXPECT_THAT(refusal_of(record_turn(brief)), HasSubstr("record at least 5 s"));
   TurnSpec walking;
-  walking.walks = 0.9;
+  walking.walks = 2.0;
   EXPECT_THAT(refusal_of(record_turn(walking)), HasSubstr("stays on one spot"));
   auto two = record_turn({});
   for (SensorFrame& frame : two) frame.bodies.push_back(frame.bodies.front());
