@@ -37,6 +37,7 @@ struct CharacteriseArguments {
   std::string sensor;
   double distance = 0.0;
   double distance_sigma = 0.01;
+  std::vector<std::string> turns;
   std::string out;
   OfflineOptions options;
   bool json = false;
@@ -67,14 +68,35 @@ Result<Recorded> frames_of(RecordedCell& cell, const std::string& only) {
   return recorded;
 }
 
-/// Each sensor by itself; those that cannot be measured become notes.
-void measure_each(const Recorded& recorded, const CharacteriseArguments& arguments,
-                  SensorReport& report) {
-  std::optional<characteristics::Mark> mark;
+/// "4,28" as seconds.
+Result<characteristics::KnownTurn> known_turn(const std::string& text) {
+  characteristics::KnownTurn turn;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, comma), turn.from) ||
+      !CLI::detail::lexical_cast(text.substr(comma + 1), turn.to) || !(turn.to > turn.from))
+    return fail(ErrorCode::InvalidArgument, "--turn",
+                "write it as 4,28: seconds from the first frame at which one whole turn began and "
+                "ended");
+  return turn;
+}
+
+Result<characteristics::Known> known_of(const CharacteriseArguments& arguments) {
+  characteristics::Known known;
   if (arguments.distance > 0.0)
-    mark = characteristics::Mark{arguments.distance, arguments.distance_sigma};
+    known.mark = characteristics::Mark{arguments.distance, arguments.distance_sigma};
+  for (const std::string& text : arguments.turns) {
+    const auto turn = known_turn(text);
+    if (!turn) return pass(turn);
+    known.turns.push_back(*turn);
+  }
+  return known;
+}
+
+/// Each sensor by itself; those that cannot be measured become notes.
+void measure_each(const Recorded& recorded, const characteristics::Known& known,
+                  SensorReport& report) {
   for (const auto& [sensor, frames] : recorded.tracks) {
-    auto found = characteristics::characterise(frames, mark);
+    auto found = characteristics::characterise(frames, known);
     if (found) {
       report.measured.sensors.push_back(std::move(*found));
     } else {
@@ -174,6 +196,8 @@ Result<void> fill(const std::string& folder, const SensorReport& report) {
 
 Result<SensorReport> measured(const CharacteriseArguments& arguments,
                               const pipeline::OfflineConfig& config) {
+  const auto known = known_of(arguments);
+  if (!known) return pass(known);
   const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   auto cell = RecordedCell::open(*files);
@@ -184,7 +208,7 @@ Result<SensorReport> measured(const CharacteriseArguments& arguments,
   SensorReport report;
   report.source = arguments.inputs.front();
   report.notes = std::move(recorded->notes);
-  measure_each(*recorded, arguments, report);
+  measure_each(*recorded, *known, report);
   if (recorded->tracks.size() > 1) {
     const auto given = given_places(*cell, *files);
     if (!given) return pass(given);
@@ -234,6 +258,12 @@ Run add_characterise(CLI::App& options) {
                   "How well that was measured, as a standard deviation [m]")
       ->check(number_range(0.0005, 0.5))
       ->capture_default_str();
+  options
+      .add_option("--turn", arguments->turns,
+                  "When one whole, even turn began and ended, in seconds from the first frame, as "
+                  "in 4,28; may be repeated. Without it the shoulders are followed")
+      ->take_all()
+      ->allow_extra_args(false);
   options.add_option("--out", arguments->out,
                      "Folder to write: report.txt, report.json, fusion-profile.json, "
                      "sensor-profile.json");
