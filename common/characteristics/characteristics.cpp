@@ -31,11 +31,10 @@ Noise with_factor(const JitterCell& tracked, const Jitter& jitter) {
 
 }  // namespace
 
-Result<Characteristics> characterise(const std::vector<SensorFrame>& frames,
-                                     const std::optional<Mark>& mark) {
+Result<Characteristics> characterise(const std::vector<SensorFrame>& frames, const Known& known) {
   const auto person = one_person(frames);
   if (!person) return pass(person);
-  const std::vector<Stance> stances = stances_of(*person);
+  const std::vector<Stance> stances = stances_of(*person, known.turns);
   Characteristics found;
   found.sensor = person->sensor;
   found.seconds = chorus::seconds(person->frames.back() - person->frames.front());
@@ -47,8 +46,8 @@ Result<Characteristics> characterise(const std::vector<SensorFrame>& frames,
   found.exchange = exchange_of(*person, stances);
   found.coverage = coverage_of(*person);
   found.no_depth_bias = kNoMark;
-  if (!mark) return found;
-  const auto bias = depth_bias_by(*mark, *person, stances);
+  if (!known.mark) return found;
+  const auto bias = depth_bias_by(*known.mark, *person, stances);
   if (!bias) return pass(bias);
   found.depth_bias = *bias;
   found.no_depth_bias.clear();

@@ -25,9 +25,15 @@ struct Characteristics {
   std::string no_depth_bias;            ///< Why there is none, and how to measure it.
 };
 
+/// What is known besides the recording.
+struct Known {
+  std::optional<Mark> mark = {};
+  std::vector<KnownTurn> turns = {};
+};
+
 /// Refuses as one_person() does.
 [[nodiscard]] Result<Characteristics> characterise(const std::vector<SensorFrame>& frames,
-                                                   const std::optional<Mark>& mark = {});
+                                                   const Known& known = {});
 
 /// The noise of a tracked joint, in the terms of fusion.noise.
 struct Noise {

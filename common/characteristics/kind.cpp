@@ -26,7 +26,7 @@ FrontRear front_rear_of(const std::vector<Characteristics>& sensors) {
   FrontRear common = FrontRear::Unknown;
   for (const Characteristics& sensor : sensors) {
     const FrontRear own = sensor.exchange.front_rear;
-    if (own == FrontRear::Unknown || own == common) continue;
+    if (own == FrontRear::Unknown || own == FrontRear::Unclear || own == common) continue;
     common = common == FrontRear::Unknown ? own : FrontRear::Mixed;
   }
   return common;

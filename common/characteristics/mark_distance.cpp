@@ -83,7 +83,7 @@ JointBias fit(const Shortfall& shortfall) {
   return joint;
 }
 
-/// Mean and standard deviation.
+/// Values and their mean.
 struct Spread {
   double sum = 0.0, squares = 0.0, count = 0.0;
   void add(double value) {
@@ -92,9 +92,10 @@ struct Spread {
     ++count;
   }
   [[nodiscard]] double mean() const { return count > 0 ? sum / count : 0.0; }
-  [[nodiscard]] double deviation() const {
+  /// Standard deviation of the mean.
+  [[nodiscard]] double error() const {
     if (count < 2) return 0.0;
-    return std::sqrt(std::max(0.0, (squares - sum * sum / count) / (count - 1)));
+    return std::sqrt(std::max(0.0, (squares - sum * sum / count) / (count - 1)) / count);
   }
 };
 
@@ -112,7 +113,6 @@ Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
                 "states no floor plane, so that a distance along the floor cannot be compared with "
                 "its own: give the plane when importing (--floor)");
   Spread joints;
-  Spread views;
   std::array<Spread, 3> parts;
   for (const JointId id : kSpine) {
     const Shortfall shortfall = shortfall_of(id, mark.distance, person, stances);
@@ -121,7 +121,6 @@ Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
     joints.add(joint.bias);
     for (std::size_t i = 0; i < kSectors; ++i) {
       if (!shortfall.known(i)) continue;
-      views.add(joint.left[i]);
       part_of(parts, i).add(joint.left[i]);
     }
   }
@@ -129,8 +128,12 @@ Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
     return fail(ErrorCode::InvalidArgument, person.sensor.str(),
                 "did not see the person from all sides: stay on the mark and turn once, within 20 "
                 "to 60 s");
-  const double spread = std::hypot(joints.deviation(), views.deviation());
-  return DepthBias{joints.mean(), std::hypot(mark.sigma, spread), parts[0].mean(), parts[1].mean(),
+  Spread sides;
+  for (const Spread& part : parts) {
+    if (part.count > 0) sides.add(part.mean());
+  }
+  const double sigma = std::hypot(joints.error(), sides.error());
+  return DepthBias{joints.mean(), std::hypot(mark.sigma, sigma), parts[0].mean(), parts[1].mean(),
                    parts[2].mean()};
 }
 

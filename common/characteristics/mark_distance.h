@@ -26,7 +26,8 @@ struct Mark {
 /// How much nearer than they are joints are reported, along the line of sight [m].
 struct DepthBias {
   double bias = 0.0;
-  /// What a walk meets: the tape, and how much joints and views differ (1 sigma).
+  /// Of the mean over joints and sides: of the tape, and by how much joints, and the front, the
+  /// side and the rear of a person, differ (1 sigma).
   double sigma = 0.0;
   double front = 0.0, side = 0.0, rear = 0.0;  ///< By where the person's front is.
 };

@@ -22,7 +22,7 @@ struct Sight {
 /// A trunk slower than this belongs to somebody who stands or turns on the spot [m/s].
 inline constexpr double kStandingSpeed = 0.25;
 /// The least time of standing that is measured [s].
-inline constexpr double kLeastStanding = 10.0;
+inline constexpr double kLeastStanding = 5.0;
 
 /// Frames farther apart than this many usual steps have a gap between them.
 inline constexpr double kUsualStep = 1.5;

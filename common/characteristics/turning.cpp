@@ -24,6 +24,8 @@ constexpr double kRateOver = 0.5;        // time over which the rate is taken, t
 constexpr double kFastest = deg(120);    // people who turn on the spot [rad/s]
 constexpr double kTurnJump = deg(20);    // by which shoulders err from sight to sight [rad]
 constexpr double kShortest = 1e-3;       // [s]
+constexpr double kWayShare = 1.0 / 12;   // of a turn: 30 deg
+constexpr double kAtTheEnd = 1.0;        // [s]
 constexpr double kNarrowest = 0.12;      // narrower shoulders have no direction [m]
 
 /// The angle of the front as shown; none where the shoulders are too narrow to have one.
@@ -98,6 +100,30 @@ void bridge_sides(std::vector<Followed>& all) {
   }
 }
 
+/// Which way a known turn goes, by what is shown of its first 30 degrees.
+double way_of(const KnownTurn& turn, const std::vector<Followed>& all) {
+  const double early = turn.from + kWayShare * (turn.to - turn.from);
+  double before = 0.0;
+  double sum = 0.0;
+  for (const Followed& each : all) {
+    if (each.time <= turn.from) before = each.shown;
+    if (each.time > turn.from && each.time < early) sum += wrap_angle(each.shown - before);
+  }
+  return sum < 0 ? -1.0 : 1.0;
+}
+
+void turn_as_known(std::vector<Followed>& all, const std::vector<KnownTurn>& turns) {
+  std::vector<double> angles(all.size(), 0.0);
+  for (const KnownTurn& turn : turns) {
+    const double way = way_of(turn, all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double share = (all[i].time - turn.from) / std::max(kShortest, turn.to - turn.from);
+      angles[i] += way * 2 * kPi * std::clamp(share, 0.0, 1.0);
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].angle = angles[i];
+}
+
 /// Takes short changes of labels back.
 void without_slips(std::vector<Stance>& stances, const OnePerson& person) {
   std::vector<std::size_t> known;
@@ -158,6 +184,19 @@ std::optional<double> share_between(const Exchange& exchange, double least, doub
   return exchanged / lasts;
 }
 
+/// Whether the last second is of somebody who faces the sensor, with the labels as at first.
+bool ends_facing(const OnePerson& person, const std::vector<Stance>& stances) {
+  std::size_t all = 0;
+  std::size_t facing = 0;
+  const Timestamp late = person.sights.back().at - from_seconds(kAtTheEnd);
+  for (std::size_t i = 0; i < stances.size(); ++i) {
+    if (person.sights[i].at < late || !stances[i].angle) continue;
+    ++all;
+    facing += away_from_sensor(*stances[i].angle) < kBehind ? 1 : 0;
+  }
+  return 2 * facing >= all;
+}
+
 FrontRear judged(const Exchange& exchange) {
   const auto behind = share_between(exchange, kBehind, kPi);
   const auto front = share_between(exchange, 0.0, kInFront);
@@ -171,10 +210,14 @@ FrontRear judged(const Exchange& exchange) {
 
 double away_from_sensor(double angle) { return std::abs(wrap_angle(angle)); }
 
-std::vector<Stance> stances_of(const OnePerson& person) {
+std::vector<Stance> stances_of(const OnePerson& person, const std::vector<KnownTurn>& turns) {
   std::vector<Followed> all = follow(person);
-  fill_in(all);
-  bridge_sides(all);
+  if (turns.empty()) {
+    fill_in(all);
+    bridge_sides(all);
+  } else {
+    turn_as_known(all, turns);
+  }
   std::vector<Stance> stances(person.sights.size());
   for (const Followed& each : all)
     stances[each.sight] = {each.angle, std::cos(each.shown - each.angle) < 0};
@@ -200,7 +243,7 @@ Exchange exchange_of(const OnePerson& person, const std::vector<Stance>& stances
     }
     last = i;
   }
-  exchange.front_rear = judged(exchange);
+  exchange.front_rear = ends_facing(person, stances) ? judged(exchange) : FrontRear::Unclear;
   return exchange;
 }
 

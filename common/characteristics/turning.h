@@ -25,8 +25,18 @@ struct Stance {
   bool exchanged = false;  ///< Left and right are exchanged, if there is an angle.
 };
 
+/// A whole turn that is known to be even, as on a turntable: seconds since the first frame.
+struct KnownTurn {
+  double from = 0.0;
+  double to = 0.0;
+};
+
 /// One for each sight.  The person must face the sensor, within 90 deg, when the recording begins.
-[[nodiscard]] std::vector<Stance> stances_of(const OnePerson& person);
+/// If turns are known, they alone are the angle; which way each goes is seen from its beginning.
+/// They are needed for trackers that turn the body back when they take a side for a front: of such
+/// a turn the shoulders never show the rear.
+[[nodiscard]] std::vector<Stance> stances_of(const OnePerson& person,
+                                             const std::vector<KnownTurn>& turns = {});
 
 /// The angle of a stance without its turns and its sign: 0 (facing the sensor) to pi.
 [[nodiscard]] double away_from_sensor(double angle);
@@ -44,6 +54,7 @@ enum class FrontRear {
   Tells,           ///< Labels are right from behind.
   TakesForFacing,  ///< Labels are exchanged from behind, as if everybody faced the sensor.
   Mirrored,        ///< Labels are exchanged in front: a mirrored picture.
+  Unclear,         ///< The person ends in another direction than facing the sensor, it seems.
   Mixed,           ///< Now this, now that.
 };
 

@@ -11,6 +11,7 @@
 
 #include "fusion-server/client/recordings.h"
 #include "fusion-server/pipeline/offline.h"
+#include "fusion-server/server/registration_store.h"
 #include "services/ctl/characterise_report.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
@@ -36,6 +37,7 @@ struct CharacteriseArguments {
   std::string sensor;
   double distance = 0.0;
   double distance_sigma = 0.01;
+  std::vector<std::string> turns;
   std::string out;
   OfflineOptions options;
   bool json = false;
@@ -66,14 +68,35 @@ Result<Recorded> frames_of(RecordedCell& cell, const std::string& only) {
   return recorded;
 }
 
-/// Each sensor by itself; those that cannot be measured become notes.
-void measure_each(const Recorded& recorded, const CharacteriseArguments& arguments,
-                  SensorReport& report) {
-  std::optional<characteristics::Mark> mark;
+/// "4,28" as seconds.
+Result<characteristics::KnownTurn> known_turn(const std::string& text) {
+  characteristics::KnownTurn turn;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, comma), turn.from) ||
+      !CLI::detail::lexical_cast(text.substr(comma + 1), turn.to) || !(turn.to > turn.from))
+    return fail(ErrorCode::InvalidArgument, "--turn",
+                "write it as 4,28: seconds from the first frame at which one whole turn began and "
+                "ended");
+  return turn;
+}
+
+Result<characteristics::Known> known_of(const CharacteriseArguments& arguments) {
+  characteristics::Known known;
   if (arguments.distance > 0.0)
-    mark = characteristics::Mark{arguments.distance, arguments.distance_sigma};
+    known.mark = characteristics::Mark{arguments.distance, arguments.distance_sigma};
+  for (const std::string& text : arguments.turns) {
+    const auto turn = known_turn(text);
+    if (!turn) return pass(turn);
+    known.turns.push_back(*turn);
+  }
+  return known;
+}
+
+/// Each sensor by itself; those that cannot be measured become notes.
+void measure_each(const Recorded& recorded, const characteristics::Known& known,
+                  SensorReport& report) {
   for (const auto& [sensor, frames] : recorded.tracks) {
-    auto found = characteristics::characterise(frames, mark);
+    auto found = characteristics::characterise(frames, known);
     if (found) {
       report.measured.sensors.push_back(std::move(*found));
     } else {
@@ -97,26 +120,38 @@ Tracks in_step(const Tracks& tracks, const Registration& registration) {
   return placed;
 }
 
-/// All sensors together, registered from the walk; without a walk in the places that were recorded.
+/// The places that were recorded, or lie beside the recordings.
+Result<std::optional<Registration>> given_places(const RecordedCell& cell,
+                                                 const std::vector<std::filesystem::path>& files) {
+  auto recorded = cell.registration();
+  if (!recorded || *recorded) return recorded;
+  const auto beside = registration_beside(files);
+  if (!beside) return pass(beside);
+  if (!*beside) return std::optional<Registration>();
+  return server::load_registration_file((*beside)->string());
+}
+
+/// All sensors together: the depth bias from their walk; how they differ in the places that are
+/// given, else in those of the walk.
 Result<void> measure_together(RecordedCell& cell, const Recorded& recorded,
-                              pipeline::OfflineConfig config, SensorReport& report) {
+                              pipeline::OfflineConfig config,
+                              const std::optional<Registration>& given, SensorReport& report) {
   if (config.registration.depth_bias_sigma == 0.0) config.registration.depth_bias_sigma = kOpenBias;
-  auto walked = pipeline::register_recordings(cell.input(), config);
-  auto given = cell.registration();
-  if (!given) return pass(given);
+  const auto walked = pipeline::register_recordings(cell.input(), config);
   if (!walked) {
     report.notes.push_back("depth bias: " + to_string(walked.error()) +
                            "; it takes a walk, or a tape and one sensor (--sensor, --distance)");
-    if (!*given) return {};
+    if (!given) return {};
   }
-  const Registration& registration = walked ? *walked : **given;
+  const Registration& registration = given ? *given : *walked;
   const Tracks placed = in_step(recorded.tracks, registration);
   std::vector<characteristics::PlacedTrack> tracks;
   for (const auto& [sensor, frames] : placed)
     tracks.push_back({registration.sensors.at(sensor).world_from_sensor, &frames});
   report.measured.agreement = characteristics::agreement_of(tracks);
-  if (const auto& bias = registration.depth_bias)
-    report.measured.walked_bias = characteristics::DepthBias{bias->bias, bias->sigma};
+  if (walked && walked->depth_bias)
+    report.measured.walked_bias =
+        characteristics::DepthBias{walked->depth_bias->bias, walked->depth_bias->sigma};
   return {};
 }
 
@@ -161,6 +196,8 @@ Result<void> fill(const std::string& folder, const SensorReport& report) {
 
 Result<SensorReport> measured(const CharacteriseArguments& arguments,
                               const pipeline::OfflineConfig& config) {
+  const auto known = known_of(arguments);
+  if (!known) return pass(known);
   const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   auto cell = RecordedCell::open(*files);
@@ -171,9 +208,12 @@ Result<SensorReport> measured(const CharacteriseArguments& arguments,
   SensorReport report;
   report.source = arguments.inputs.front();
   report.notes = std::move(recorded->notes);
-  measure_each(*recorded, arguments, report);
+  measure_each(*recorded, *known, report);
   if (recorded->tracks.size() > 1) {
-    if (auto ok = measure_together(*cell, *recorded, config, report); !ok) return pass(ok);
+    const auto given = given_places(*cell, *files);
+    if (!given) return pass(given);
+    const auto done = measure_together(*cell, *recorded, config, *given, report);
+    if (!done) return pass(done);
   }
   const Measured& all = report.measured;
   if (all.sensors.empty() && !all.agreement && !all.walked_bias)
@@ -218,6 +258,12 @@ Run add_characterise(CLI::App& options) {
                   "How well that was measured, as a standard deviation [m]")
       ->check(number_range(0.0005, 0.5))
       ->capture_default_str();
+  options
+      .add_option("--turn", arguments->turns,
+                  "When one whole, even turn began and ended, in seconds from the first frame, as "
+                  "in 4,28; may be repeated. Without it the shoulders are followed")
+      ->take_all()
+      ->allow_extra_args(false);
   options.add_option("--out", arguments->out,
                      "Folder to write: report.txt, report.json, fusion-profile.json, "
                      "sensor-profile.json");

@@ -73,6 +73,9 @@ std::string fusion_profile(const SensorReport& report) {
 }
 
 std::string simulation_profile(const SensorReport& report) {
+  if (report.measured.sensors.empty())
+    return head_of(report) +
+           "{\n  // No single sensor could be measured, so every key keeps its default.\n}\n";
   const Kind& kind = report.kind;
   const auto& delivery = kind.delivery;
   // Uniform within +- jitter.

@@ -35,22 +35,31 @@ std::string front_rear_text(const Characteristics& sensor) {
     case FrontRear::Mirrored:
       return "left and right are exchanged in front: is its picture mirrored, or did the person "
              "begin with their back to it?";
+    case FrontRear::Unclear:
+      return "the person seems to end with their back to it, so the turn was not followed: face it "
+             "at the end, or say when each turn began and ended with --turn";
     case FrontRear::Mixed:
       return "from behind, left and right are now right and now exchanged";
     case FrontRear::Unknown:
       break;
   }
   return "nobody turned their back on it for a second, so how it labels left and right from behind "
-         "is not known: record somebody who faces it first and then turns once";
+         "is not known: record somebody who faces it, turns once and faces it again; if they did, "
+         "say when with "
+         "--turn";
+}
+
+bool is_known(FrontRear front_rear) {
+  return front_rear != FrontRear::Unknown && front_rear != FrontRear::Unclear;
 }
 
 std::string exchange_text(const Characteristics& sensor) {
   std::string text = front_rear_text(sensor) + '\n';
   const Exchange& exchange = sensor.exchange;
+  if (!is_known(exchange.front_rear)) return text;
   if (!exchange.out.empty()) text += fmt::format("exchanged at{} deg\n", degrees(exchange.out));
   if (!exchange.back.empty())
     text += fmt::format("changed back at{} deg\n", degrees(exchange.back));
-  if (exchange.front_rear == FrontRear::Unknown) return text;
   std::vector<std::vector<std::string>> rows{{"front away from it [deg]", "turning away [s]",
                                               "exchanged [%]", "turning back [s]",
                                               "exchanged [%]"}};
@@ -149,8 +158,8 @@ nlohmann::json degrees_json(const std::vector<double>& angles) {
   return all;
 }
 
-constexpr std::array<const char*, 5> kFrontRearNames{"unknown", "tells", "takes-for-facing",
-                                                     "mirrored", "mixed"};
+constexpr std::array<const char*, 6> kFrontRearNames{"unknown",  "tells",   "takes-for-facing",
+                                                     "mirrored", "unclear", "mixed"};
 
 const char* front_rear_name(FrontRear front_rear) {
   return kFrontRearNames.at(static_cast<std::size_t>(front_rear));

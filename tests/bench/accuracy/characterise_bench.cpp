@@ -121,7 +121,11 @@ Result<Draw> draw_of(const Scene& scene, const char* profile, std::uint64_t seed
   if (choice.profile != kGaussProfile) choice.draw = seed;
   const auto frames = record(scene, choice, kBegin, kBegin + from_seconds(kLength));
   if (!frames) return pass(frames);
-  const auto found = characteristics::characterise(*frames, characteristics::Mark{kMark, mm(10)});
+  characteristics::Known known{characteristics::Mark{kMark, mm(10)}};
+  if (choice.profile == "C")  // its shoulders never show the rear
+    known.turns = {{kPause, kPause + kTurnTime},
+                   {2 * kPause + kTurnTime, 2 * kPause + 2 * kTurnTime}};
+  const auto found = characteristics::characterise(*frames, known);
   if (!found) return pass(found);
   return Draw{*found, truth_of(scene, *frames)};
 }

@@ -2,11 +2,12 @@
 
 import json
 import statistics
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-from chorus_program import CAMERAS, chorus
+from chorus_program import BIN, CAMERAS, chorus
 
 PLAIN_MEAN_M = 0.104  # fusion must be better than this (tests/data/README.md)
 SETTINGS = ["--config", f"{CAMERAS}/fusion.json"]
@@ -153,6 +154,15 @@ class Offline(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("is what is read here", error)
         self.assertTrue(frames_of(fused))
+
+    def test_profiles_of_real_sensors_load(self):
+        kind = self.at / "kind"
+        code, out, error = chorus("characterise", self.recordings, *SETTINGS, "--out", kind)
+        self.assertEqual(code, 0, error)
+        self.assertIn("as if each erred by", out)
+        for program, profile in (("chorus-fusion", "fusion-profile.json"), ("chorus-sensor", "sensor-profile.json")):
+            done = subprocess.run([BIN / program, "--config", kind / profile, "--check"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_damage_is_told_and_stands_in_the_json(self):
         damaged = self.at / "damaged"

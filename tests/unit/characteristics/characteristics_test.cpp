@@ -91,6 +91,40 @@ TEST(Exchange, NothingIsSaidWhileNobodyTurnsTheirBack) {
   EXPECT_EQ(found_of(spec).exchange.front_rear, FrontRear::Unknown);
 }
 
+/// A tracker that never shows more than 60 deg and slides back to the other side of the front.
+void show_facing(std::vector<SensorFrame>& frames, const TurnSpec& spec) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double angle = turned(spec, static_cast<double>(i) / 15.0);
+    const double heading = deg(180) + deg(60) * std::sin(2 * angle);
+    frames[i].bodies[0].skeleton =
+        testing::body_seen_from(kEye, testing::standing_person({0, 0, kMarkAt}, heading), {})
+            .skeleton;
+  }
+}
+
+TEST(Exchange, AKnownTurnIsBelievedWhereShouldersNeverShowTheRear) {
+  const TurnSpec spec;
+  auto frames = record_turn(spec);
+  show_facing(frames, spec);
+  const auto blind = characterise(frames);
+  ASSERT_THAT(blind, IsOk());
+  EXPECT_NE(blind->exchange.front_rear, FrontRear::TakesForFacing);
+  const auto told = characterise(frames, {.mark = {}, .turns = {{4, 15}, {19, 30}}});
+  ASSERT_THAT(told, IsOk());
+  EXPECT_EQ(told->exchange.front_rear, FrontRear::TakesForFacing);
+}
+
+TEST(Exchange, WhoSeemsToEndWithTheirBackToTheSensorIsUnclear) {
+  TurnSpec spec;
+  spec.turn = deg(180);
+  spec.seconds = 18;
+  auto frames = record_turn(spec);
+  frames.erase(frames.begin() + 140, frames.end());
+  const auto found = characterise(frames);
+  ASSERT_THAT(found, IsOk());
+  EXPECT_EQ(found->exchange.front_rear, FrontRear::Unclear);
+}
+
 TEST(Exchange, AMirroredPictureIsNamed) {
   auto frames = record_turn({});
   for (SensorFrame& frame : frames) exchange(frame.bodies[0].skeleton);
@@ -111,7 +145,7 @@ TEST(DepthBias, IsFoundThoughThePersonStandsOffTheMark) {
   TurnSpec spec;
   spec.bias = mm(24);
   spec.off_mark = {0.03, 0, -0.06};
-  const auto found = characterise(record_turn(spec), Mark{kMarkAt, mm(5)});
+  const auto found = characterise(record_turn(spec), {Mark{kMarkAt, mm(5)}});
   ASSERT_THAT(found, IsOk());
   ASSERT_TRUE(found->depth_bias);
   EXPECT_NEAR(to_mm(found->depth_bias->bias), 24, 2);
@@ -122,12 +156,12 @@ TEST(DepthBias, IsFoundThoughThePersonStandsOffTheMark) {
 TEST(DepthBias, TakesAFloorAndATurn) {
   auto frames = record_turn({});
   for (SensorFrame& frame : frames) frame.floor.reset();
-  const auto floorless = characterise(frames, Mark{kMarkAt});
+  const auto floorless = characterise(frames, {Mark{kMarkAt}});
   ASSERT_FALSE(floorless);
   EXPECT_THAT(to_string(floorless.error()), HasSubstr("no floor plane"));
   TurnSpec spec;
   spec.turn = deg(100);
-  const auto facing = characterise(record_turn(spec), Mark{kMarkAt});
+  const auto facing = characterise(record_turn(spec), {Mark{kMarkAt}});
   ASSERT_FALSE(facing);
   EXPECT_THAT(to_string(facing.error()), HasSubstr("turn once"));
 }
@@ -149,10 +183,11 @@ TEST(Coverage, CountsFramesThatAreMissing) {
 TEST(Refusal, SaysWhatToRecordInstead) {
   EXPECT_THAT(refusal_of({}), HasSubstr("saw nobody"));
   TurnSpec brief;
-  brief.seconds = 9;
-  EXPECT_THAT(refusal_of(record_turn(brief)), HasSubstr("record at least 10 s"));
+  brief.seconds = 4;
+  brief.turn = 0;
+  EXPECT_THAT(refusal_of(record_turn(brief)), HasSubstr("record at least 5 s"));
   TurnSpec walking;
-  walking.walks = 0.9;
+  walking.walks = 2.0;
   EXPECT_THAT(refusal_of(record_turn(walking)), HasSubstr("stays on one spot"));
   auto two = record_turn({});
   for (SensorFrame& frame : two) frame.bodies.push_back(frame.bodies.front());

@@ -47,7 +47,7 @@ TEST(Agreement, OneSensorAgreesWithNobody) {
 
 Measured measured(const TurnSpec& spec, const std::optional<Mark>& mark = {}) {
   Measured all;
-  auto found = characterise(record_turn(spec), mark);
+  auto found = characterise(record_turn(spec), {mark});
   EXPECT_THAT(found, chorus::testing::IsOk());
   if (found) all.sensors.push_back(std::move(*found));
   return all;
