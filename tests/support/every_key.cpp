@@ -30,7 +30,7 @@ constexpr const char* kWords[] = {"s2",
                                   "239.1.2.3",
                                   "/tmp/x.bvh",
                                   "10.0.0.1",
-                                  "tests/data/error_model/head.json"};
+                                  "tests/unit/learn/head_model.json"};
 
 std::vector<json> other_values(const json& value) {
   std::vector<json> others;

@@ -115,7 +115,9 @@ struct Draw {
 };
 
 Result<Draw> draw_of(const Scene& scene, const char* profile, std::uint64_t seed) {
-  SensorChoice choice{*SensorId::parse("s1"), 0, profile};
+  SensorChoice choice;
+  choice.id = *SensorId::parse("s1");
+  choice.profile = profile;
   choice.seed = choice.gauss.seed = seed;
   choice.own_clock = false;
   if (choice.profile != kGaussProfile) choice.draw = seed;

@@ -13,7 +13,8 @@
 #include "common/importers/text_rows.h"
 #include "tests/bench/accuracy/learned_views.h"
 
-namespace chorus::bench {
+// A namespace of its own: other benchmarks have pairs, fits and rates, too.
+namespace chorus::bench::uiprmd {
 namespace {
 
 namespace fs = std::filesystem;
@@ -242,10 +243,8 @@ Samples samples_of(const std::vector<Seen>& all) {
   return samples;
 }
 
-}  // namespace
-
-Result<std::map<std::string, Samples>> uiprmd_samples(const fs::path& folder, bool own_places,
-                                                      std::size_t step) {
+Result<std::map<std::string, std::vector<Seen>>> read_people(const fs::path& folder,
+                                                             std::size_t step) {
   constexpr std::size_t kMovement = 3;  // letters of "m01"
   std::map<std::string, std::vector<Seen>> people;
   for (const auto& file : fs::directory_iterator(folder / "kinect_positions")) {
@@ -263,10 +262,22 @@ Result<std::map<std::string, Samples>> uiprmd_samples(const fs::path& folder, bo
       seen.push_back({episode->seen[f], *vicon});
     }
   }
+  return people;
+}
+
+}  // namespace
+}  // namespace chorus::bench::uiprmd
+
+namespace chorus::bench {
+
+Result<std::map<std::string, Samples>> uiprmd_samples(const std::filesystem::path& folder,
+                                                      bool own_places, std::size_t step) {
+  auto people = uiprmd::read_people(folder, step);
+  if (!people) return pass(people);
   std::map<std::string, Samples> samples;
-  for (auto& [person, seen] : people) {
-    if (own_places) take_offsets(seen);
-    samples[person] = samples_of(seen);
+  for (auto& [person, seen] : *people) {
+    if (own_places) uiprmd::take_offsets(seen);
+    samples[person] = uiprmd::samples_of(seen);
   }
   return samples;
 }

@@ -101,7 +101,7 @@ TEST(ErrorFile, SurvivesDamage) {
 
 /// A file of version 1 stays readable.
 TEST(ErrorFile, ReadsTheFileOfTheTests) {
-  const auto read = load_predictor("tests/data/error_model/head.json");
+  const auto read = load_predictor("tests/unit/learn/head_model.json");
   ASSERT_TRUE(read) << to_string(read.error());
   fusion::Features features{};
   features[static_cast<std::size_t>(fusion::Feature::Turn)] = 2.0;
