@@ -271,9 +271,8 @@ Result<int> run_init_ca(const InitArguments& arguments) {
   if (auto ok = write_authority(wishes); !ok) return pass(ok);
   std::cerr << fmt::format(
       "{0}/ca.crt and {0}/ca.key written.  Who has ca.key can stand in for every host: keep it "
-      "here.\nGive ca.crt to browsers and programs.  Next, for each host:\n  chorus init "
-      "certificate HOST ADDRESS\n",
-      wishes.folder);
+      "here.\nGive ca.crt to browsers and programs.  Next, for each host:\n  {1}\n",
+      wishes.folder, next_certificate(wishes.folder));
   return kExitOk;
 }
 

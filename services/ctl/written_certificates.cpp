@@ -31,6 +31,11 @@ Result<std::string> of_authority(const std::string& folder, const std::string& n
 
 }  // namespace
 
+std::string next_certificate(const std::string& folder) {
+  const std::string command = "chorus init certificate HOST ADDRESS";
+  return folder == kAuthorityFolder ? command : command + " --authority " + folder;
+}
+
 Result<void> write_authority(const AuthorityWishes& wishes) {
   const auto issued = tls::new_authority(wishes.name.empty() ? "Chorus workshop" : wishes.name,
                                          tls::for_days(wishes.days));
@@ -42,9 +47,8 @@ Result<void> write_authority(const AuthorityWishes& wishes) {
     if (ok.error().code == ErrorCode::InvalidArgument)
       ok.error().message =
           "exists: this authority is made already, and is not made anew, because hosts trust it.  "
-          "Go on with chorus init certificate HOST ADDRESS" +
-          (wishes.folder == kAuthorityFolder ? "" : " --authority " + wishes.folder) +
-          "; --out FOLDER makes another authority";
+          "Go on with " +
+          next_certificate(wishes.folder) + "; --out FOLDER makes another authority";
     return ok;
   }
   return write_file(wishes.folder + "/ca.crt", issued->certificate, Readers::Everybody);

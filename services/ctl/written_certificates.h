@@ -26,6 +26,9 @@ struct CertificateWishes {
   int days = 800;      ///< Browsers accept at most 825 from a private authority.
 };
 
+/// The command that makes a certificate with the authority in `folder`.
+[[nodiscard]] std::string next_certificate(const std::string& folder);
+
 /// Writes ca.crt, which everybody may read, and ca.key for the owner only; never overwrites them.
 [[nodiscard]] Result<void> write_authority(const AuthorityWishes& wishes);
 

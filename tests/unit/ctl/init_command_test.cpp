@@ -176,7 +176,9 @@ class InitTls : public ::testing::Test {
 };
 
 TEST_F(InitTls, AnAuthorityVouchesForAHost) {
-  ASSERT_EQ(run({"ca", "--out", at("ca"), "--name", "Hall 3"}).code, kExitOk);
+  const Outcome authority = run({"ca", "--out", at("ca"), "--name", "Hall 3"});
+  ASSERT_EQ(authority.code, kExitOk);
+  EXPECT_THAT(authority.error, HasSubstr("HOST ADDRESS --authority " + at("ca") + "\n"));
   EXPECT_EQ(mode_of(at("ca/ca.key")), 0600u);
   EXPECT_EQ(mode_of(at("ca")), 0700u);
   const Outcome made = run({"certificate", "s1.local", "10.0.0.11", "--authority", at("ca"),

@@ -187,8 +187,10 @@ Result<void> check_source(const CameraSettings& settings) {
       std::filesystem::exists(settings.source, failed))
     return {};
   if (kind_of(settings.source) == SourceKind::File)
-    return fail(ErrorCode::NotFound, settings.source,
-                "there is no such file; device.camera.source names a video");
+    return fail(
+        ErrorCode::NotFound, settings.source,
+        "there is no such file; device.camera.source names a video, a webcam (/dev/video0) or "
+        "a stream (rtsp://ADDRESS/PATH)");
   return {};
 }
 
