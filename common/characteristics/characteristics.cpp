@@ -13,6 +13,9 @@ constexpr const char* kNoMark =
     "measure its distance along the floor with a tape, have somebody turn once on it, and pass "
     "--distance";
 
+/// Who walks does not begin by facing every sensor.
+constexpr double kMostlyStanding = 0.7;  // share of the frames with the person
+
 std::vector<JointId> limbs() {
   using enum JointId;
   return {ElbowLeft, ElbowRight, WristLeft, WristRight, KneeLeft, KneeRight, AnkleLeft, AnkleRight};
@@ -44,6 +47,8 @@ Result<Characteristics> characterise(const std::vector<SensorFrame>& frames, con
   found.has_floor = person->has_floor;
   found.jitter = jitter_of(*person, stances);
   found.exchange = exchange_of(*person, stances);
+  if (known.turns.empty() && found.standing < kMostlyStanding)
+    found.exchange.front_rear = FrontRear::Unclear;
   found.coverage = coverage_of(*person);
   found.no_depth_bias = kNoMark;
   if (!known.mark) return found;

@@ -54,7 +54,7 @@ enum class FrontRear {
   Tells,           ///< Labels are right from behind.
   TakesForFacing,  ///< Labels are exchanged from behind, as if everybody faced the sensor.
   Mirrored,        ///< Labels are exchanged in front: a mirrored picture.
-  Unclear,         ///< The person ends in another direction than facing the sensor, it seems.
+  Unclear,         ///< The person walks, or ends with their back to the sensor, it seems.
   Mixed,           ///< Now this, now that.
 };
 

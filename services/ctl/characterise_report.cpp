@@ -36,8 +36,9 @@ std::string front_rear_text(const Characteristics& sensor) {
       return "left and right are exchanged in front: is its picture mirrored, or did the person "
              "begin with their back to it?";
     case FrontRear::Unclear:
-      return "the person seems to end with their back to it, so the turn was not followed: face it "
-             "at the end, or say when each turn began and ended with --turn";
+      return "the person walks, or seems to end with their back to it: no turn was followed. Face "
+             "it "
+             "first and last, or say when each turn began and ended with --turn";
     case FrontRear::Mixed:
       return "from behind, left and right are now right and now exchanged";
     case FrontRear::Unknown:

@@ -125,6 +125,12 @@ TEST(Exchange, WhoSeemsToEndWithTheirBackToTheSensorIsUnclear) {
   EXPECT_EQ(found->exchange.front_rear, FrontRear::Unclear);
 }
 
+TEST(Exchange, AWalkIsNoTurn) {
+  TurnSpec spec;
+  spec.walks = 0.9;
+  EXPECT_EQ(found_of(spec).exchange.front_rear, FrontRear::Unclear);
+}
+
 TEST(Exchange, AMirroredPictureIsNamed) {
   auto frames = record_turn({});
   for (SensorFrame& frame : frames) exchange(frame.bodies[0].skeleton);

@@ -224,6 +224,11 @@ TEST(AdjustTogether, AnUnknownDepthBiasIsEstimated) {
   const double without = worst_error(scene.adjust(scene.truth), scene.truth);
   scene.config.depth_bias_sigma = mm(50);
   EXPECT_LT(worst_error(scene.adjust(scene.truth), scene.truth), 0.4 * without);
+  const auto adjusted = scene.look(scene.truth);
+  ASSERT_TRUE(adjusted);
+  EXPECT_NEAR(adjusted->depth_bias.bias, mm(25), mm(8));
+  EXPECT_GT(adjusted->depth_bias.sigma, mm(0.1));
+  EXPECT_LT(adjusted->depth_bias.sigma, mm(15));
 }
 
 TEST(AdjustTogether, ALargeDepthBiasThatNobodyToldIsFoundAndSaid) {
