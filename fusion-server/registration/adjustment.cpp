@@ -38,11 +38,9 @@ constexpr double kIndependent = 6.0;        // [1/s] the same for points that ar
 constexpr double kMemoriesInWalk = 15.0;
 // Weight of the expected factor, in degrees of freedom.
 constexpr double kPriorFreedom = 3.0;
-// A depth bias that nobody has told is believed from here on: what is found where there is none
-// scatters by 10 to 13 mm (docs/decisions/0104), and what is smaller does less harm than a wrong
-// one.
-constexpr double kLargeBias = mm(40);
-constexpr double kSureBias = 4.0;              // [sigma]
+// A depth bias that nobody has told is believed from here on (docs/decisions/0104).
+constexpr double kLargeBias = mm(30);
+constexpr double kSureBias = 3.5;              // [sigma]
 constexpr double kAnyBias = 0.15;              // [m] sigma of what is looked for
 constexpr double kSuspicion = kLargeBias / 2;  // a first estimate above it is worth a closer look
 constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor

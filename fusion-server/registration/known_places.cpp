@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "fusion-server/registration/adjoint.h"
 
 namespace chorus::registration {
@@ -26,6 +28,14 @@ double floor_misfit(const Station& station) {
 
 DepthBias depth_bias_of(const RegistrationConfig& config) {
   return {config.depth_bias, std::max(kKnownBias, config.depth_bias_sigma), config.depth_bias};
+}
+
+std::string advice_on(const WalkedDepthBias& found) {
+  return fmt::format(
+      "the sensors seem to report joints {:.0f} mm too near (+- {:.0f} mm): the places allow for "
+      "it; "
+      "measure it, and tell it by registration.depth_bias_m and registration.depth_bias_sigma_m",
+      1e3 * found.bias, 1e3 * found.sigma);
 }
 
 double floor_loss(const Station& station) {

@@ -5,8 +5,10 @@
 // the rows from 6 i on, the depth bias has the last one.  docs/papers/registration.md, Section 8.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "fusion-server/flow/registration.h"
 #include "fusion-server/registration/walk_points.h"
 
 namespace chorus::registration {
@@ -22,6 +24,9 @@ struct DepthBias {
 
 /// As configured, with the present estimate as expected.
 [[nodiscard]] DepthBias depth_bias_of(const RegistrationConfig& config);
+
+/// What to do about a depth bias that the walk shows and nobody has told.
+[[nodiscard]] std::string advice_on(const WalkedDepthBias& found);
 
 /// The robust loss (Geman-McClure) of the sensor's own floor; 0 without one.
 [[nodiscard]] double floor_loss(const Station& station);

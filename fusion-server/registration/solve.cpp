@@ -14,6 +14,7 @@
 #include "fusion-server/registration/error_radius.h"
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/impossible_place.h"
+#include "fusion-server/registration/known_places.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
@@ -95,8 +96,7 @@ void refuse_outcasts(Work& work) {
   work.result.edges = std::move(evidence.edges);
 }
 
-/// The sensor that reaches the most others; of equal ones, the one with the smallest total error,
-/// then with the smallest id.
+/// The sensor that reaches the most others; of equal ones that of least total error, then least id.
 SensorId best_master(const Work& work) {
   SensorId best;
   std::size_t most = 0;
@@ -173,14 +173,6 @@ void level_by_bodies(const Work& work, const Places& places, std::map<SensorId, 
   }
 }
 
-void doubt_depth(Work& work, const WalkedDepthBias& depth) {
-  work.doubt(fmt::format(
-      "the sensors seem to report joints {:.0f} mm too near (+- {:.0f} mm): the places allow for "
-      "it; "
-      "measure it, and tell it by registration.depth_bias_m and registration.depth_bias_sigma_m",
-      1e3 * depth.bias, 1e3 * depth.sigma));
-}
-
 /// The places along the chains, on the common floor; then adjusted all together if configured.
 std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& chains) {
   std::optional<FloorPlane> guessed;
@@ -212,7 +204,7 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
     if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
   }
   if (guessed) level_by_bodies(work, adjusted->places, all);
-  if (adjusted->found_bias) doubt_depth(work, adjusted->depth_bias);
+  if (adjusted->found_bias) work.doubt(advice_on(adjusted->depth_bias));
   return all;
 }
 
@@ -336,8 +328,7 @@ void judge_accuracy(Work& work) {
   }
 }
 
-/// Sets the verdict of each sensor according to the doubts about it, and that of all placed sensors
-/// together.
+/// Sets the verdict of each sensor by the doubts about it, and that of all placed ones together.
 void pass_sentence(Work& work) {
   work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
   for (const auto& [sensor, walker] : work.walkers) {
