@@ -33,8 +33,8 @@ DepthBias depth_bias_of(const RegistrationConfig& config) {
 std::string advice_on(const WalkedDepthBias& found) {
   return fmt::format(
       "the sensors seem to report joints {:.0f} mm too near (+- {:.0f} mm): the places allow for "
-      "it; "
-      "measure it, and tell it by registration.depth_bias_m and registration.depth_bias_sigma_m",
+      "it; measure it, and tell it by registration.depth_bias_m and "
+      "registration.depth_bias_sigma_m",
       1e3 * found.bias, 1e3 * found.sigma);
 }
 

@@ -11,7 +11,6 @@
 
 #include "fusion-server/client/recordings.h"
 #include "fusion-server/pipeline/offline.h"
-#include "fusion-server/server/registration_store.h"
 #include "services/ctl/characterise_report.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
@@ -19,6 +18,7 @@
 #include "services/ctl/number_range.h"
 #include "services/ctl/offline_options.h"
 #include "services/ctl/recorded_cell.h"
+#include "services/ctl/recorded_places.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -120,17 +120,6 @@ Tracks in_step(const Tracks& tracks, const Registration& registration) {
   return placed;
 }
 
-/// The places that were recorded, or lie beside the recordings.
-Result<std::optional<Registration>> given_places(const RecordedCell& cell,
-                                                 const std::vector<std::filesystem::path>& files) {
-  auto recorded = cell.registration();
-  if (!recorded || *recorded) return recorded;
-  const auto beside = registration_beside(files);
-  if (!beside) return pass(beside);
-  if (!*beside) return std::optional<Registration>();
-  return server::load_registration_file((*beside)->string());
-}
-
 /// All sensors together: the depth bias from their walk; how they differ in the places that are
 /// given, else in those of the walk.
 Result<void> measure_together(RecordedCell& cell, const Recorded& recorded,
@@ -210,9 +199,11 @@ Result<SensorReport> measured(const CharacteriseArguments& arguments,
   report.notes = std::move(recorded->notes);
   measure_each(*recorded, *known, report);
   if (recorded->tracks.size() > 1) {
-    const auto given = given_places(*cell, *files);
+    const auto given = given_places({}, *files, *cell);
     if (!given) return pass(given);
-    const auto done = measure_together(*cell, *recorded, config, *given, report);
+    // Where they are used, the note tells of an option that this command does not have.
+    if (!given->registration && !given->note.empty()) report.notes.push_back(given->note);
+    const auto done = measure_together(*cell, *recorded, config, given->registration, report);
     if (!done) return pass(done);
   }
   const Measured& all = report.measured;

@@ -33,22 +33,6 @@ Result<Places> places_beside(const std::vector<std::filesystem::path>& files,
                     " says, which lies beside the recordings; --from-walk registers anew"};
 }
 
-/// The extrinsics from a file, from the recording, or from beside it.
-Result<Places> given_extrinsics(const PlaceOptions& options,
-                                const std::vector<std::filesystem::path>& files,
-                                const RecordedCell& cell) {
-  if (options.from_walk) return Places{};
-  if (!options.registration.empty()) {
-    auto registration = server::load_registration_file(options.registration);
-    if (!registration) return pass(registration);
-    return Places{std::move(*registration), {}};
-  }
-  auto recorded = cell.registration();
-  if (!recorded) return pass(recorded);
-  if (*recorded) return Places{std::move(*recorded), {}};
-  return places_beside(files, cell);
-}
-
 }  // namespace
 
 void add_place_options(CLI::App& app, PlaceOptions& options) {
@@ -62,10 +46,25 @@ void add_place_options(CLI::App& app, PlaceOptions& options) {
       ->excludes(registration);
 }
 
+Result<Places> given_places(const PlaceOptions& options,
+                            const std::vector<std::filesystem::path>& files,
+                            const RecordedCell& cell) {
+  if (options.from_walk) return Places{};
+  if (!options.registration.empty()) {
+    auto registration = server::load_registration_file(options.registration);
+    if (!registration) return pass(registration);
+    return Places{std::move(*registration), {}};
+  }
+  auto recorded = cell.registration();
+  if (!recorded) return pass(recorded);
+  if (*recorded) return Places{std::move(*recorded), {}};
+  return places_beside(files, cell);
+}
+
 Result<Places> places_of(const PlaceOptions& options,
                          const std::vector<std::filesystem::path>& files, RecordedCell& cell,
                          const pipeline::OfflineConfig& config) {
-  auto given = given_extrinsics(options, files, cell);
+  auto given = given_places(options, files, cell);
   if (!given || given->registration) return given;
   auto solved = pipeline::register_recordings(cell.input(), config);
   if (!solved) return pass(solved);

@@ -1,4 +1,6 @@
 // chorus characterise, from recordings to a report and two profiles.
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include "common/base/units.h"
@@ -17,7 +19,8 @@ using Json = nlohmann::json;
 /// Somebody who turns before one sensor that takes everybody for facing it and sees them too near.
 class TurnRecorded {
  public:
-  TurnRecorded() {
+  TurnRecorded() { add("s1"); }
+  void add(const std::string& sensor) const {
     characteristics::TurnSpec spec;
     spec.out = deg(130);
     spec.back = deg(60);
@@ -25,10 +28,12 @@ class TurnRecorded {
     spec.along = mm(6);
     spec.across = mm(2);
     record::FrameRecording recording;
-    recording.sensor = chorus::testing::sensor_id("s1");
+    recording.sensor = chorus::testing::sensor_id(sensor);
     recording.device = "test";
     recording.frames = characteristics::record_turn(spec);
-    EXPECT_THAT(record::write_frame_recording(file("turn.mcap"), recording), IsOk());
+    for (SensorFrame& frame : recording.frames) frame.sensor = recording.sensor;
+    const std::string name = sensor == "s1" ? "turn.mcap" : sensor + ".mcap";
+    EXPECT_THAT(record::write_frame_recording(file(name), recording), IsOk());
   }
   [[nodiscard]] std::string file(const std::string& name) const {
     return (folder_ / name).string();
@@ -37,6 +42,15 @@ class TurnRecorded {
  private:
   chorus::testing::TemporaryFolder folder_;
 };
+
+TEST(CharacteriseCommand, SaysThatPlacesOfOtherSensorsAreNotUsed) {
+  const TurnRecorded recorded;
+  recorded.add("s2");
+  std::ofstream(recorded.file("registration.json"))
+      << R"({"sensors": {"other": {"x": 0, "y": 1, "z": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}})";
+  const Outcome done = run_chorus({"characterise", recorded.file("")});
+  EXPECT_THAT(done.out + done.error, HasSubstr("is of other sensors, and is not used"));
+}
 
 TEST(CharacteriseCommand, WritesWhatFusionAndSimulationCanLoad) {
   const TurnRecorded recorded;
