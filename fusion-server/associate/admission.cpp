@@ -7,6 +7,7 @@ namespace chorus::associate {
 namespace {
 
 constexpr double kTooNear = 0.8;  // [m]; nobody is tracked nearer than this.
+constexpr double kAway = 0.25;    // [m]; whoever is farther from where they appeared has moved.
 constexpr double kGirth = 0.4;    // [m]; a person this close to a line of sight blocks it.
 // A track is not admitted if this many sensors miss it, or more, for each sensor that sees it.
 constexpr std::size_t kMostMissing = 2;
@@ -21,8 +22,8 @@ bool has(const std::vector<Assigned>& bodies, const SensorId& sensor) {
 }  // namespace
 
 Admission::Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
-                     Duration elapsed, const AssociationConfig& config)
-    : observers_(observers), elapsed_(elapsed), config_(config) {
+                     Duration elapsed, bool settled_room, const AssociationConfig& config)
+    : observers_(observers), elapsed_(elapsed), settled_room_(settled_room), config_(config) {
   for (const Assigned& body : bodies) {
     bodies_[body.sensor].push_back(body);
     tracks_[body.track].push_back(body);
@@ -32,12 +33,14 @@ Admission::Admission(const std::vector<Observer>& observers, const std::vector<A
 void Admission::judge(Track& track) const {
   const auto seen = tracks_.find(track.id);
   if (track.admitted || seen == tracks_.end()) return;
+  track.moved = track.moved || (track.core - track.appeared).norm() > kAway;
   track.doubted = track.doubted || std::ranges::any_of(observers_, [&](const Observer& observer) {
                     return misses(observer, track, track.core);
                   });
   const std::size_t sights = seen->second.size();
   if (!track.doubted || (sights > 1 && count_missing(track) < kMostMissing * sights)) {
-    track.admitted = sights > 1 || track.hits >= config_.confirm_frames;
+    track.admitted =
+        sights > 1 || (track.hits >= config_.confirm_frames && !appears_at_rest(track));
     return;
   }
   const SensorId& sensor = seen->second.front().sensor;
@@ -45,6 +48,13 @@ void Admission::judge(Track& track) const {
   if (track.hits > 1 && !nobody)
     track.alone += elapsed_ / std::max<std::int64_t>(1, alone_in(sensor));
   track.admitted = track.alone >= config_.alone;
+}
+
+/// True if the track has been where it appeared, for less than config.motionless, although people
+/// come in by walking.
+bool Admission::appears_at_rest(const Track& track) const {
+  return settled_room_ && observers_.size() > 1 && !track.moved &&
+         track.seen - track.found < config_.motionless;
 }
 
 /// True if the observer would certainly see a person at `place` unless somebody hides them.

@@ -35,6 +35,10 @@ struct AssociationConfig {
   /// How long a body that only one sensor sees must persist if others look there and see nobody; 0:
   /// it need not wait.  While others see through it from two sides, it goes on waiting.
   Duration alone = std::chrono::seconds(3);
+  /// How long a body that appears at rest must persist if only one sensor sees it and no other one
+  /// looks there; less if it moves. 0: it need not wait. Nobody waits while somebody is missing,
+  /// for this long after the first instant, and in a room with a single sensor.
+  Duration motionless = std::chrono::seconds(10);
   /// A sensor certainly sees a person within this angle of its optical axis [rad] and this range
   /// [m].
   double look_angle = deg(25);

@@ -136,7 +136,9 @@ void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& obse
     for (const PlacedView& sight : candidate.sights)
       bodies.push_back({sight.view.sensor, sight.core, sight.error, candidate.track.id, settled});
   }
-  const Admission admission(observers, bodies, elapsed, config);
+  const bool settled_room =
+      tracks.missing.empty() && tracks.instant - tracks.began >= config.motionless;
+  const Admission admission(observers, bodies, elapsed, settled_room, config);
   for (Candidate& candidate : candidates) admission.judge(candidate.track);
   leave(candidates, admission, elapsed, tracks);
 }
@@ -193,6 +195,7 @@ std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::u
     fresh.track.joints = locate(members);
     fresh.track.core = fresh.predicted =
         middle_of(fresh.track.joints).value_or(Eigen::Vector3d::Zero());
+    fresh.track.appeared = fresh.track.core;
     fresh.gate = config.gate;
     fresh.sights = std::move(members);
     candidates.push_back(std::move(fresh));
@@ -222,6 +225,7 @@ Grouping group(Scene scene, const Tracks& before, const AssociationConfig& confi
   Grouping grouping{{}, before};
   Tracks& tracks = grouping.tracks;
   tracks.next_id = std::max<std::uint64_t>(tracks.next_id, 1);
+  if (before.instant == Timestamp{}) tracks.began = instant;
   std::vector<Candidate> candidates = expected(tracks, instant, config);
   std::vector<PlacedView> leftovers = match(placed_views(std::move(scene.views)), candidates);
   for (Candidate& each : newcomers(std::move(leftovers), candidates, tracks.next_id, config)) {

@@ -34,6 +34,8 @@ struct Track {
   /// Positions of the joints when the person was last seen; empty if no view then was a ray body.
   Located joints;
   bool admitted = false;  ///< True if the track may be published; it stays true.
+  Eigen::Vector3d appeared = Eigen::Vector3d::Zero();  ///< `core` at the first instant.
+  bool moved = false;  ///< True once the person has left the place where they appeared.
   /// True once a sensor has looked at the person's place without seeing the person.
   bool doubted = false;
   Duration alone{0};  ///< How long the doubted person has been seen; see Admission::judge().
@@ -59,6 +61,7 @@ struct Missing {
 struct Tracks {
   std::uint64_t next_id = 1;
   Timestamp instant;  ///< The last instant that group() has processed.
+  Timestamp began;    ///< The first one.
   std::vector<Track> people;
   std::vector<Missing> missing = {};  ///< In the order in which they left.
   Repeatability repeatability = {};

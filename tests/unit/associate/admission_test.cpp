@@ -198,5 +198,45 @@ TEST(Admission, WithoutAWaitEverybodyIsPublished) {
   EXPECT_LE(room.until_more_than(0, {{0, 0, 0}}, 1.0), kAtOnce);
 }
 
+/// A place at which sensor 0 alone looks; the room has been observed for longer than `motionless`.
+struct QuietRoom : AdmissionRoom {
+  QuietRoom() {
+    observers = {observer(0), observer(2)};
+    for (int i = 0; i < 330; ++i) see({});
+  }
+};
+constexpr Body kAtRest{0, 0, 3.0};
+
+TEST(Admission, WhoAppearsAtRestBeforeOneSensorAloneWaits) {
+  QuietRoom room;
+  EXPECT_NEAR(room.until_more_than(0, {kAtRest}, 20.0), seconds(room.config.motionless), 0.2);
+}
+
+TEST(Admission, WhoMovesThereWaitsNoLonger) {
+  QuietRoom room;
+  for (int i = 0; i < 30; ++i) EXPECT_TRUE(room.see({kAtRest}).empty());
+  EXPECT_TRUE(room.see({{0, 0.2, 3.0}}).empty()) << "a trembling chair";
+  EXPECT_EQ(room.see({{0, 0.3, 3.0}}).size(), 1u);
+  EXPECT_EQ(room.see({kAtRest}).size(), 1u) << "and stays";
+}
+
+TEST(Admission, WhoIsThereFromTheStartDoesNotWait) {
+  AdmissionRoom room{.observers = {observer(0), observer(2)}};
+  for (int i = 0; i < 30; ++i) room.see({});
+  EXPECT_LE(room.until_more_than(0, {kAtRest}, 1.0), kAtOnce);
+}
+
+TEST(Admission, NobodyWaitsAtRestWhileSomebodyIsMissing) {
+  QuietRoom room;
+  room.tracks.missing.push_back({PersonId{99}, room.instant, {}});
+  EXPECT_LE(room.until_more_than(0, {kAtRest}, 5.0), seconds(room.config.recognise) + 0.2);
+}
+
+TEST(Admission, NobodyWaitsAtRestInARoomOfOneSensor) {
+  QuietRoom room;
+  room.observers = {observer(0)};
+  EXPECT_LE(room.until_more_than(0, {kAtRest}, 1.0), kAtOnce);
+}
+
 }  // namespace
 }  // namespace chorus::associate
