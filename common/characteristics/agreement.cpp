@@ -13,13 +13,14 @@ namespace chorus::characteristics {
 namespace {
 
 constexpr std::array kUpperSpine{JointId::Neck, JointId::SpineShoulder};
-constexpr double kWidest =
-    0.12;  // gap between two frames that is interpolated, as align has it [s]
+// Widest gap between two frames that is interpolated, as in align [s].
+constexpr double kWidest = 0.12;
 constexpr std::size_t kLeastPairs = 100;
 constexpr double kStart = mm(15);  // what is expected at first [m]
 constexpr int kRounds = 5;
 constexpr double kLeastSigma = mm(0.1);
-constexpr double kStrangers = 0.3;  // views that differ by more are of two people, or exchanged [m]
+constexpr double kStrangers =
+    0.3;  // [m] views that differ by more show two people, or labels differ
 
 /// A joint in the world, and the line of sight to it.
 struct Seen {

@@ -21,7 +21,7 @@ std::optional<double> median_of(const std::vector<Characteristics>& sensors,
   return median(std::move(all));
 }
 
-/// What the sensors that know agree on; Mixed if they do not.
+/// What all sensors show that show anything; Mixed if they differ.
 FrontRear front_rear_of(const std::vector<Characteristics>& sensors) {
   FrontRear common = FrontRear::Unknown;
   for (const Characteristics& sensor : sensors) {
