@@ -28,9 +28,9 @@ struct PlacedTrack {
 
 /// Standard deviations of one view's joint.
 struct Agreement {
-  double along = 0.0;   ///< Along its line of sight [m].
-  double across = 0.0;  ///< Across it, per axis [m].
-  std::size_t pairs = 0;
+  double along = 0.0;     ///< Along its line of sight [m].
+  double across = 0.0;    ///< Across it, per axis [m].
+  std::size_t pairs = 0;  ///< Pairs of one joint of one person, with lines of sight that differ.
 };
 
 /// Of the neck and the upper end of the spine, to which fusion attributes no error of the pose.
