@@ -21,8 +21,8 @@ struct Characteristics {
   Jitter jitter;
   Exchange exchange;
   Coverage coverage;
-  std::optional<DepthBias> depth_bias;  ///< Measured with the mark, if there is one.
-  std::string no_depth_bias;            ///< Why there is none, and how to measure it.
+  std::optional<MarkedDepthBias> depth_bias;  ///< Measured with the mark, if there is one.
+  std::string no_depth_bias;                  ///< Why there is none, and how to measure it.
 };
 
 /// What is known besides the recording.

@@ -79,10 +79,10 @@ std::optional<Noise> told_noise(const Measured& measured, const Noise& jitter, d
   return noise;
 }
 
-std::optional<DepthBias> told_bias(const Measured& measured) {
-  std::optional<DepthBias> bias = measured.walked_bias;
+std::optional<MeasuredDepthBias> told_bias(const Measured& measured) {
+  std::optional<MeasuredDepthBias> bias = measured.walked_bias;
   for (const Characteristics& sensor : measured.sensors) {
-    if (sensor.depth_bias) bias = sensor.depth_bias;
+    if (sensor.depth_bias) bias = sensor.depth_bias->mean;
   }
   if (bias && bias->bias < kSigmasToTell * bias->sigma) return std::nullopt;
   return bias;

@@ -13,8 +13,8 @@ namespace chorus::characteristics {
 /// All that was measured.
 struct Measured {
   std::vector<Characteristics> sensors;
-  std::optional<Agreement> agreement;    ///< Of registered sensors.
-  std::optional<DepthBias> walked_bias;  ///< What their walk says; only bias and sigma are set.
+  std::optional<Agreement> agreement;            ///< Of registered sensors.
+  std::optional<MeasuredDepthBias> walked_bias;  ///< What their walk says.
 };
 
 struct Kind {
@@ -30,7 +30,7 @@ struct Kind {
   /// The depth bias to tell registration, measured with a mark or, if there was none, by a walk.
   /// None if it is below two of its standard deviations: to correct a bias that does not exist
   /// costs accuracy.
-  std::optional<DepthBias> depth_bias;
+  std::optional<MeasuredDepthBias> depth_bias;
 };
 
 /// `usual`: the noise that fusion assumes of a sensor about which nothing is known [m].

@@ -105,8 +105,8 @@ Spread& part_of(std::array<Spread, 3>& parts, std::size_t sector) {
 
 }  // namespace
 
-Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
-                                const std::vector<Stance>& stances) {
+Result<MarkedDepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
+                                      const std::vector<Stance>& stances) {
   if (!person.has_floor)
     return fail(ErrorCode::InvalidArgument, person.sensor.str(),
                 "states no floor plane, so that a distance along the floor cannot be compared with "
@@ -132,8 +132,10 @@ Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
     if (part.count > 0) sides.add(part.mean());
   }
   const double sigma = std::hypot(joints.error(), sides.error());
-  return DepthBias{joints.mean(), std::hypot(mark.sigma, sigma), parts[0].mean(), parts[1].mean(),
-                   parts[2].mean()};
+  return MarkedDepthBias{{joints.mean(), std::hypot(mark.sigma, sigma)},
+                         parts[0].mean(),
+                         parts[1].mean(),
+                         parts[2].mean()};
 }
 
 }  // namespace chorus::characteristics

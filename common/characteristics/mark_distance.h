@@ -25,17 +25,21 @@ struct Mark {
 };
 
 /// By how much joints are reported too near, along the line of sight [m].
-struct DepthBias {
+struct MeasuredDepthBias {
   double bias = 0.0;
-  /// Standard deviation of `bias`: from the tape, and from how far the joints, and the front, the
-  /// side and the rear of the person, differ.
-  double sigma = 0.0;
-  double front = 0.0, side = 0.0, rear = 0.0;  ///< The bias by where the person's front is.
+  double sigma = 0.0;  ///< Standard deviation of `bias`.
+};
+
+struct MarkedDepthBias {
+  /// The sigma is from the tape, and from how far the joints, and the front, the side and the rear
+  /// of the person, differ.
+  MeasuredDepthBias mean;
+  double front = 0.0, side = 0.0, rear = 0.0;  ///< The bias by where the person's front is [m].
 };
 
 /// InvalidArgument, saying what to do, if there is no floor plane (the sensor may be tilted), or if
 /// the person did not turn through most of a circle.
-[[nodiscard]] Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
-                                              const std::vector<Stance>& stances);
+[[nodiscard]] Result<MarkedDepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
+                                                    const std::vector<Stance>& stances);
 
 }  // namespace chorus::characteristics
