@@ -62,10 +62,6 @@ Result<void> check(const Board& board) {
   return {};
 }
 
-std::size_t corner_count(const Board& board) {
-  return static_cast<std::size_t>((board.columns - 1) * (board.rows - 1));
-}
-
 int markers_in_dictionary(const Board& board) {
   for (const int size : kDictionarySizes) {
     if (marker_count(board) <= size) return size;

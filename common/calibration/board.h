@@ -2,7 +2,6 @@
 // pure.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -27,9 +26,6 @@ struct Board {
 /// Refuses a board that cannot be made: an InvalidArgument error whose context is the option to
 /// change.
 [[nodiscard]] Result<void> check(const Board& board);
-
-/// Number of inner corners.
-[[nodiscard]] std::size_t corner_count(const Board& board);
 
 /// Size of the smallest predefined dictionary of OpenCV that suffices for the board.  (Each begins
 /// with the markers of the next smaller one.)

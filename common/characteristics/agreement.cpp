@@ -8,18 +8,21 @@
 
 #include "common/base/duration.h"
 #include "common/base/units.h"
+#include "common/body/interpolate.h"
 
 namespace chorus::characteristics {
 namespace {
 
 constexpr std::array kUpperSpine{JointId::Neck, JointId::SpineShoulder};
-constexpr double kWidest =
-    0.12;  // gap between two frames that is interpolated, as align has it [s]
+// Widest gap between two frames that is interpolated, as in align [s].
+constexpr double kWidest = 0.12;
 constexpr std::size_t kLeastPairs = 100;
 constexpr double kStart = mm(15);  // what is expected at first [m]
 constexpr int kRounds = 5;
 constexpr double kLeastSigma = mm(0.1);
-constexpr double kStrangers = 0.3;  // views that differ by more are of two people, or exchanged [m]
+constexpr double kParallel = 0.1;  // sine of the angle between lines of sight that hardly differ
+// Views that differ by more show two people, or have other labels [m].
+constexpr double kStrangers = 0.3;
 
 /// A joint in the world, and the line of sight to it.
 struct Seen {
@@ -33,43 +36,43 @@ struct Sample {
   double sights = 0.0;  ///< (e.u)^2 + (e.v)^2
 };
 
-std::optional<Eigen::Vector3d> tracked(const SensorFrame& frame, JointId id) {
-  if (frame.bodies.size() != 1) return std::nullopt;
-  const Joint& joint = frame.bodies.front().skeleton[id];
-  if (!joint.seen() || joint.state != JointState::Tracked) return std::nullopt;
-  return joint.position;
+/// The joint of the only body; not tracked if there is none, or several.
+Joint joint_in(const SensorFrame& frame, JointId id) {
+  return frame.bodies.size() == 1 ? frame.bodies.front().skeleton[id] : Joint{};
 }
+
+bool tracked(const Joint& joint) { return joint.seen() && joint.state == JointState::Tracked; }
 
 Seen seen_from(const Eigen::Isometry3d& world_from_sensor, const Eigen::Vector3d& at) {
   return {world_from_sensor * at, (world_from_sensor.linear() * at).normalized()};
 }
 
-/// The joint at an instant between two frames; `next` is the first frame after it.
-std::optional<Eigen::Vector3d> between(const std::vector<SensorFrame>& frames, std::size_t next,
-                                       Timestamp at, JointId id) {
-  if (next == 0 || next >= frames.size()) return std::nullopt;
+/// The joint at an instant between two frames, not tracked unless it is in both; `next` is the
+/// first frame after the instant.
+Joint between(const std::vector<SensorFrame>& frames, std::size_t next, Timestamp at, JointId id) {
+  if (next == 0 || next >= frames.size()) return {};
   const SensorFrame& before = frames[next - 1];
   const double gap = seconds(frames[next].captured - before.captured);
-  const auto from = tracked(before, id);
-  const auto to = tracked(frames[next], id);
-  if (gap > kWidest || gap <= 0 || !from || !to) return std::nullopt;
+  if (gap > kWidest || gap <= 0) return {};
   const double share = seconds(at - before.captured) / gap;
-  return (*from + share * (*to - *from)).eval();
+  return interpolate(joint_in(before, id), joint_in(frames[next], id), share);
 }
 
-void add_pair(std::vector<Sample>& samples, const Seen& one, const Seen& other) {
+/// False if the pair tells nothing of both errors: of two people, or from one direction.
+bool add_pair(std::vector<Sample>& samples, const Seen& one, const Seen& other) {
   const Eigen::Vector3d apart = one.point - other.point;
   const Eigen::Vector3d normal = one.sight.cross(other.sight);
   const Eigen::Vector3d sum = one.sight + other.sight;
   const Eigen::Vector3d difference = one.sight - other.sight;
-  if (apart.norm() > kStrangers) return;
+  if (apart.norm() > kStrangers) return false;
   for (const Eigen::Vector3d& direction : {normal, sum, difference}) {
-    if (direction.norm() < 0.1) continue;  // opposite or equal lines of sight
+    if (direction.norm() < kParallel) continue;
     const Eigen::Vector3d e = direction.normalized();
     const double u = e.dot(one.sight);
     const double v = e.dot(other.sight);
     samples.push_back({std::pow(e.dot(apart), 2), u * u + v * v});
   }
+  return normal.norm() >= kParallel;
 }
 
 std::size_t add_tracks(std::vector<Sample>& samples, const PlacedTrack& one,
@@ -79,12 +82,12 @@ std::size_t add_tracks(std::vector<Sample>& samples, const PlacedTrack& one,
   for (const SensorFrame& frame : *one.frames) {
     while (next < other.frames->size() && (*other.frames)[next].captured <= frame.captured) ++next;
     for (const JointId id : kUpperSpine) {
-      const auto here = tracked(frame, id);
-      const auto there = between(*other.frames, next, frame.captured, id);
-      if (!here || !there) continue;
-      add_pair(samples, seen_from(one.world_from_sensor, *here),
-               seen_from(other.world_from_sensor, *there));
-      ++pairs;
+      const Joint here = joint_in(frame, id);
+      const Joint there = between(*other.frames, next, frame.captured, id);
+      if (!tracked(here) || !tracked(there)) continue;
+      const bool tells = add_pair(samples, seen_from(one.world_from_sensor, here.position),
+                                  seen_from(other.world_from_sensor, there.position));
+      pairs += tells ? 1 : 0;
     }
   }
   return pairs;

@@ -13,7 +13,7 @@ constexpr const char* kNoMark =
     "measure its distance along the floor with a tape, have somebody turn once on it, and pass "
     "--distance";
 
-/// Who walks does not begin by facing every sensor.
+/// A person who walks more than this need not face the sensor at first, as stances_of() assumes.
 constexpr double kMostlyStanding = 0.7;  // share of the frames with the person
 
 std::vector<JointId> limbs() {

@@ -1,5 +1,5 @@
-// Everything that one recording of one sensor says of its errors (after Otto et al. 2016, Section
-// 3, who turned a mannequin on a robot arm in front of a Kinect v2).
+// Everything that one recording of one sensor says about its errors (after Otto et al. 2016,
+// Section 3, who turned a mannequin on a robot arm in front of a Kinect v2).
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ struct Characteristics {
   Jitter jitter;
   Exchange exchange;
   Coverage coverage;
-  std::optional<DepthBias> depth_bias;  ///< By the mark, if there is one.
-  std::string no_depth_bias;            ///< Why there is none, and how to measure it.
+  std::optional<MarkedDepthBias> depth_bias;  ///< Measured with the mark, if there is one.
+  std::string no_depth_bias;                  ///< Why there is none, and how to measure it.
 };
 
 /// What is known besides the recording.
@@ -39,11 +39,11 @@ struct Known {
 struct Noise {
   double along = 0.0, across = 0.0;  ///< [m]
   double inferred_factor = 1.0;
-  std::size_t inferred_frames = 0;  ///< That the factor was measured in; below 300 it says little.
+  std::size_t inferred_frames = 0;  ///< From which the factor is; below 300 it says little.
 };
 
-/// Jitter of the neck and the upper end of the spine (as fusion.noise, which has no error of the
-/// pose besides), and how much more inferred limbs tremble than tracked ones.
+/// Jitter of the neck and the upper end of the spine, because fusion.noise is that of joints
+/// without a pose error, and how much more inferred limbs tremble than tracked ones.
 [[nodiscard]] Noise noise_of(const Jitter& jitter);
 /// The same, but of elbows, wrists, knees and ankles.
 [[nodiscard]] Noise limb_noise_of(const Jitter& jitter);

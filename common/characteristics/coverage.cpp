@@ -9,7 +9,7 @@
 namespace chorus::characteristics {
 namespace {
 
-constexpr double kPause = 10.0;  // wider than this many steps is no lost frame but a pause
+constexpr double kPause = 10.0;  // a gap of more steps than this is a pause, not lost frames
 
 class Widening {
  public:

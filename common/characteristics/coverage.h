@@ -13,7 +13,7 @@ struct Extent {
   double most = 0.0;
 };
 
-/// Where joints were seen: at least as far as that the sensor sees, not at most.
+/// Where joints were seen.  The sensor sees at least as far; it may see farther.
 struct FieldOfView {
   /// Tracked joints: angles off the optical axis, to the sensor's left and upwards [rad].
   Extent aside, upwards;
@@ -23,10 +23,10 @@ struct FieldOfView {
 
 struct Delivery {
   double step = 0.0;         ///< Median time between frames [s].
-  double step_sigma = 0.0;   ///< Of that time, without gaps, as a standard deviation [s].
-  double lost_share = 0.0;   ///< Frames that a steady sensor would have delivered in between.
+  double step_sigma = 0.0;   ///< Standard deviation of that time, without gaps [s].
+  double lost_share = 0.0;   ///< Share of frames missing in short gaps.
   double longest_gap = 0.0;  ///< [s]
-  double empty_share = 0.0;  ///< Frames without the person.
+  double empty_share = 0.0;  ///< Share of frames without the person.
 };
 
 struct JointShares {

@@ -16,8 +16,9 @@ constexpr double kHalfWindow = 0.25;    // [s]
 constexpr std::size_t kLeastHalf = 3;   // frames: a parabola needs more than three points
 constexpr double kDistanceRange = 0.5;  // [m]
 constexpr std::size_t kLeastFrames = 15;
-constexpr double kFrontal = deg(35);                   // Otto Fig. 7
-constexpr double kBendOverStep = std::numbers::sqrt3;  // of second over first differences of noise
+constexpr double kFrontal = deg(35);  // Otto Fig. 7
+// Standard deviation of second differences of noise, over that of first differences.
+constexpr double kBendOverStep = std::numbers::sqrt3;
 
 /// Weights of a parabola fitted to 2 h + 1 equidistant values, at the middle one.
 std::vector<double> parabola(std::size_t half) {
@@ -30,8 +31,8 @@ std::vector<double> parabola(std::size_t half) {
   return weights;
 }
 
-/// For each sight, how many sights before it continue one another, itself included: standing, at
-/// the usual rate, with the same labels.
+/// For each sight, the length of the run that ends with it: sights in which the person stands,
+/// without a gap or a change of labels.
 std::vector<std::size_t> runs_of(const OnePerson& person, const std::vector<Stance>& stances) {
   std::vector<std::size_t> runs(person.sights.size(), 0);
   for (std::size_t i = 0; i < runs.size(); ++i) {

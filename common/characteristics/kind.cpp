@@ -21,7 +21,7 @@ std::optional<double> median_of(const std::vector<Characteristics>& sensors,
   return median(std::move(all));
 }
 
-/// What the sensors that know agree on; Mixed if they do not.
+/// What all sensors show that show anything; Mixed if they differ.
 FrontRear front_rear_of(const std::vector<Characteristics>& sensors) {
   FrontRear common = FrontRear::Unknown;
   for (const Characteristics& sensor : sensors) {
@@ -79,10 +79,10 @@ std::optional<Noise> told_noise(const Measured& measured, const Noise& jitter, d
   return noise;
 }
 
-std::optional<DepthBias> told_bias(const Measured& measured) {
-  std::optional<DepthBias> bias = measured.walked_bias;
+std::optional<MeasuredDepthBias> told_bias(const Measured& measured) {
+  std::optional<MeasuredDepthBias> bias = measured.walked_bias;
   for (const Characteristics& sensor : measured.sensors) {
-    if (sensor.depth_bias) bias = sensor.depth_bias;
+    if (sensor.depth_bias) bias = sensor.depth_bias->mean;
   }
   if (bias && bias->bias < kSigmasToTell * bias->sigma) return std::nullopt;
   return bias;

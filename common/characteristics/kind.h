@@ -1,5 +1,5 @@
-// What sensors of one kind have in common: from the characteristics of one or several of them to
-// what fusion, registration and simulation can be told.
+// What sensors of one kind have in common: turns the characteristics of one or several of them into
+// settings of fusion, registration and simulation.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@ namespace chorus::characteristics {
 /// All that was measured.
 struct Measured {
   std::vector<Characteristics> sensors;
-  std::optional<Agreement> agreement;    ///< Of registered sensors.
-  std::optional<DepthBias> walked_bias;  ///< What their walk says; only bias and sigma are set.
+  std::optional<Agreement> agreement;            ///< Of registered sensors.
+  std::optional<MeasuredDepthBias> walked_bias;  ///< What their walk says.
 };
 
 struct Kind {
@@ -22,16 +22,18 @@ struct Kind {
   std::optional<double> exchanged_at, back_at;  ///< Medians [rad].
   Noise jitter;       ///< Of the trunk; root mean square over the sensors.
   Noise limb_jitter;  ///< The same of elbows, wrists, knees and ankles.
-  Delivery delivery;  ///< Means over the sensors.
-  /// What fusion.noise should be, if the recordings say so: errors that last are in it, so it needs
-  /// several registered sensors, or a jitter that is larger than `usual` all by itself.
+  Delivery delivery;  ///< Means over the sensors; the longest gap of any.
+  /// What fusion.noise should be; none if the recordings do not tell.  It contains errors that
+  /// last, which jitter does not show.  So it is known from several registered sensors, or, as a
+  /// lower limit, from a jitter that alone exceeds `usual`.
   std::optional<Noise> noise;
-  /// The depth bias to tell registration: measured by a mark or by a walk, and at least two of its
-  /// own standard deviations, because a bias that is not there costs accuracy.
-  std::optional<DepthBias> depth_bias;
+  /// The depth bias to tell registration, measured with a mark or, if there was none, by a walk.
+  /// None if it is below two of its standard deviations: to correct a bias that does not exist
+  /// costs accuracy.
+  std::optional<MeasuredDepthBias> depth_bias;
 };
 
-/// `usual`: what fusion takes of a sensor that nothing is known of [m].
+/// `usual`: the noise that fusion assumes of a sensor about which nothing is known [m].
 [[nodiscard]] Kind kind_of(const Measured& measured, double usual);
 
 }  // namespace chorus::characteristics

@@ -14,8 +14,8 @@ namespace chorus::characteristics {
 namespace {
 
 constexpr std::size_t kSectors = 12;        // of 30 deg, over the whole circle
-constexpr std::size_t kLeastSectors = 9;    // a bias and a circle are three unknowns
-constexpr std::size_t kFewestInSector = 5;  // in a sector
+constexpr std::size_t kLeastSectors = 9;    // with fewer, bias and circle are hard to tell apart
+constexpr std::size_t kFewestInSector = 5;  // sights
 constexpr std::array kSpine{JointId::SpineBase, JointId::SpineMid, JointId::SpineShoulder,
                             JointId::Neck};
 constexpr double kFull = 2 * std::numbers::pi;
@@ -50,18 +50,17 @@ Shortfall shortfall_of(JointId id, double distance, const OnePerson& person,
     const auto sector = std::min(
         kSectors - 1, static_cast<std::size_t>(turn / kFull * static_cast<double>(kSectors)));
     const double level = std::hypot(joint.position.x(), joint.position.z());
-    // Along the line of sight, which is longer than what is seen of it from above.
+    // Converts the horizontal shortfall to one along the line of sight, which is longer.
     shortfall.sum[sector] += (distance - level) * joint.position.norm() / std::max(level, 1e-3);
     ++shortfall.count[sector];
   }
   return shortfall;
 }
 
-/// The bias of one joint, and in each sector what the joint's circle about the mark does not
-/// explain.
+/// The bias of one joint: over all sectors, and in each of them.
 struct JointBias {
   double bias = 0.0;
-  std::array<double, kSectors> left{};  ///< Bias and residual [m].
+  std::array<double, kSectors> by_sector{};  ///< Mean shortfall without the circle [m].
 };
 
 JointBias fit(const Shortfall& shortfall) {
@@ -77,7 +76,7 @@ JointBias fit(const Shortfall& shortfall) {
   JointBias joint{found[0], {}};
   for (std::size_t i = 0; i < kSectors; ++i) {
     if (!shortfall.known(i)) continue;
-    joint.left[i] =
+    joint.by_sector[i] =
         shortfall.mean(i) - found[1] * std::cos(middle_of(i)) - found[2] * std::sin(middle_of(i));
   }
   return joint;
@@ -106,8 +105,8 @@ Spread& part_of(std::array<Spread, 3>& parts, std::size_t sector) {
 
 }  // namespace
 
-Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
-                                const std::vector<Stance>& stances) {
+Result<MarkedDepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
+                                      const std::vector<Stance>& stances) {
   if (!person.has_floor)
     return fail(ErrorCode::InvalidArgument, person.sensor.str(),
                 "states no floor plane, so that a distance along the floor cannot be compared with "
@@ -121,7 +120,7 @@ Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
     joints.add(joint.bias);
     for (std::size_t i = 0; i < kSectors; ++i) {
       if (!shortfall.known(i)) continue;
-      part_of(parts, i).add(joint.left[i]);
+      part_of(parts, i).add(joint.by_sector[i]);
     }
   }
   if (joints.count < 2)
@@ -133,8 +132,10 @@ Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
     if (part.count > 0) sides.add(part.mean());
   }
   const double sigma = std::hypot(joints.error(), sides.error());
-  return DepthBias{joints.mean(), std::hypot(mark.sigma, sigma), parts[0].mean(), parts[1].mean(),
-                   parts[2].mean()};
+  return MarkedDepthBias{{joints.mean(), std::hypot(mark.sigma, sigma)},
+                         parts[0].mean(),
+                         parts[1].mean(),
+                         parts[2].mean()};
 }
 
 }  // namespace chorus::characteristics

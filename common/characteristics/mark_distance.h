@@ -1,13 +1,14 @@
 // By how much a sensor reports a person too near, from a tape: the person stands on a mark on the
 // floor whose horizontal distance from the sensor was measured, and turns there once.
 //
-// A joint of the spine is off the mark by some centimetres, but that offset turns with the person:
-// with theta the angle of the front away from the sensor, the joint's horizontal distance is
+// A joint of the spine is some centimetres beside the mark, but this offset turns with the person.
+// If theta is the angle of the person's front away from the sensor, the joint's horizontal distance
+// is
 //
 //   r(theta) = D - b + p cos(theta) + q sin(theta)
 //
 // fitted by least squares over sectors of theta, so that nobody has to stand exactly on the mark.
-// What is left of a sector is how the error differs from view to view.
+// The sectors' own means, without p and q, show how the bias differs from front to side and rear.
 #pragma once
 
 #include <optional>
@@ -16,25 +17,29 @@
 
 namespace chorus::characteristics {
 
-/// Horizontal distance on the floor from below the sensor to the mark, and how well it was measured
-/// (1 sigma) [m].
+/// Distance along the floor from the point below the sensor to the mark, and its standard deviation
+/// [m].
 struct Mark {
   double distance = 0.0;
   double sigma = 0.01;
 };
 
-/// How much nearer than they are joints are reported, along the line of sight [m].
-struct DepthBias {
+/// By how much joints are reported too near, along the line of sight [m].
+struct MeasuredDepthBias {
   double bias = 0.0;
-  /// Of the mean over joints and sides: of the tape, and by how much joints, and the front, the
-  /// side and the rear of a person, differ (1 sigma).
-  double sigma = 0.0;
-  double front = 0.0, side = 0.0, rear = 0.0;  ///< By where the person's front is.
+  double sigma = 0.0;  ///< Standard deviation of `bias`.
 };
 
-/// InvalidArgument, saying what to do, without a floor plane (the sensor may be tilted), or if the
-/// person did not turn by most of a circle.
-[[nodiscard]] Result<DepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
-                                              const std::vector<Stance>& stances);
+struct MarkedDepthBias {
+  /// The sigma is from the tape, and from how far the joints, and the front, the side and the rear
+  /// of the person, differ.
+  MeasuredDepthBias mean;
+  double front = 0.0, side = 0.0, rear = 0.0;  ///< The bias by where the person's front is [m].
+};
+
+/// InvalidArgument, saying what to do, if there is no floor plane (the sensor may be tilted), or if
+/// the person did not turn through most of a circle.
+[[nodiscard]] Result<MarkedDepthBias> depth_bias_by(const Mark& mark, const OnePerson& person,
+                                                    const std::vector<Stance>& stances);
 
 }  // namespace chorus::characteristics

@@ -58,7 +58,7 @@ void take_sights(const std::vector<SensorFrame>& frames, OnePerson& person) {
   }
 }
 
-/// Whether the person stands, by how far the trunk comes in a second.
+/// Decides where the person stands, by how far the trunk moves in a second.
 void find_standing(std::vector<Sight>& sights) {
   std::size_t from = 0;
   std::size_t to = 0;
@@ -73,7 +73,7 @@ void find_standing(std::vector<Sight>& sights) {
   }
 }
 
-/// None if the frames are so few that nothing can be said.
+/// Median time between frames [s].
 double step_of(const std::vector<Timestamp>& frames) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < frames.size(); ++i)

@@ -16,12 +16,12 @@ struct Sight {
   /// In sensor space turned upright about the sensor (+y is up), so that distances and lines of
   /// sight stay what they were.
   Skeleton<SensorSpace> body;
-  bool standing = false;  ///< Their trunk moves by less than kStandingSpeed.
+  bool standing = false;  ///< Their trunk moves more slowly than kStandingSpeed.
 };
 
-/// A trunk slower than this belongs to somebody who stands or turns on the spot [m/s].
+/// Somebody whose trunk is slower than this stands, or turns on the spot [m/s].
 inline constexpr double kStandingSpeed = 0.25;
-/// The least time of standing that is measured [s].
+/// Less time of standing than this is not measured [s].
 inline constexpr double kLeastStanding = 5.0;
 
 /// Frames farther apart than this many usual steps have a gap between them.
@@ -42,8 +42,8 @@ struct OnePerson {
 [[nodiscard]] std::optional<Eigen::Vector3d> trunk_of(const Skeleton<SensorSpace>& body);
 
 /// Frames of one sensor in order of capture.  Refuses, saying what to record instead, if there is
-/// nobody, more than one person, only rays, less than kLeastStanding seconds of a person, or less
-/// of standing.  Of several bodies in few frames, the nearest to the one before counts.
+/// nobody, more than one person, only rays, or less than kLeastStanding seconds of a person who
+/// stands.  If a few frames have several bodies, the one nearest to the body before counts.
 [[nodiscard]] Result<OnePerson> one_person(const std::vector<SensorFrame>& frames);
 
 }  // namespace chorus::characteristics

@@ -12,20 +12,20 @@ namespace chorus::characteristics {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kReliable =
-    deg(30);  // Otto 3.2: 40, but trackers may stay at 40 while somebody turns on
-constexpr double kBehind = deg(135);  // from here on somebody turns their back, as facing has it
+// Otto 3.2 says 40 deg, but trackers may stay at 40 while the person turns on.
+constexpr double kReliable = deg(30);
+constexpr double kBehind = deg(135);  // from here on people turn their back, as in facing
 constexpr double kInFront = deg(45);
-constexpr double kHolds = 0.3;           // a change of labels that lasts shorter is a slip [s]
-constexpr double kLeastBehind = 1.0;     // [s]
-constexpr double kMostly = 0.8;          // share of the time
+constexpr double kHolds = 0.3;        // a change of labels that is shorter than this is a slip [s]
+constexpr double kLeastBehind = 1.0;  // [s]
+constexpr double kMostly = 0.8;       // share of the time
 constexpr double kTurningRate = deg(3);  // slower is standing [rad/s]
 constexpr double kRateOver = 0.5;        // time over which the rate is taken, to either side [s]
-constexpr double kFastest = deg(120);    // people who turn on the spot [rad/s]
-constexpr double kTurnJump = deg(20);    // by which shoulders err from sight to sight [rad]
+constexpr double kFastest = deg(120);    // of people who turn on the spot [rad/s]
+constexpr double kTurnJump = deg(20);    // by which shoulders are wrong from sight to sight [rad]
 constexpr double kShortest = 1e-3;       // [s]
 constexpr double kWayShare = 1.0 / 12;   // of a turn: 30 deg
-constexpr double kAtTheEnd = 1.0;        // [s]
+constexpr double kAtTheEnd = 1.0;        // last part of the recording [s]
 constexpr double kNarrowest = 0.12;      // narrower shoulders have no direction [m]
 
 /// The angle of the front as shown; none where the shoulders are too narrow to have one.
@@ -45,9 +45,10 @@ long half_turns(double angle) { return std::lround(angle / kPi); }
 struct Followed {
   std::size_t sight = 0;
   double time = 0.0;   ///< [s]
-  double shown = 0.0;  ///< With labels [rad].
-  double angle = 0.0;  ///< Without labels, counted on [rad].
-  /// False while the sensor changes its mind: the line through the shoulders turns anyhow then.
+  double shown = 0.0;  ///< As labelled [rad].
+  double angle = 0.0;  ///< Independent of labels, not wrapped [rad].
+  /// False while the sensor exchanges the labels: the line through the shoulders is meaningless
+  /// then.
   bool kept = true;
   [[nodiscard]] bool reliable() const {
     return kept && std::abs(angle - kPi * static_cast<double>(half_turns(angle))) <= kReliable;
@@ -56,7 +57,7 @@ struct Followed {
 
 std::vector<Followed> follow(const OnePerson& person) {
   std::vector<Followed> all;
-  std::size_t last = 0;  // that was kept
+  std::size_t last = 0;  // the last one that was kept
   for (std::size_t i = 0; i < person.sights.size(); ++i) {
     const auto shown = shown_angle(person.sights[i].body);
     if (!shown) continue;
@@ -100,7 +101,7 @@ void bridge_sides(std::vector<Followed>& all) {
   }
 }
 
-/// Which way a known turn goes, by what is shown of its first 30 degrees.
+/// Direction of a known turn, +1 or -1, from its first 30 degrees.
 double way_of(const KnownTurn& turn, const std::vector<Followed>& all) {
   const double early = turn.from + kWayShare * (turn.to - turn.from);
   double before = 0.0;
@@ -124,7 +125,7 @@ void turn_as_known(std::vector<Followed>& all, const std::vector<KnownTurn>& tur
   for (std::size_t i = 0; i < all.size(); ++i) all[i].angle = angles[i];
 }
 
-/// Takes short changes of labels back.
+/// Undoes short changes of labels.
 void without_slips(std::vector<Stance>& stances, const OnePerson& person) {
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < stances.size(); ++i) {
@@ -184,7 +185,7 @@ std::optional<double> share_between(const Exchange& exchange, double least, doub
   return exchanged / lasts;
 }
 
-/// Whether the last second is of somebody who faces the sensor, with the labels as at first.
+/// Whether the person does not turn their back to the sensor for most of the last second.
 bool ends_facing(const OnePerson& person, const std::vector<Stance>& stances) {
   std::size_t all = 0;
   std::size_t facing = 0;

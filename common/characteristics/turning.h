@@ -1,12 +1,12 @@
 // At which angle of the person a sensor exchanges left and right, and at which it changes back.
 //
-// A body tracker may take everybody for facing it (Otto et al. 3.2): of somebody who turns it
-// exchanges the labels near 130 deg and, on the way back, between 100 and 40.  How far a person has
-// turned is seen without labels: the line through the shoulders is the same line when its ends are
-// exchanged, so that it is followed from frame to frame modulo half a turn.  It begins as the half
-// turn in which the person faces the sensor.  Between 30 and 150 deg that line is not to be
-// trusted (Otto Fig. 6: trackers lag behind), so there the angle is taken as growing evenly with
-// time from the one side to the other: exact for a robot, good to some 10 deg for a person.
+// A body tracker may assume that everybody faces it (Otto et al. 3.2).  If a person turns away, it
+// exchanges the labels near 130 deg and, when they turn back, changes them back between 100 and 40.
+// How far a person has turned is seen without labels: the line through the shoulders is the same
+// when its ends are exchanged, so it is followed from frame to frame modulo half a turn, from a
+// person who faces the sensor on.  Between 30 and 150 deg that line is not trusted (Otto Fig. 6:
+// trackers lag behind).  There the angle is assumed to grow evenly with time: exact for a robot,
+// good to some 10 deg for a person.
 #pragma once
 
 #include <array>
@@ -19,34 +19,34 @@ namespace chorus::characteristics {
 
 /// How the person stands in one sight.
 struct Stance {
-  /// Of the front away from the sensor, counted on over whole turns; 0: facing it [rad].  None
-  /// where no shoulders are seen.
+  /// Angle of the person's front away from the sensor, not wrapped at whole turns; 0: facing it
+  /// [rad].  None where no shoulders are seen.
   std::optional<double> angle;
   bool exchanged = false;  ///< Left and right are exchanged, if there is an angle.
 };
 
-/// A whole turn that is known to be even, as on a turntable: seconds since the first frame.
+/// The time of a whole turn at constant speed, as on a turntable [s since the first frame].
 struct KnownTurn {
   double from = 0.0;
   double to = 0.0;
 };
 
 /// One for each sight.  The person must face the sensor, within 90 deg, when the recording begins.
-/// If turns are known, they alone are the angle; which way each goes is seen from its beginning.
-/// They are needed for trackers that turn the body back when they take a side for a front: of such
-/// a turn the shoulders never show the rear.
+/// If turns are known, the angle follows from them alone; only the direction of each is taken from
+/// what its beginning shows.  They are needed for trackers that take a side for a front and turn
+/// the body back, because their shoulders never show the rear.
 [[nodiscard]] std::vector<Stance> stances_of(const OnePerson& person,
                                              const std::vector<KnownTurn>& turns = {});
 
-/// The angle of a stance without its turns and its sign: 0 (facing the sensor) to pi.
+/// The angle of a stance without whole turns and sign: from 0 (facing the sensor) to pi.
 [[nodiscard]] double away_from_sensor(double angle);
 
-inline constexpr std::size_t kTurnSectors = 12;  ///< Of 15 deg, as facing's habits.
+inline constexpr std::size_t kTurnSectors = 12;  ///< Of 15 deg, as in facing/exchange_habit.h.
 
 /// What was seen while the person's front was in one sector, turning away and turning back.
 struct TurnSector {
   double away_s = 0.0, back_s = 0.0;                      ///< How long [s].
-  double exchanged_away_s = 0.0, exchanged_back_s = 0.0;  ///< Of that with exchanged labels [s].
+  double exchanged_away_s = 0.0, exchanged_back_s = 0.0;  ///< How long with exchanged labels [s].
 };
 
 enum class FrontRear {
@@ -54,8 +54,8 @@ enum class FrontRear {
   Tells,           ///< Labels are right from behind.
   TakesForFacing,  ///< Labels are exchanged from behind, as if everybody faced the sensor.
   Mirrored,        ///< Labels are exchanged in front: a mirrored picture.
-  Unclear,         ///< The person walks, or ends with their back to the sensor, it seems.
-  Mixed,           ///< Now this, now that.
+  Unclear,         ///< The person walks, or seems to end with their back to the sensor.
+  Mixed,           ///< Labels from behind are exchanged at some times only.
 };
 
 struct Exchange {

@@ -6,7 +6,7 @@
 
 namespace chorus::exporters {
 
-/// Number of digits after the point of a time in seconds: it is written in microseconds.
+/// Number of digits after the point of a time in seconds, which is written to the microsecond.
 inline constexpr int kTimeDigits = 6;
 
 /// Appends a number with `digits` after the point, never "-0"; 0 if it is not finite.

@@ -8,8 +8,8 @@ namespace chorus::net {
 /// Makes the socket send at once (TCP_NODELAY) and repeat a lost packet after 60 ms instead of 200
 /// ms, without doubling that time as long as few packets are under way, because in an event stream
 /// a lost packet delays all frames behind it.  On connections with longer round trips the kernel
-/// still lengthens the time.  An option that the kernel does not know is ignored: before Linux 6.15
-/// the 60 ms.
+/// still lengthens the time.  Options that the kernel does not know are ignored: before Linux
+/// 6.15 it keeps the 200 ms.
 void make_prompt(Socket& socket);
 
 }  // namespace chorus::net

@@ -5,8 +5,8 @@
 
 namespace chorus::net {
 
-/// Limits the data that the kernel queues in addition to what the reader has room for to about 4
-/// kB, because queued data can no longer be replaced by something newer.
+/// Limits the data that the kernel queues, beyond what the reader has room for, to about 4 kB,
+/// because queued data can no longer be replaced by something newer.
 void keep_queue_small(Socket& socket);
 
 /// True when the kernel's send queue is nearly empty; data of a finished write may still be in it.

@@ -31,9 +31,9 @@ struct FrameRecording {
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 
-/// Reads one sensor of a recording (a file, or a folder of files): its only sensor or, of several,
-/// `which`.  Refuses frames that go back in time or repeat a capture time, unless a recorded clock
-/// model corrects their times; the error says where.
+/// Reads one sensor of a recording (a file, or a folder of files): `which`, or the only sensor if
+/// `which` is empty or the recording is not that of a cell.  Refuses frames that go back in time or
+/// repeat a capture time, unless a recorded clock model corrects their times; the error says where.
 [[nodiscard]] Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
                                                           const ReadLimits& limits = {},
                                                           const SensorId& which = {});

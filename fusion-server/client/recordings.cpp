@@ -1,6 +1,5 @@
 #include "fusion-server/client/recordings.h"
 
-#include <ostream>
 #include <system_error>
 
 namespace chorus::client {
@@ -19,19 +18,6 @@ Result<std::vector<fs::path>> find_recordings(const std::vector<fs::path>& input
   }
   if (all.empty()) return fail(ErrorCode::InvalidArgument, "recordings", "none were named.");
   return all;
-}
-
-Result<record::CellRecording> read_recordings(const std::vector<fs::path>& files,
-                                              std::ostream* notes) {
-  auto cell = record::read_cell(files);
-  if (!cell) return cell;
-  if (cell->sensors.empty())
-    return fail(ErrorCode::NotFound, files.front().string(),
-                "holds no frames of a sensor; was it recorded with --fused alone?");
-  if (notes != nullptr) {
-    for (const std::string& note : notes_of(*cell)) *notes << "note: " << note << '\n';
-  }
-  return cell;
 }
 
 std::vector<std::string> notes_of(const record::CellRecording& cell) {

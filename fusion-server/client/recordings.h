@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -15,12 +14,6 @@ namespace chorus::client {
 /// folder.  Errors: an input does not exist or cannot be read, or there is no file.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
-
-/// Reads the recordings completely.  Refuses an empty list, recordings without a sensor's frames,
-/// and two recordings of the same sensor unless they are parts of one recording.  Writes damaged or
-/// omitted parts to `notes`, unless it is null.
-[[nodiscard]] Result<record::CellRecording> read_recordings(
-    const std::vector<std::filesystem::path>& files, std::ostream* notes);
 
 /// One line for each thing that reading left out: damage first, then notes per sensor.
 [[nodiscard]] std::vector<std::string> notes_of(const record::CellRecording& cell);

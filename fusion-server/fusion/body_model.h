@@ -55,7 +55,8 @@ struct BodyModel {
   /// Start of the estimate of how far views differ (disagreement.h), in units of their stated
   /// variances, by which these are multiplied; 0: they are used as they are.
   double disagreement = 0.5;
-  /// Standard deviation per axis of what all views have wrong alike [m], for each unit of that.
+  /// Standard deviation per axis of the error that all views share [m], per unit of the estimated
+  /// disagreement.
   double common = 0.013;
   /// How long a joint that nobody sees is predicted.
   Duration carry = std::chrono::seconds(1);

@@ -1,8 +1,9 @@
-// How far the views of one person differ, and what that says of the fused joints' errors.
+// How far the views of one person differ, and what that says about the fused joints' errors.
 //
-// Views that differ by more than their variances say err by more; they also err by more in common,
-// which nothing in them shows.  So what is stated of a joint is scaled by what the run itself has
-// shown, slowly, from a prior on:                                          docs/papers/body.md (19)
+// Views that differ by more than their variances say also have larger errors, and more of the
+// errors that they share, which their differences do not show.  So the stated covariance of a joint
+// is scaled by a slow average of what the views have shown, starting from a prior:
+//                                                                        docs/papers/body.md (19)
 //   g <- mean over joints and 5 s of  sum_v w_v |z_v - x|^2 / (3 s_v (n - 1))
 // It changes no position.  Errors that all sensors make alike are not found by this.
 #pragma once

@@ -41,16 +41,16 @@ struct TreeNode {
 /// The root comes first, children come after their parents.
 using ErrorTree = std::vector<TreeNode>;
 
-/// What every prediction lies between [m].
+/// Limits of every prediction [m].
 inline constexpr double kLeastPrediction = 1e-3;
 inline constexpr double kMostPrediction = 1.0;
 
 struct JointPredictor {
-  /// Root mean square of (error / predicted error) in training: the prediction times this is the
-  /// root mean square error for which the stated covariance is honest.
+  /// Root mean square of (error / predicted error) in training.  The prediction times this is the
+  /// root mean square error, from which the stated covariance is made.
   double rms = 1.0;
-  /// What predictions are limited to [m]: the 5th percentile of the errors in training, and the
-  /// largest.  A line easily falls below zero, and a view must not outvote all others by that.
+  /// Limits of predictions [m]: the 5th percentile and the largest of the errors in training.  A
+  /// linear prediction can fall below zero; its view would then outvote all others.
   double least = kLeastPrediction;
   double most = kMostPrediction;
   double constant = 0.0;              ///< [m], or log(m) with log link.

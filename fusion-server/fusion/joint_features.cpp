@@ -15,8 +15,8 @@ double yaw_towards(const Eigen::Vector3d& direction) {
   return std::atan2(direction.x(), direction.z());
 }
 
-/// The joint's bearing: the neck's, which the sensor's pose is needed for, and the angle between
-/// the two as seen from the sensor.
+/// The joint's bearing: that of the neck, which the view states, plus the horizontal angle from the
+/// neck to the joint as seen from the sensor.
 double bearing_of(const SensorView& view, const Eigen::Vector3d& joint) {
   const Joint& neck = view.skeleton[JointId::Neck];
   if (!neck.seen()) return kUnknownFeature;

@@ -58,9 +58,9 @@ struct FusedJoint {
 /// Sets a fused joint's covariance and, computed from it, the mean variance.
 void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance);
 
-/// By how much one view determines a position: the mean of the diagonal of `spread` `information`,
-/// the matrix by which its measurement is multiplied.  `spread` is the inverse of the information
-/// of all views together, so that all of them make 1.
+/// By how much one view determines a position: the mean of the diagonal of the product `spread` *
+/// `information`, by which its measurement is multiplied.  `spread` is the inverse of the summed
+/// information of all views, so the results of all views sum to 1.
 [[nodiscard]] double pull_of(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread);
 
 /// Mean variance per axis [m^2].

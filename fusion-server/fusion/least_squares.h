@@ -3,10 +3,12 @@
 // A point z constrains all three axes, with its covariance Sigma.  A ray from an eye along the unit
 // direction d constrains the two axes across it: at range r = d . (p - eye) its direction's
 // covariance C [rad^2] becomes r^2 C [m^2].
-//   p = argmin sum_i rho(|p - z_i|_Sigma_i) solved by Gauss-Newton with re-weighting. The influence
-//   of a measurement grows like Huber's up to `huber`, then stays constant, and fades beyond 5
-//   standard deviations. That is not convex: where three or more measurements contradict each
-//   other, single ones and pairs are tried as starts (docs/papers/rays.md).
+//   p = argmin sum_i rho(|p - z_i|_Sigma_i)
+//
+// is solved by Gauss-Newton with re-weighting.  The influence of a measurement grows like Huber's
+// up to `huber`, then stays constant, and fades beyond 5 standard deviations.  That is not convex:
+// where three or more measurements contradict each other, single ones and pairs are tried as starts
+// (docs/papers/rays.md).
 #pragma once
 
 #include <optional>

@@ -4,8 +4,9 @@
 // can tell from motion.  But a foot turns little on the shank, and a hand on the forearm:
 //   x <- x + k (a + M m - x),   k = S / (S + S_a + (limb_end |m|)^2)     docs/papers/body.md (18)
 // with a the ankle or wrist, M the axes of the limb, m the usual way from a to the joint in those
-// axes, and S, S_a the stated variances of both joints.  Nobody is held who moves otherwise: m and
-// its scatter are learned, and k falls where the views are far from it.
+// axes, and S, S_a the stated variances of both joints.  m and its scatter are learned.  A scatter
+// that the views' errors do not explain takes the place of (limb_end |m|)^2 if it is larger, and k
+// falls where the views are far from m, so that unusual motion is not held back.
 #pragma once
 
 #include <array>
@@ -15,8 +16,7 @@
 
 namespace chorus::fusion {
 
-/// Stated variance of each joint according to its views, per axis [m^2]; 0: no use can be made of
-/// it.
+/// Stated variance of each joint according to its views, per axis [m^2]; 0: the joint is left out.
 using StatedVariances = std::array<double, kJointCount>;
 
 class LimbEnds {

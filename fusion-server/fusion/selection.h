@@ -1,10 +1,13 @@
 // The methods that trust one view at a time, as Otto et al. 2.4 list them.
 //
-// best-skeleton: the view of the highest score (view_score.h), whole.  It changes only after
-// another view has been better for FusionConfig::hysteresis, or when it is gone, so that the body
-// does not flicker between two equal views. joint-counting: the view with the most tracked joints,
-// whole. substitution: the best skeleton, but a joint that it does not track comes from the best
-// view that tracks it.  Of equal views, that with the smallest sensor id is taken.
+// - best-skeleton: the whole view with the highest score (view_score.h).  It changes only when
+//   another view has been better for FusionConfig::hysteresis, or when it is gone, so that the body
+//   does not flicker between two equal views.
+// - joint-counting: the whole view with the most tracked joints.
+// - substitution: the best skeleton, but a joint that it does not track comes from the best view
+//   that tracks it.
+//
+// Of equal views, the one with the smallest sensor id is taken.
 #pragma once
 
 #include <memory>

@@ -54,8 +54,8 @@ class SightedBody {
   /// freedom, in units of the points' stated variances; only over joints that several views show,
   /// all as points without a covariance of their own; none if there is no such joint.
   [[nodiscard]] std::optional<double> disagreement() const;
-  /// Number of views that show a joint as points without a covariance of their own; 0 if any has
-  /// more.
+  /// Number of views that show a joint as points without a covariance of their own; 0 if a view
+  /// shows a ray or states a covariance.
   [[nodiscard]] std::size_t plain_views(std::size_t joint) const;
   /// Mean square of the views' scale errors; none if fewer than two views have points.
   [[nodiscard]] std::optional<double> scale_square() const;

@@ -25,7 +25,7 @@ constexpr int kTrees = 30;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr int kMargin = 1;                // XGBoosterPredict: sums before the link
 constexpr double kSameSum = 1e-3;         // sums are of single precision
-constexpr std::size_t kMostNodes = 1000;  // of one tree; more are not XGBoost's at this depth
+constexpr std::size_t kMostNodes = 1000;  // of one tree; trees of this depth are far smaller
 
 using Handle = void*;
 using Length = std::uint64_t;
@@ -52,7 +52,7 @@ bool find(void* library, const char* name, Call& call) {
   return call != nullptr;
 }
 
-/// None if the library is not installed, or is not the one we know.  It stays loaded.
+/// Null if the library is not installed, or lacks a function.  It stays loaded.
 const Calls* loaded() {
   static const std::unique_ptr<const Calls> kCalls = []() -> std::unique_ptr<const Calls> {
     void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
@@ -134,7 +134,7 @@ class Training {
   Handle booster_ = nullptr;
 };
 
-/// Adds a node and those below it; the index, or none if the dump is not as we know it.
+/// Adds a node and those below it; returns its index, or none if the dump has an unknown form.
 std::optional<int> add_node(const json& dumped, fusion::ErrorTree& tree) {
   if (tree.size() >= kMostNodes || !dumped.is_object()) return std::nullopt;
   const auto at = tree.size();
@@ -167,7 +167,7 @@ Result<fusion::ErrorTree> tree_of(const std::string& dumped) {
   return fail(ErrorCode::Unsupported, kLibrary, "describes its trees in an unknown way");
 }
 
-/// Sets the constant, and makes sure that our evaluation of the trees is XGBoost's.
+/// Sets the constant, and checks that our evaluation of the trees agrees with XGBoost's.
 Result<void> compare(Boosted& boosted, std::span<const fusion::Features> features,
                      const std::vector<float>& sums) {
   fusion::ErrorPredictor ours;

@@ -19,8 +19,8 @@ struct Boosted {
 };
 
 /// Boosts trees that minimise the gamma deviance of one joint's errors [m], which must be positive.
-/// The result was compared with the library's own prediction for every sample.  Unavailable if the
-/// library is not installed.
+/// Before they are returned, our evaluation of the trees is compared with the library's for every
+/// sample.  Unavailable if the library is not installed.
 [[nodiscard]] Result<Boosted> boost_errors(std::span<const fusion::Features> features,
                                            std::span<const double> errors);
 

@@ -20,10 +20,10 @@ namespace chorus::learn {
 
 [[nodiscard]] std::string write_predictor(const fusion::ErrorPredictor& predictor);
 
-/// Refuses what is not such a file, naming the part that is wrong and what it should be.
+/// An error names the part of the text that is wrong, and what it should be.
 [[nodiscard]] Result<fusion::ErrorPredictor> read_predictor(std::string_view text);
 
-/// Reads a file; the errors' context begins with its name.
+/// read_predictor() of a file, whose name begins the context of errors.
 [[nodiscard]] Result<fusion::SharedPredictor> load_predictor(const std::filesystem::path& file);
 
 }  // namespace chorus::learn

@@ -14,7 +14,7 @@ struct ErrorSample {
   double error = 0.0;  ///< Distance from the true joint [m].
 };
 
-/// Adds a sample for each point of each view of which `exact` has the joint.  The views are those
+/// Adds a sample for each point of each view if `exact` has that joint, too.  The views are those
 /// that fusion gets: at the common instant, in world space, with left and right resolved.
 void add_samples(const Person& person, const Skeleton<WorldSpace>& exact,
                  std::vector<ErrorSample>& samples);

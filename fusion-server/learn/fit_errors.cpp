@@ -23,11 +23,12 @@ using fusion::PredictorKind;
 
 // Smaller errors count as this [m], because the logarithm of 0 is not finite.
 constexpr double kLeastError = 1e-4;
-// Share of a feature's variance that is added to it, so that one that never varies has no
-// coefficient.
+// Share of a feature's variance that is added to it, so that a feature that never varies gets a
+// coefficient of zero.
 constexpr double kRidge = 1e-6;
 constexpr double kLeastVariance = 1e-12;
-constexpr double kMostLog = 3.0;  // predictions in between are limited to exp(+-this) of the mean
+// Between rounds, predictions stay within this of the mean's logarithm.
+constexpr double kMostLog = 3.0;
 constexpr double kLowest = 0.05;  // share of errors below JointPredictor::least
 constexpr int kGammaRounds = 50;
 constexpr double kConverged = 1e-9;
@@ -74,7 +75,7 @@ double mean_error(const Samples& samples) {
   return sum / static_cast<double>(samples.size());
 }
 
-/// One row per sample: 1, then the features that the kind uses, about their means over all joints.
+/// One row per sample: 1, then the features that the kind uses, minus their means over all joints.
 class Design {
  public:
   Design(const Samples& samples, const ErrorPredictor& predictor) : predictor_(predictor) {

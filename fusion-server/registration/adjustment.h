@@ -35,9 +35,10 @@ struct Adjusted {
   Places places;  ///< The world is level, with its origin on the floor.
   /// Covariances of (omega, tau), applied on the world's side; only for sensors that took part.
   std::map<SensorId, Matrix6> covariances;
-  /// What is told, as far as the walk has moved it; or a large one that nobody told, see below.
+  /// The configured depth bias, as corrected by the walk; or a large one that the walk shows, see
+  /// found_bias.
   WalkedDepthBias depth_bias;
-  /// Nothing was told of the depth bias, and the walk shows one above 30 mm and 3.5 sigma.
+  /// True if no depth bias was configured, and the walk shows one above 30 mm and 3.5 sigma.
   bool found_bias = false;
 };
 

@@ -25,7 +25,7 @@ struct DepthBias {
 /// As configured, with the present estimate as expected.
 [[nodiscard]] DepthBias depth_bias_of(const RegistrationConfig& config);
 
-/// What to do about a depth bias that the walk shows and nobody has told.
+/// What to do about a depth bias that the walk shows and nobody has configured.
 [[nodiscard]] std::string advice_on(const WalkedDepthBias& found);
 
 /// The robust loss (Geman-McClure) of the sensor's own floor; 0 without one.

@@ -20,14 +20,15 @@
 
 namespace chorus::registration {
 
-/// One sensor's measurement of one point, in the sensor's levelled frame, or the difference of two:
-/// then T_i m_i stands for R_i m_i + lever * t_i, and the I in J_i for lever * I.
+/// One sensor's measurement of one point, in the sensor's levelled frame.  Or the difference of two
+/// measurements, in which the sensor's position counts `lever` times: then read R_i m_i + lever *
+/// t_i for T_i m_i, and lever * I for the I in J_i.
 struct PointMeasurement {
   std::size_t sensor = 0;  ///< Index into the places.
   Eigen::Vector3d x;       ///< [m]
   Eigen::Vector3d ray;     ///< Unit line of sight.
   double sigma = 0.0;      ///< Standard deviation across the line of sight [m].
-  double lever = 1.0;      ///< How much of the sensor's position the measurement contains.
+  double lever = 1.0;      ///< 1 for a measurement; less for a difference.
   /// Derivative of x by the depth bias: the direction to the point, or the difference of two.
   Eigen::Vector3d nearer = Eigen::Vector3d::Zero();
 };

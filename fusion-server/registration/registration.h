@@ -71,12 +71,12 @@ struct RegistrationConfig {
   /// errors of simulated walks (profiles A and B, seeds 101-120), by likelihood: 2.5 mm is best for
   /// sensors in pairs and rings, 3.5 mm for sensors in rows; this is in between.
   double view_bias = mm(3.0);
-  /// How much nearer than they are all sensors report joints, along the line of sight [m]: a body
-  /// fitted to depth images can lie towards its surface.  The walk moves it from here as far as its
-  /// sigma [m] allows; what remains open adds to the covariances.
+  /// By how much all sensors report joints too near, along the line of sight [m], because a body
+  /// fitted to depth images can be too close to its visible surface.  The walk changes this value
+  /// as far as its sigma [m] allows; what remains uncertain adds to the covariances.
   double depth_bias = 0.0;
   double depth_bias_sigma = 0.0;
-  /// Where nothing is known of the depth bias (both 0): look whether the walk shows a large one.
+  /// If nothing is known of the depth bias (both 0): check whether the walk shows a large one.
   bool find_large_bias = true;
   /// Lengths for sensors that guess depth from a person's size (common_scale.h); where distances
   /// are known, the stature is not used.

@@ -38,8 +38,8 @@ struct WalkPoint {
                                                const RegistrationConfig& config);
 
 /// How long the errors of the sights last: tau of the correlation exp(-lag / tau) of the residuals
-/// of successive points of a slot [s]; zero if they are independent.  `fused`: the
-/// points as seen; those of weight 0 are left out.
+/// of successive points of a slot [s]; zero if they are independent.  `fused`: the points as seen;
+/// those of weight 0 are left out.
 [[nodiscard]] double memory_of(const std::vector<WalkPoint>& points,
                                const std::vector<FusedPoint>& fused,
                                const std::vector<double>& weights);

@@ -78,7 +78,8 @@ std::vector<char> controller_block() {
 }
 
 void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block) {
-  // Readers may read at any time, so a tracked sensor must not be uncalibrated even for a moment.
+  // Readers may read at any time, so the "calibrated" flag of a tracked sensor must not be cleared
+  // even for a moment.
   std::vector<bool> tracked(sensors_in(block));
   const auto number = static_cast<std::int32_t>(frame.sequence & 0x7FFF'FFFFU);
   for (const outlet::TrackerBody& body : frame.bodies) {

@@ -22,7 +22,7 @@ class TrackdOutlet final : public outlet::Outlet {
   [[nodiscard]] std::string_view name() const override { return "trackd"; }
   void send(const outlet::TrackerFrame& frame) override {
     write_sensors(frame, unit_, tracker_.bytes());
-    // The sensors must be written before their time.
+    // The time stamp announces the sensors, so it must be written after them.
     std::atomic_thread_fence(std::memory_order_release);
     write_stamp(frame.instant, tracker_.bytes());
   }

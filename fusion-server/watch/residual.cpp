@@ -81,7 +81,6 @@ Vector3d front_of(const Person& person) {
     const Joint& right = view.skeleton[JointId::ShoulderRight];
     if (shown(left) && shown(right)) across += left.position - right.position;
   }
-  across.y() = 0.0;
   return across.cross(Vector3d::UnitY()).normalized();
 }
 

@@ -122,15 +122,14 @@ Tracks in_step(const Tracks& tracks, const Registration& registration) {
 
 /// All sensors together: the depth bias from their walk; how they differ in the places that are
 /// given, else in those of the walk.
-Result<void> measure_together(RecordedCell& cell, const Recorded& recorded,
-                              pipeline::OfflineConfig config,
-                              const std::optional<Registration>& given, SensorReport& report) {
+void measure_together(RecordedCell& cell, const Recorded& recorded, pipeline::OfflineConfig config,
+                      const std::optional<Registration>& given, SensorReport& report) {
   if (config.registration.depth_bias_sigma == 0.0) config.registration.depth_bias_sigma = kOpenBias;
   const auto walked = pipeline::register_recordings(cell.input(), config);
   if (!walked) {
     report.notes.push_back("depth bias: " + to_string(walked.error()) +
                            "; it takes a walk, or a tape and one sensor (--sensor, --distance)");
-    if (!given) return {};
+    if (!given) return;
   }
   const Registration& registration = given ? *given : *walked;
   const Tracks placed = in_step(recorded.tracks, registration);
@@ -140,8 +139,7 @@ Result<void> measure_together(RecordedCell& cell, const Recorded& recorded,
   report.measured.agreement = characteristics::agreement_of(tracks);
   if (walked && walked->depth_bias)
     report.measured.walked_bias =
-        characteristics::DepthBias{walked->depth_bias->bias, walked->depth_bias->sigma};
-  return {};
+        characteristics::MeasuredDepthBias{walked->depth_bias->bias, walked->depth_bias->sigma};
 }
 
 Result<void> check_distance(const Recorded& recorded, const CharacteriseArguments& arguments) {
@@ -203,8 +201,7 @@ Result<SensorReport> measured(const CharacteriseArguments& arguments,
     if (!given) return pass(given);
     // Where they are used, the note tells of an option that this command does not have.
     if (!given->registration && !given->note.empty()) report.notes.push_back(given->note);
-    const auto done = measure_together(*cell, *recorded, config, given->registration, report);
-    if (!done) return pass(done);
+    measure_together(*cell, *recorded, config, given->registration, report);
   }
   const Measured& all = report.measured;
   if (all.sensors.empty() && !all.agreement && !all.walked_bias)

@@ -124,11 +124,12 @@ std::string shares_text(const Coverage& coverage) {
 
 std::string bias_text(const Characteristics& sensor) {
   if (!sensor.depth_bias) return "depth bias: " + sensor.no_depth_bias + '\n';
-  const DepthBias& bias = *sensor.depth_bias;
+  const MarkedDepthBias& bias = *sensor.depth_bias;
   return fmt::format(
       "depth bias: joints are {:.0f} mm +- {:.0f} too near (front {:.0f}, side {:.0f}, rear "
       "{:.0f})\n",
-      to_mm(bias.bias), to_mm(bias.sigma), to_mm(bias.front), to_mm(bias.side), to_mm(bias.rear));
+      to_mm(bias.mean.bias), to_mm(bias.mean.sigma), to_mm(bias.front), to_mm(bias.side),
+      to_mm(bias.rear));
 }
 
 std::string sensor_text(const Characteristics& sensor) {
@@ -166,9 +167,9 @@ const char* front_rear_name(FrontRear front_rear) {
   return kFrontRearNames.at(static_cast<std::size_t>(front_rear));
 }
 
-nlohmann::json bias_json(const DepthBias& bias) {
-  return {{"millimetres", to_mm(bias.bias)},
-          {"sigmaMillimetres", to_mm(bias.sigma)},
+nlohmann::json bias_json(const MarkedDepthBias& bias) {
+  return {{"millimetres", to_mm(bias.mean.bias)},
+          {"sigmaMillimetres", to_mm(bias.mean.sigma)},
           {"frontMillimetres", to_mm(bias.front)},
           {"sideMillimetres", to_mm(bias.side)},
           {"rearMillimetres", to_mm(bias.rear)}};

@@ -1,4 +1,4 @@
-// What was measured of sensors, for people and as JSON, and the two profiles made of it.
+// What was measured of sensors, for people and as JSON, and the two profiles made from it.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct SensorReport {
 /// Millimetres and degrees, as the names of the members say.
 [[nodiscard]] nlohmann::json characterise_json(const SensorReport& report);
 
-/// The keys of the fusion server's configuration that the measurements say something of, with
+/// The keys of the fusion server's configuration about which the measurements say something, with
 /// comments; every other key keeps its default.
 [[nodiscard]] std::string fusion_profile(const SensorReport& report);
 

@@ -175,10 +175,7 @@ Result<int> run_export(const ExportArguments& arguments) {
   return kExitOk;
 }
 
-}  // namespace
-
-Run add_export(CLI::App& options) {
-  const auto arguments = std::make_shared<ExportArguments>();
+void add_format_option(CLI::App& options, ExportArguments& arguments) {
   std::string formats = "One of:";
   std::vector<std::string> names;
   for (const auto& row : exporters::kExportFormats) {
@@ -187,14 +184,21 @@ Run add_export(CLI::App& options) {
   }
   formats += fmt::format("\n{}: {}", kFrames, kFramesAre);
   names.emplace_back(kFrames);
+  options.add_option("--format", arguments.format, formats)
+      ->required()
+      ->check(CLI::IsMember(names));
+}
+
+}  // namespace
+
+Run add_export(CLI::App& options) {
+  const auto arguments = std::make_shared<ExportArguments>();
   options
       .add_option("source", arguments->source,
                   "Recording (.mcap or a folder of them), NDJSON of chorus fuse, - for NDJSON on "
                   "standard input, or http://HOST:PORT/ of a fusion server")
       ->required();
-  options.add_option("--format", arguments->format, formats)
-      ->required()
-      ->check(CLI::IsMember(names));
+  add_format_option(options, *arguments);
   options.add_option("--out", arguments->out, "File to write; - is standard output")->required();
   options.add_option("--person", arguments->person, "Only the person of this id");
   const auto* rate =

@@ -330,6 +330,42 @@ Result<int> run_import(const ImportArguments& arguments) {
   return set->empty.empty() ? kExitOk : kExitFailed;
 }
 
+void add_input_options(CLI::App& options, ImportArguments& arguments) {
+  options
+      .add_option("--floor", arguments.floors,
+                  "Floor plane a,b,c,d in sensor space [m]: a x + b y + c z + d = 0; for several "
+                  "files once for all, or once for each in their order")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(readable_by(importers::parse_floor));
+  options
+      .add_option("--start", arguments.start,
+                  "UTC of the first frame where the files have none (2020-01-01T00:00:00Z)")
+      ->check(readable_by(parse_iso8601));
+  options.add_option("--sensor", arguments.sensor, "Name of the sensor, for a single input")
+      ->check(readable_by(SensorId::parse));
+}
+
+/// Returns the option --rate.
+CLI::Option* add_picture_options(CLI::App& options, ImportArguments& arguments) {
+  options
+      .add_option("--intrinsics", arguments.lenses,
+                  "Lens of a camera, for video, openpose and mmpose: a file with the keys of "
+                  "device.camera.intrinsics, or a "
+                  "sensor's configuration; once for all, or once for each in their order")
+      ->take_all()
+      ->allow_extra_args(false);
+  options.add_option("--model", arguments.model, "That the runner finds people in videos with")
+      ->capture_default_str();
+  return options
+      .add_option(
+          "--rate", arguments.rate_hz,
+          "Pictures a second: of a video, those that are looked at; of openpose and mmpose, "
+          "those there are")
+      ->check(number_range(0.1, 1000.0))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 Run add_import(CLI::App& options) {
@@ -344,40 +380,12 @@ Run add_import(CLI::App& options) {
       ->required();
   options.add_option("--out", arguments->out, "Folder for the recordings; made if absent")
       ->required();
-  options
-      .add_option("--floor", arguments->floors,
-                  "Floor plane a,b,c,d in sensor space [m]: a x + b y + c z + d = 0; for several "
-                  "files once for all, or once for each in their order")
-      ->take_all()
-      ->allow_extra_args(false)
-      ->check(readable_by(importers::parse_floor));
-  options
-      .add_option("--start", arguments->start,
-                  "UTC of the first frame where the files have none (2020-01-01T00:00:00Z)")
-      ->check(readable_by(parse_iso8601));
-  options.add_option("--sensor", arguments->sensor, "Name of the sensor, for a single input")
-      ->check(readable_by(SensorId::parse));
+  add_input_options(options, *arguments);
   const auto* unit =
       options.add_option("--unit", arguments->unit, "Of lengths in BVH, which does not say")
           ->check(CLI::IsMember({"cm", "m"}))
           ->capture_default_str();
-  options
-      .add_option("--intrinsics", arguments->lenses,
-                  "Lens of a camera, for video, openpose and mmpose: a file with the keys of "
-                  "device.camera.intrinsics, or a "
-                  "sensor's configuration; once for all, or once for each in their order")
-      ->take_all()
-      ->allow_extra_args(false);
-  options.add_option("--model", arguments->model, "That the runner finds people in videos with")
-      ->capture_default_str();
-  const auto* rate =
-      options
-          .add_option(
-              "--rate", arguments->rate_hz,
-              "Pictures a second: of a video, those that are looked at; of openpose and mmpose, "
-              "those there are")
-          ->check(number_range(0.1, 1000.0))
-          ->capture_default_str();
+  const auto* rate = add_picture_options(options, *arguments);
   options.add_flag("--rays", arguments->rays,
                    "Of camera landmarks only their directions, without the depth of a fit");
   options.add_flag("--json", arguments->json, "Report as JSON");

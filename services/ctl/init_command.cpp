@@ -338,6 +338,34 @@ void add_tls_options(CLI::App& options, InitArguments& arguments) {
       ->check(CLI::Range(1, kLongest));
 }
 
+void add_sensor_options(CLI::App& options, InitArguments& arguments) {
+  options.add_option("--id", arguments.sensor.id, "sensor: its id; default: the host's name");
+  options
+      .add_option("--device", arguments.sensor.device,
+                  "sensor: bridge, camera, phone, replay or simulated")
+      ->capture_default_str();
+  options
+      .add_option("--camera", arguments.sensor.camera,
+                  "sensor: a webcam, rtsp://... or a video file")
+      ->capture_default_str();
+  options.add_option("--recording", arguments.sensor.recording, "sensor: what a replay plays");
+  options.add_flag("--images", arguments.sensor.images, "sensor: serve pictures");
+}
+
+void add_fusion_options(CLI::App& options, InitArguments& arguments) {
+  options
+      .add_option("--sensor", arguments.sensors, "fusion: ID=URL or ID=URL,TOKEN; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  options.add_option("--sensors-from", arguments.sensors_from,
+                     "fusion: a file with a sensor a line, as for --sensor; -: standard input");
+  options
+      .add_option("--output", arguments.outputs,
+                  "fusion: vrpn=CLIENT,..., dtrack=HOST:PORT, ...; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
 }  // namespace
 
 Run add_init(CLI::App& options) {
@@ -359,28 +387,8 @@ Run add_init(CLI::App& options) {
   options.add_option(
       "--token", arguments->token,
       "Token of role control; default: a new one, unless only this host is listened to");
-  options.add_option("--id", arguments->sensor.id, "sensor: its id; default: the host's name");
-  options
-      .add_option("--device", arguments->sensor.device,
-                  "sensor: bridge, camera, phone, replay or simulated")
-      ->capture_default_str();
-  options
-      .add_option("--camera", arguments->sensor.camera,
-                  "sensor: a webcam, rtsp://... or a video file")
-      ->capture_default_str();
-  options.add_option("--recording", arguments->sensor.recording, "sensor: what a replay plays");
-  options.add_flag("--images", arguments->sensor.images, "sensor: serve pictures");
-  options
-      .add_option("--sensor", arguments->sensors, "fusion: ID=URL or ID=URL,TOKEN; may be repeated")
-      ->take_all()
-      ->allow_extra_args(false);
-  options.add_option("--sensors-from", arguments->sensors_from,
-                     "fusion: a file with a sensor a line, as for --sensor; -: standard input");
-  options
-      .add_option("--output", arguments->outputs,
-                  "fusion: vrpn=CLIENT,..., dtrack=HOST:PORT, ...; may be repeated")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_sensor_options(options, *arguments);
+  add_fusion_options(options, *arguments);
   add_discovery_options(options, *arguments);
   add_tls_options(options, *arguments);
   return [arguments] { return run_init(*arguments); };

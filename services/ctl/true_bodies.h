@@ -1,5 +1,5 @@
-// True bodies over time, from fused frames that somebody trusts: which one a seen person is, and
-// where its joints are at an instant.
+// True bodies over time, from fused frames that are taken as the truth: which one a seen person is,
+// and where its joints are at an instant.
 #pragma once
 
 #include <map>

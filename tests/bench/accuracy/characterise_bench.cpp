@@ -155,10 +155,11 @@ const std::array<Measure, 6> kMeasures{{
      [](const Draw& d) { return middle(d.truth.out); }},
     {"changed_back_at_deg", "deg", [](const Draw& d) { return middle(d.found.exchange.back); },
      [](const Draw& d) { return middle(d.truth.back); }},
-    {"depth_bias_mm", "mm", [](const Draw& d) { return to_mm(d.found.depth_bias->bias); },
+    {"depth_bias_mm", "mm", [](const Draw& d) { return to_mm(d.found.depth_bias->mean.bias); },
      [](const Draw& d) { return to_mm(d.truth.bias); }},
-    {"depth_bias_sigma_mm", "mm", [](const Draw& d) { return to_mm(d.found.depth_bias->sigma); },
-     [](const Draw& d) { return to_mm(std::abs(d.found.depth_bias->bias - d.truth.bias)); }},
+    {"depth_bias_sigma_mm", "mm",
+     [](const Draw& d) { return to_mm(d.found.depth_bias->mean.sigma); },
+     [](const Draw& d) { return to_mm(std::abs(d.found.depth_bias->mean.bias - d.truth.bias)); }},
 }};
 
 double median_of(const std::vector<Draw>& draws, Value value) {

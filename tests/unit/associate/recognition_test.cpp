@@ -200,6 +200,27 @@ TEST(Recognition, AnIdThatNobodyHasSeenIsNotMissed) {
   EXPECT_TRUE(tracks.missing.empty()) << "it was never published";
 }
 
+/// Whether somebody found again is published under the old id while the builds are still compared,
+/// after half a second in view.
+bool is_shown_while_compared(double size) {
+  Tracks tracks;
+  std::vector<Candidate> candidates{candidate(1, size, false)};
+  Track& track = candidates[0].track;
+  track.before = candidate(1, 1.0, true).track.build;
+  track.build = {};
+  track.build.add(spans_of(candidates[0].sights, {}), 0.5);
+  recognise(candidates, tracks, {});
+  EXPECT_EQ(candidates[0].track.id, kFirst) << "not decided yet";
+  EXPECT_TRUE(candidates[0].track.before.has_value());
+  return candidates[0].track.named;
+}
+
+TEST(Recognition, WhoIsProbablySomebodyElseIsNotShownWhileBuildsAreCompared) {
+  EXPECT_TRUE(is_shown_while_compared(1.0));
+  EXPECT_TRUE(is_shown_while_compared(1.058)) << "as likely as not";
+  EXPECT_FALSE(is_shown_while_compared(1.07));
+}
+
 TEST(Carried, SomebodyWhomNobodySeesIsAnsweredForASecond) {
   RecognitionRoom room;
   room.see_for(2.0, {{0.0}});

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+#include <numbers>
+
 #include "tests/support/matchers.h"
 #include "tests/unit/characteristics/turning_person.h"
 
@@ -42,6 +45,24 @@ TEST(Jitter, TurningAloneIsNone) {
   ASSERT_FALSE(jitter.cells.empty());
   for (const JitterCell& cell : jitter.cells)
     EXPECT_LT(std::hypot(cell.along, cell.across), mm(0.5)) << name_of(cell.joint);
+  ASSERT_FALSE(jitter.steps.empty());
+  for (const StepCell& cell : jitter.steps) EXPECT_LT(cell.step, mm(0.5)) << name_of(cell.joint);
+}
+
+TEST(Jitter, StepsAreTheMeanDistancesFromFrameToFrameOnEachSide) {
+  TurnSpec spec;
+  spec.along = spec.across = mm(4);
+  std::map<Side, StepCell> neck;
+  for (const StepCell& cell : found_of(spec).jitter.steps) {
+    if (cell.joint == JointId::Neck) neck[cell.side] = cell;
+  }
+  ASSERT_EQ(neck.size(), 3u);
+  // The mean length of the difference of two points with independent normal errors, in 3-D.
+  const double expected = 4 * std::sqrt(2.0) * std::sqrt(8 / std::numbers::pi);
+  for (const auto& [side, cell] : neck) EXPECT_NEAR(to_mm(cell.step), expected, 0.7);
+  // 8 of 30 s of standing, and of each turn 70, 220 and 70 of 360 deg.
+  EXPECT_GT(neck[Side::Front].frames, neck[Side::Rear].frames);
+  EXPECT_GT(neck[Side::Side].frames, neck[Side::Rear].frames);
 }
 
 TEST(Jitter, OfGuessedJointsIsCountedByItself) {
@@ -154,9 +175,9 @@ TEST(DepthBias, IsFoundThoughThePersonStandsOffTheMark) {
   const auto found = characterise(record_turn(spec), {Mark{kMarkAt, mm(5)}});
   ASSERT_THAT(found, IsOk());
   ASSERT_TRUE(found->depth_bias);
-  EXPECT_NEAR(to_mm(found->depth_bias->bias), 24, 2);
-  EXPECT_LT(found->depth_bias->sigma, mm(10));
-  EXPECT_GE(found->depth_bias->sigma, mm(5));
+  EXPECT_NEAR(to_mm(found->depth_bias->mean.bias), 24, 2);
+  EXPECT_LT(found->depth_bias->mean.sigma, mm(10));
+  EXPECT_GE(found->depth_bias->mean.sigma, mm(5));
 }
 
 TEST(DepthBias, TakesAFloorAndATurn) {

@@ -45,6 +45,25 @@ TEST(Agreement, OneSensorAgreesWithNobody) {
   EXPECT_FALSE(agreement_of({cell.tracks.front()}));
 }
 
+TEST(Agreement, SensorsOfTwoPeopleOrSideBySideTellNothing) {
+  const Cell cell(mm(12), mm(4));
+  std::vector<PlacedTrack> strangers{cell.tracks[0], cell.tracks[1]};
+  ASSERT_TRUE(agreement_of(strangers));
+  strangers[1].world_from_sensor.translation().x() += 1.0;
+  EXPECT_FALSE(agreement_of(strangers));
+  EXPECT_FALSE(agreement_of({cell.tracks[0], cell.tracks[0]}));
+}
+
+TEST(Agreement, FramesFarApartAreNotInterpolated) {
+  Cell cell(mm(12), mm(4));
+  for (auto& frames : cell.frames) {
+    std::vector<SensorFrame> few;
+    for (std::size_t i = 0; i < frames.size(); i += 3) few.push_back(frames[i]);  // 5 Hz
+    frames = few;
+  }
+  EXPECT_FALSE(agreement_of(cell.tracks));
+}
+
 Measured measured(const TurnSpec& spec, const std::optional<Mark>& mark = {}) {
   Measured all;
   auto found = characterise(record_turn(spec), {mark});

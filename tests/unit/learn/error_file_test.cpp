@@ -19,7 +19,9 @@ fusion::ErrorPredictor example(PredictorKind kind) {
   predictor.ranges[3] = {1.0, 4.5, 2.25};
   fusion::JointPredictor joint{1.2, 0.004, 0.3, -3.75};
   if (kind == PredictorKind::Boosting) {
-    joint.trees = {{{3, 2.5F, 1, 2, false}, {-1, 0.1}, {-1, 0.3}}, {{-1, -0.2}}};
+    joint.trees = {{{3, 2.5F, 1, 2, false}, {-1, 0.1}, {-1, 0.3}},
+                   {{-1, -0.2}},
+                   {{0, 0.5F, 1, 2, true}, {-1, 0.2}, {-1, -0.1}}};
   } else {
     joint.coefficients[3] = 0.1;
   }

@@ -99,7 +99,7 @@ class FileTape final : public ReplayTape {
   TapeSpan span_;
 };
 
-/// Chooses the stream to play by the rule of read_frame_recording().
+/// The stream of the sensor `which`; a recording of one sensor is played under any name.
 Result<record::SensorStay> chosen(std::vector<record::SensorStay> stays, const SensorId& which,
                                   const std::string& path) {
   std::string there;
