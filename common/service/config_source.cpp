@@ -14,14 +14,20 @@ Result<std::string> text_of(const std::string& path) {
               "the configuration file cannot be read: " + text.error().message);
 }
 
+/// What messages call the source: the file, the options of the command line, or both.
+std::string name_of(const ConfigSource& source) {
+  const bool options = !source.assignments.empty();
+  if (source.path.empty()) return options ? "options" : "defaults";
+  return options ? source.path + " with the options" : source.path;
+}
+
 }  // namespace
 
 Result<ConfigReader> read_config(const ConfigSource& source) {
   const auto text = text_of(source.path);
   if (!text) return pass(text);
-  const std::string assigned = source.assignments.empty() ? "defaults" : "--set";
-  auto root = ConfigReader::parse(*text, source.path.empty() ? assigned : source.path);
-  if (!root) return root;
+  auto root = ConfigReader::parse(*text, name_of(source));
+  if (!root) return fail(root.error().code, source.path, root.error().message);
   for (const std::string& assignment : source.assignments) {
     if (auto ok = root->set(assignment); !ok) return pass(ok);
   }

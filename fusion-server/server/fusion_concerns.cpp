@@ -94,6 +94,7 @@ void look_at_files(const FusionSettings& settings, const std::string& state,
 service::Concerns setting_concerns(const FusionSettings& settings) {
   service::Concerns all;
   const LiveSettings& live = settings.live;
+  compare_ports(settings.at_start, all);
   if (live.sensors.empty()) return all;  // told by host_concerns; what is named cannot be compared
   const auto look_for = [&](const std::string& key, const SensorId& sensor) {
     if (!configured(live, sensor))
@@ -105,7 +106,6 @@ service::Concerns setting_concerns(const FusionSettings& settings) {
     look_for("registration.known_distances", known.second);
   }
   look_for_own_url(settings, all);
-  compare_ports(settings.at_start, all);
   return all;
 }
 

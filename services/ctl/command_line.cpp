@@ -3,6 +3,7 @@
 #include <iostream>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,19 +23,43 @@ struct Added {
   Run run;
 };
 
-/// Names the unknown command; CLI11 would only say that an argument was not expected.
+/// Names the unknown or missing command; CLI11 would only say that an argument was not expected.
 bool complain_of_unknown_command(std::span<const Command> commands, int argc,
                                  const char* const* argv) {
-  if (argc < 2 || argv[1][0] == '-') return false;
-  const std::string word = argv[1];
   std::vector<std::string> known;
   for (const Command& command : commands) known.emplace_back(command.name);
+  if (argc < 2) {
+    std::cerr << fmt::format("chorus: which command? They are: {}.\n", fmt::join(known, ", "))
+              << "chorus help COMMAND explains each with examples.\n";
+    return true;
+  }
+  if (argv[1][0] == '-') return false;
+  const std::string word = argv[1];
   if (std::find(known.begin(), known.end(), word) != known.end()) return false;
   const std::string meant = nearest(word, known);
   std::cerr << fmt::format("chorus: there is no command \"{}\"{}\nThe commands are: {}.\n", word,
                            meant.empty() ? "." : fmt::format("; did you mean \"{}\"?", meant),
                            fmt::join(known, ", "));
   return true;
+}
+
+/// The words of the command line, where `help NAME` has become `NAME --help`.
+std::vector<const char*> words_of(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (argc < 2 || std::string_view(argv[1]) != "help") return words;
+  words.erase(words.begin() + 1);
+  words.push_back("--help");
+  return words;
+}
+
+/// What is wrong with the words, and whose help explains them.
+std::string usage_advice(const CLI::App* app, const CLI::Error& wrong) {
+  std::string name = app->get_name();
+  for (auto chosen = app->get_subcommands(); !chosen.empty();
+       chosen = chosen.front()->get_subcommands())
+    name += " " + chosen.front()->get_name();
+  return fmt::format("{}: {}\n{} --help shows what it takes.\n", name, printable(wrong.what()),
+                     name);
 }
 
 int run_added(const std::vector<Added>& all) {
@@ -54,8 +79,9 @@ int parse_and_run(std::span<const Command> commands, int argc, const char* const
   app.name("chorus");
   app.set_version_flag("--version", "chorus " + std::string(version()));
   app.require_subcommand(1);
+  app.failure_message(&usage_advice);
   app.footer(
-      "chorus COMMAND --help explains each with examples.\n"
+      "chorus help COMMAND explains each with examples.\n"
       "Exit codes: 0 done, 1 failed, 2 wrong usage.");
   std::vector<Added> all;
   for (const Command& command : commands) {
@@ -78,9 +104,11 @@ int parse_and_run(std::span<const Command> commands, int argc, const char* const
 }  // namespace
 
 int run_command_line(std::span<const Command> commands, int argc, const char* const* argv) {
-  if (complain_of_unknown_command(commands, argc, argv)) return kExitUsage;
+  const std::vector<const char*> words = words_of(argc, argv);
+  const int count = static_cast<int>(words.size());
+  if (complain_of_unknown_command(commands, count, words.data())) return kExitUsage;
   try {
-    return parse_and_run(commands, argc, argv);
+    return parse_and_run(commands, count, words.data());
   } catch (const std::exception& unforeseen) {
     std::cerr << "chorus: " << unforeseen.what() << '\n';
     return kExitFailed;

@@ -79,7 +79,10 @@ std::string table(std::vector<std::vector<std::string>> rows) {
 }
 
 std::string shown(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+  if (!std::isfinite(value)) return "-";
+  std::string text = fmt::format("{:.{}f}", value, digits);
+  if (text.find_first_not_of("-0.") == std::string::npos && text.front() == '-') text.erase(0, 1);
+  return text;
 }
 
 void Progress::show(double fraction, std::string_view said) {

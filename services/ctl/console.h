@@ -24,7 +24,7 @@ namespace chorus::ctl {
 /// Every cell is made printable().
 [[nodiscard]] std::string table(std::vector<std::vector<std::string>> rows);
 
-/// "1.23", or "-" when the number is not finite.
+/// "1.23", or "-" when the number is not finite; never "-0.00".
 [[nodiscard]] std::string shown(double value, int digits);
 
 class Progress {

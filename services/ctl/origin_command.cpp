@@ -110,11 +110,12 @@ std::string origin_report(const nlohmann::json& registration) {
   const Stance own = place_of(client::part_at(sensors, master.c_str()));
   const std::string name = printable(master);
   return fmt::format(
-      "the world begins where x and z are 0: there the master, {}, stands at x {:.3f} m, z {:.3f} "
-      "m, and looks {:.1f} deg away from the front\n"
+      "the world begins where x and z are 0: there the master, {}, stands at x {} m, z {} m, and "
+      "looks {} deg away from the front\n"
       "to change it: chorus origin --here, or --x, --z, --yaw; back to below {}, in its "
-      "direction: chorus origin --x={:.4f} --z={:.4f} --yaw={:.2f}\n",
-      name, own.x, own.z, to_deg(own.yaw), name, own.x, own.z, to_deg(own.yaw));
+      "direction: chorus origin --x={} --z={} --yaw={}\n",
+      name, shown(own.x, 3), shown(own.z, 3), shown(to_deg(own.yaw), 1), name, shown(own.x, 4),
+      shown(own.z, 4), shown(to_deg(own.yaw), 2));
 }
 
 /// Without an origin to set: shows the present one.

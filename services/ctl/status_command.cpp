@@ -31,13 +31,19 @@ std::string clock_source(const nlohmann::json& sensor) {
   return sensor.contains("clockOffsetMilliseconds") ? "host" : "-";
 }
 
-/// A line for a sensor whose host says that its clock follows no other; otherwise empty.
-std::string host_clock_line(const std::string& name, const nlohmann::json& sensor) {
-  const auto synchronised = sensor.find("hostSynchronised");
-  if (synchronised == sensor.end() || *synchronised != false) return {};
-  return printable(name) +
-         ": the clock of its host follows no other (no NTP, chrony or PTP); its frames are "
-         "corrected as the host's answers tell\n";
+/// A line about the sensors whose hosts say that their clock follows no other; empty if none does.
+std::string host_clocks_line(const nlohmann::json& sensors) {
+  std::vector<std::string> free;
+  for (const auto& [name, sensor] : sensors.items()) {
+    const auto synchronised = sensor.find("hostSynchronised");
+    if (synchronised != sensor.end() && *synchronised == false) free.push_back(printable(name));
+  }
+  if (free.empty()) return {};
+  return fmt::format(
+      "{}: the clock of {} follows no other (no NTP, chrony or PTP); frames are corrected as the "
+      "answers of {} tell\n",
+      fmt::join(free, ", "), free.size() == 1 ? "its host" : "each host",
+      free.size() == 1 ? "the host" : "the hosts");
 }
 
 std::string sensors_report(const nlohmann::json& sensors) {
@@ -56,9 +62,8 @@ std::string sensors_report(const nlohmann::json& sensors) {
   for (const auto& [name, sensor] : sensors.items()) {
     const std::string error = client::text_at(sensor, "lastError", "");
     if (!error.empty()) text += printable(name + ": " + error) + "\n";
-    text += host_clock_line(name, sensor);
   }
-  return text;
+  return text + host_clocks_line(sensors);
 }
 
 /// What the sensor's own service reports as wrong with its device; empty if nothing is wrong.

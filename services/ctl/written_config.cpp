@@ -229,6 +229,8 @@ Result<PolledWish> polled_wish(std::string_view text) {
   wish.token = rest.substr(std::min(comma + 1, rest.size()));
   if (const auto id = SensorId::parse(wish.id); !id) return refuse(id.error().message);
   if (const auto url = http::parse_url(wish.url); !url) return refuse(url.error().message);
+  if (wish.token == "TOKEN")
+    return refuse("TOKEN stands for one that chorus init printed on the sensor's host");
   return wish;
 }
 

@@ -1,27 +1,17 @@
 // The text next to the picture.
 import { personLine } from './certainty.js';
-import { sidesOf } from './state.js';
+import { ageText, sidesOf } from './state.js';
 
 const element = (id) => document.getElementById(id);
 const number = (value, digits = 0) => (Number.isFinite(value) ? value.toFixed(digits) : '–');
-const milliseconds = (value) => (Number.isFinite(value) ? `${value.toFixed(0)} ms` : '–');
 const STATE_CLASS = { live: 'good', connecting: 'warn', lost: 'bad', refused: 'bad' };
 const VERDICT_CLASS = { Good: 'good', Provisional: 'warn', Refused: 'bad', None: 'warn' };
-
-/// Computes the output rate from the capture times of the last frames.
-const recent = [];
-export function rateOf(frame) {
-  recent.push(Number(BigInt(frame.capturedNanoseconds) / 1000n) / 1e6);
-  if (recent.length > 61) recent.shift();
-  const span = recent.at(-1) - recent[0];
-  return span > 0 ? (recent.length - 1) / span : NaN;
-}
 
 export function showFused(frame, rate, age) {
   element('bodies').textContent = frame?.bodies?.length ?? '–';
   element('sides').textContent = sidesOf(frame);
   element('rate').textContent = `${number(rate, 1)} Hz`;
-  element('age').textContent = milliseconds(age);
+  element('age').textContent = ageText(age);
   element('sequence').textContent = frame?.sequence ?? '–';
 }
 
@@ -68,7 +58,7 @@ export function showSensors(all, colorOf) {
     cell(row, '').append(swatch);
     cell(row, id);
     cell(row, live && sensor.alarm ? 'moved' : sensor.state, live && sensor.alarm ? 'bad' : STATE_CLASS[sensor.state] ?? '');
-    cell(row, milliseconds(sensor.ageMilliseconds));
+    cell(row, ageText(sensor.ageMilliseconds));
     cell(row, live ? number(sensor.rateHz, 1) : '–');
     cell(row, live ? sensor.bodies ?? '–' : '–');
     cell(row, live ? number(sensor.share, 2) : '–');

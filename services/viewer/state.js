@@ -2,6 +2,7 @@
 
 export const STALE_MS = 1500;
 const GONE_MS = 4000;
+const MOST_HZ = 1000; // no server is as fast
 
 const many = (count, one, more) => (count === 1 ? `one ${one}` : `${count} ${more}`);
 const seconds = (ms) => `${Math.round(ms / 1000)} s`;
@@ -25,6 +26,27 @@ export class OwnDelay {
     this.last = now;
     return now < this.until;
   }
+}
+
+/// The rate of the fused output [Hz], by the numbers of the frames and their capture times, so that it is also right on a page
+/// that is too slow to get every frame.
+export class OutputRate {
+  constructor() { this.recent = []; }
+
+  after({ sequence, capturedNanoseconds }) {
+    const now = { sequence, at: Number(BigInt(capturedNanoseconds) / 1000n) / 1e6 };
+    const last = this.recent.at(-1);
+    const goesOn = last && sequence > last.sequence && sequence - last.sequence < MOST_HZ * (now.at - last.at);
+    this.recent = goesOn ? [...this.recent.slice(-60), now] : [now]; // a server that was started anew counts from elsewhere
+    const first = this.recent[0];
+    return now.at > first.at ? (sequence - first.sequence) / (now.at - first.at) : NaN;
+  }
+}
+
+/// How old something is: milliseconds, from 10 s on seconds; a dash when unknown.
+export function ageText(ms) {
+  if (!Number.isFinite(ms)) return '–';
+  return ms < 10000 ? `${ms.toFixed(0)} ms` : seconds(ms);
 }
 
 /// Whether the screen is current: 'live', 'stale' (old, and shown as old) or 'gone' (no longer shown).

@@ -9,12 +9,13 @@ import { jointLines } from './certainty.js';
 import { showCoverage } from './coverage.js';
 import { framing, roomOf } from './framing.js';
 import { offerDecision, showProposal } from './proposal.js';
-import { rateOf, showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
+import { showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
 import { Readout } from './readout.js';
-import { OwnDelay, freshness, stateOf } from './state.js';
+import { OutputRate, OwnDelay, freshness, stateOf } from './state.js';
 
 const COLORS = [0x4cc9f0, 0xf2b84b, 0x80ed99, 0xf28482, 0xb892ff, 0xffd6a5, 0x2ec4b6, 0xff9f1c, 0xa0c4ff, 0xcaffbf];
 const MOVED = 0x7d3b38; // a sensor that does not stand where it was registered
+const DEAD = 0x4a5260;
 const RAW_EVERY_MS = 66;
 const STATE_EVERY_MS = 200;
 const base = new URL(new URLSearchParams(location.search).get('server') ?? '../', location.href);
@@ -74,6 +75,12 @@ function showRaw(view, frame) {
   shown.rawBones[view.id] = view.raw.show(view.live ? frame.bodies ?? [] : []);
 }
 
+/// A sensor that delivers nothing is drawn in grey.
+function paint(view, { state, alarm }) {
+  const color = state === 'live' ? view.color : DEAD;
+  view.wedge.traverse((part) => part.material?.color?.setHex(alarm ? MOVED : color));
+}
+
 let framedVersion = null;
 function placeSensors(registration) {
   const places = Object.entries(registration.sensors ?? {}).filter(([, sensor]) => sensor.polled !== false);
@@ -93,13 +100,15 @@ function placeSensors(registration) {
 // ---- following the server ------------------------------------------------------------------------------------
 const known = { frame: null, rate: NaN, sensors: null, registration: null };
 
+const outputRate = new OutputRate();
+
 function failed() {
   shown.errors += 1;
 }
 
 follow(resource('frame', 10), 0, (frame) => {
   known.frame = frame;
-  known.rate = rateOf(frame);
+  known.rate = outputRate.after(frame);
   shown.fusedJoints = fused.show(frame.bodies ?? []);
   shown.fusedFrames += 1;
 }, failed);
@@ -109,7 +118,7 @@ follow(resource('sensors/'), 1000, ({ sensors: all }) => {
   for (const [id, state] of Object.entries(known.sensors)) {
     const view = sensorView(id);
     view.live = state.state === 'live';
-    view.wedge.traverse((part) => part.material?.color?.setHex(state.alarm ? MOVED : view.color));
+    paint(view, state);
     if (!view.live) showRaw(view, { bodies: [] });
   }
   shown.sensors = sensors.size;

@@ -6,7 +6,7 @@ import { Link, ServerClock } from '../../services/viewer/poll.js';
 import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf, sharesOf } from '../../services/viewer/certainty.js';
 import { accuracyLine, lineOf, mapOf } from '../../services/viewer/coverage.js';
 import { framing, roomOf } from '../../services/viewer/framing.js';
-import { OwnDelay, freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
+import { OutputRate, OwnDelay, ageText, freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
 const LIVE = { state: 'live' };
 const GOOD = { verdict: 'Good', reasons: [], awaits: [], session: { state: 'idle' }, sensors: { s1: {}, s2: {} } };
@@ -51,6 +51,20 @@ test('a server that is gone or stands still is never good', () => {
   assert.equal(freshness(known({ link: { error: 'x', silent: 500 } })), 'stale');
   assert.equal(freshness(known({ link: gone })), 'gone');
   assert.equal(freshness(known({ frame: null })), 'gone');
+});
+
+test('the rate is that of the tracker, not of the page', () => {
+  const frame = (sequence, seconds) => ({ sequence, capturedNanoseconds: String(BigInt(Math.round(seconds * 1e6)) * 1000n) });
+  const rate = new OutputRate();
+  assert.ok(Number.isNaN(rate.after(frame(1000, 5))));
+  for (let i = 10; i <= 300; i += 10) assert.ok(Math.abs(rate.after(frame(1000 + i, 5 + i / 30)) - 30) < 1e-3); // every tenth arrives
+  assert.ok(Number.isNaN(rate.after(frame(900000, 16)))); // another run of the server
+  assert.ok(Math.abs(rate.after(frame(900015, 17)) - 15) < 1e-3);
+  assert.ok(Number.isNaN(rate.after(frame(7, 18))));
+});
+
+test('ages are in the unit that people read', () => {
+  assert.deepEqual([NaN, 41.6, 9999, 40412].map(ageText), ['–', '42 ms', '9999 ms', '40 s']);
 });
 
 test('a page that was itself held up does not blame the server', () => {

@@ -64,7 +64,7 @@ test('the age of a frame is by the server’s clock, and errors of sensors are t
   assert.equal(await text(page, '#errors li'), 's2: connection refused');
   assert.equal(await text(page, '#next'), 's2: connection refused');
   assert.deepEqual(await page.locator('[data-sensor=s1] td').allTextContents(), ['', 's1', 'live', '12 ms', '30.0', '1', '0.97']);
-  assert.deepEqual(await page.locator('[data-sensor=s2] td').allTextContents(), ['', 's2', 'lost', '61000 ms', '–', '–', '–']);
+  assert.deepEqual(await page.locator('[data-sensor=s2] td').allTextContents(), ['', 's2', 'lost', '61 s', '–', '–', '–']);
   await page.close();
 });
 

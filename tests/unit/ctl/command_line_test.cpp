@@ -20,6 +20,20 @@ TEST(CommandLine, TeachesWithExamplesInEveryHelp) {
   }
 }
 
+TEST(CommandLine, HelpMayAlsoBeTheFirstWord) {
+  const Outcome all = run_chorus({"help"});
+  EXPECT_EQ(all.code, kExitOk);
+  EXPECT_EQ(all.out, run_chorus({"--help"}).out);
+  const Outcome one = run_chorus({"help", "characterise"});
+  EXPECT_EQ(one.code, kExitOk);
+  EXPECT_EQ(one.out, run_chorus({"characterise", "--help"}).out);
+  const Outcome below = run_chorus({"help", "calibrate", "camera"});
+  EXPECT_EQ(below.out, run_chorus({"calibrate", "camera", "--help"}).out);
+  const Outcome wrong = run_chorus({"help", "improt"});
+  EXPECT_EQ(wrong.code, kExitUsage);
+  EXPECT_THAT(wrong.error, HasSubstr("did you mean \"import\"?"));
+}
+
 TEST(CommandLine, WhoeverAsksAServerMayNameItsAuthority) {
   for (const char* command : {"status", "register", "origin", "record", "export", "doctor"})
     EXPECT_THAT(run_chorus({command, "--help"}).out, HasSubstr("--ca")) << command;
@@ -90,6 +104,19 @@ TEST(CommandLine, SaysItsVersion) {
   const Outcome told = run_chorus({"--version"});
   EXPECT_EQ(told.code, kExitOk);
   EXPECT_EQ(told.out, "chorus " + std::string(version()) + "\n");
+}
+
+TEST(CommandLine, WrongUsageIsToldWithTheCommandThatExplains) {
+  const Outcome extra = run_chorus({"status", "extra"});
+  EXPECT_EQ(extra.code, kExitUsage);
+  EXPECT_EQ(extra.error,
+            "chorus status: The following argument was not expected: extra\n"
+            "chorus status --help shows what it takes.\n");
+  const Outcome below = run_chorus({"calibrate", "camera", "--bord", "x"});
+  EXPECT_THAT(below.error, HasSubstr("chorus calibrate camera --help shows what it takes."));
+  const Outcome none = run_chorus({});
+  EXPECT_EQ(none.code, kExitUsage);
+  EXPECT_THAT(none.error, HasSubstr("chorus: which command? They are: import, init,"));
 }
 
 TEST(CommandLine, TellsWrongUsageFromFailure) {

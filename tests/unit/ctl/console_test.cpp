@@ -46,6 +46,9 @@ TEST(LinesAt, AreTheStringsOfAnArrayOnly) {
 
 TEST(Shown, HasDigitsOrADash) {
   EXPECT_EQ(shown(1.005, 1), "1.0");
+  EXPECT_EQ(shown(-0.0004, 3), "0.000");
+  EXPECT_EQ(shown(-0.0006, 3), "-0.001");
+  EXPECT_EQ(shown(-0.2, 0), "0");
   EXPECT_EQ(shown(std::nan(""), 3), "-");
   EXPECT_EQ(shown(-INFINITY, 3), "-");
 }

@@ -140,6 +140,8 @@ TEST(Init, SaysWhatIsWrongWithAWish) {
   };
   EXPECT_THAT(complaint({"fusion", "--sensor", "http://10.0.0.1/"}), HasSubstr("ID=URL"));
   EXPECT_THAT(complaint({"fusion", "--sensor", "s1=10.0.0.1"}), HasSubstr("ID=URL"));
+  EXPECT_THAT(complaint({"fusion", "--sensor", "s1=http://10.0.0.1/,TOKEN"}),
+              HasSubstr("TOKEN stands for one"));
   EXPECT_THAT(complaint({"fusion", "--output", "vprn=1"}), HasSubstr("there are vrpn"));
   EXPECT_THAT(complaint({"fusion", "--output", "vrpn"}), HasSubstr("who may connect"));
   EXPECT_THAT(complaint({"fusion", "--output", "dtrack="}), HasSubstr("where to send"));

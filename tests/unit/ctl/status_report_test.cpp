@@ -73,6 +73,16 @@ TEST(StatusTable, TellsOfHostsWhoseClockFollowsNoOther) {
   EXPECT_THAT(text, Not(HasSubstr("odd: the clock"))) << "only what says so";
 }
 
+TEST(StatusTable, TellsOfAllSuchHostsInOneLineBehindWhatIsWrong) {
+  const Json sensors{{"s1", live({{"hostSynchronised", false}})},
+                     {"s2", {{"state", "lost"}, {"lastError", "Connection refused"}}},
+                     {"s3", live({{"hostSynchronised", false}})}};
+  const std::vector<std::string> lines = lines_of(status_with(sensors).out);
+  EXPECT_EQ(lines.at(4), "s2: Connection refused");
+  EXPECT_THAT(lines.at(5), HasSubstr("s1, s3: the clock of each host follows no other"));
+  EXPECT_THAT(lines.at(6), HasSubstr("registration:"));
+}
+
 TEST(StatusTable, SaysWhenThereIsNoSensorAtAll) {
   const Outcome none = status_with(Json::object());
   EXPECT_EQ(none.code, kExitFailed);

@@ -63,6 +63,14 @@ TEST(SettingConcerns, NoTwoOutputsShareAPort) {
                   R"("http": {"port": 1510}, "outputs": {"natnet": {"enabled": true}})")),
               IsEmpty())
       << "one is TCP, the other UDP";
+  const auto alone =
+      ConfigReader::parse(R"({"http": {"port": 3883}, "outputs": {"vrpn": {"enabled": true}}})",
+                          "test")
+          .and_then(&read_fusion_settings);
+  ASSERT_TRUE(alone);
+  EXPECT_THAT(setting_concerns(*alone),
+              Contains(HasSubstr("outputs.vrpn.port: is the port of http.port too")))
+      << "without sensors, too";
 }
 
 TEST(HostConcerns, TheGivenPlacesCanBeReadAndAreThoseOfTheSensors) {

@@ -111,6 +111,19 @@ TEST(ProgramShell, CheckStartsNothing) {
               HasSubstr("log.level"));
 }
 
+TEST(ProgramShell, SaysWhetherTheFileOrAnOptionIsMeant) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string good = folder.write("good.json", "{}").string();
+  const std::string broken = folder.write("broken.json", "{").string();
+  NotingProgram program;
+  EXPECT_THAT(complaint_of(program, {"--check", "--port", "99999"}),
+              HasSubstr("chorus-noting: options: http"));
+  EXPECT_THAT(complaint_of(program, {"--config", good.c_str(), "--log-level", "loud"}),
+              HasSubstr("good.json with the options: log.level"));
+  EXPECT_THAT(complaint_of(program, {"--config", broken.c_str(), "--log-level", "info"}),
+              HasSubstr("broken.json: parse error"));
+}
+
 TEST(ProgramShell, CheckSaysWhatWouldNotWorkNow) {
   NotingProgram program;
   program.worries = {"the moon is full: wait"};
