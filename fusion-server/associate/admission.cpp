@@ -22,8 +22,8 @@ bool has(const std::vector<Assigned>& bodies, const SensorId& sensor) {
 }  // namespace
 
 Admission::Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
-                     Duration elapsed, bool settled_room, const AssociationConfig& config)
-    : observers_(observers), elapsed_(elapsed), settled_room_(settled_room), config_(config) {
+                     Duration elapsed, bool by_walking, const AssociationConfig& config)
+    : observers_(observers), elapsed_(elapsed), by_walking_(by_walking), config_(config) {
   for (const Assigned& body : bodies) {
     bodies_[body.sensor].push_back(body);
     tracks_[body.track].push_back(body);
@@ -53,7 +53,7 @@ void Admission::judge(Track& track) const {
 /// True if the track has been where it appeared, for less than config.motionless, although people
 /// come in by walking.
 bool Admission::appears_at_rest(const Track& track) const {
-  return settled_room_ && observers_.size() > 1 && !track.moved &&
+  return by_walking_ && observers_.size() > 1 && !track.moved &&
          track.seen - track.found < config_.motionless;
 }
 

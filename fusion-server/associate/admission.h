@@ -24,15 +24,15 @@ struct Assigned {
 
 class Admission {
  public:
-  /// `elapsed`: time since the previous instant. `settled_room`: nobody is missing, and the room
+  /// `elapsed`: time since the previous instant. `by_walking`: nobody is missing, and the room
   /// has been observed for config.motionless, so that people come in by walking.
   Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
-            Duration elapsed, bool settled_room, const AssociationConfig& config);
+            Duration elapsed, bool by_walking, const AssociationConfig& config);
 
   /// Sets `admitted` in three cases:
   ///   - several sensors see the track, and fewer than twice as many miss it;
-  ///   - the track is confirmed, no sensor that looks there has ever missed it, and it has moved,
-  ///     unless it appears_at_rest();
+  ///   - the track is confirmed, no sensor that looks there has ever missed it, and it does not
+  ///     appear at rest;
   ///   - otherwise, the track has been seen for config.alone, mostly by one sensor alone.
   /// The time for config.alone runs n times slower while this sensor has n unpublished bodies that
   /// only it sees.  It stops while seen_through() is true.  It also stops while several other
@@ -59,7 +59,7 @@ class Admission {
   std::map<SensorId, std::vector<Assigned>> bodies_;
   std::map<PersonId, std::vector<Assigned>> tracks_;  ///< The same bodies, grouped by track.
   Duration elapsed_;
-  bool settled_room_;
+  bool by_walking_;
   const AssociationConfig& config_;
 };
 

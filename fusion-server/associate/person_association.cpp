@@ -136,9 +136,9 @@ void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& obse
     for (const PlacedView& sight : candidate.sights)
       bodies.push_back({sight.view.sensor, sight.core, sight.error, candidate.track.id, settled});
   }
-  const bool settled_room =
+  const bool by_walking =
       tracks.missing.empty() && tracks.instant - tracks.began >= config.motionless;
-  const Admission admission(observers, bodies, elapsed, settled_room, config);
+  const Admission admission(observers, bodies, elapsed, by_walking, config);
   for (Candidate& candidate : candidates) admission.judge(candidate.track);
   leave(candidates, admission, elapsed, tracks);
 }
