@@ -9,22 +9,29 @@ import { fileURLToPath } from 'node:url';
 import { colorsOnCanvas, launch, openViewer } from './browser.mjs';
 import { live, lost, startFakeFusion, usualWorld } from './fake_fusion.mjs';
 
+const SOON = { timeout: 30000 }; // a loaded machine that draws by software shows a few pictures a second
 const FILES = fileURLToPath(new URL('../../services/viewer/', import.meta.url));
 let browser;
 let fusion;
+const servers = []; // stopped at the end: one that a failed test left running would keep this process from ending
+
+async function startFusion(files, world) {
+  servers.push(await startFakeFusion(files, world));
+  return servers.at(-1);
+}
 
 before(async () => {
   browser = await launch();
-  fusion = await startFakeFusion(FILES);
+  fusion = await startFusion(FILES);
 });
 after(async () => {
   await browser?.close();
-  fusion?.stop();
+  for (const server of servers) server.stop();
 });
 
 test('draws the fused body, the raw one of the live sensor, and both sensors', async () => {
   const { page, complaints } = await openViewer(browser, fusion.url);
-  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 20 && window.chorusViewer.rawBones.s1 > 0, null, { timeout: 30000 });
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 20 && window.chorusViewer.rawBones.s1 > 0, null, SOON);
   const shown = await page.evaluate(() => window.chorusViewer);
   assert.equal(shown.fusedJoints, 24, '24 joints: the untracked thumb is not drawn');
   assert.equal(shown.rawBones.s1, 23, 'all bones but the untracked thumb');
@@ -47,7 +54,7 @@ test('draws the fused body, the raw one of the live sensor, and both sensors', a
 
 const text = (page, selector) => page.textContent(selector);
 const headline = (page, pattern) => page.waitForFunction(
-  (source) => new RegExp(source).test(document.getElementById('headline').textContent), pattern.source, { timeout: 20000 });
+  (source) => new RegExp(source).test(document.getElementById('headline').textContent), pattern.source, SOON);
 const colour = (page, selector) => page.evaluate((s) => getComputedStyle(document.querySelector(s)).color, selector);
 const GREEN = 'rgb(95, 211, 141)';
 const RED = 'rgb(242, 102, 91)';
@@ -71,7 +78,7 @@ test('the age of a frame is by the server’s clock, and errors of sensors are t
 test('green only while all is well: nobody there, no sensors, dead sensors', async () => {
   const world = usualWorld();
   world.sensors = { s1: live(), s2: live() };
-  const server = await startFakeFusion(FILES, world);
+  const server = await startFusion(FILES, world);
   const { page } = await openViewer(browser, server.url);
   await headline(page, /^Live: one person\. The places are in doubt\.$/); // Good, but with a reason
   assert.notEqual(await colour(page, '#headline'), GREEN);
@@ -93,7 +100,6 @@ test('green only while all is well: nobody there, no sensors, dead sensors', asy
   assert.equal(await colour(page, '#headline'), RED);
   await picture(page, 'none');
   await page.close();
-  server.stop();
 });
 
 test('reasons, what is awaited, and what is not stored are shown without a registration too', async () => {
@@ -101,7 +107,7 @@ test('reasons, what is awaited, and what is not stored are shown without a regis
   world.sensors = { s1: live(), s2: live() };
   world.registration = { version: 0, verdict: 'None', reasons: ['sensors s1 and s2 disagree'], awaits: ['nobody is in sight'],
     storeProblem: 'state_dir is empty', session: { state: 'idle', reasons: ['sensors s1 and s2 disagree', 'withdrawn'] }, sensors: {} };
-  const server = await startFakeFusion(FILES, world);
+  const server = await startFusion(FILES, world);
   const { page } = await openViewer(browser, server.url);
   await headline(page, /^It is not known yet where the sensors stand\.$/);
   assert.deepEqual(await page.locator('#reasons li').allTextContents(), ['sensors s1 and s2 disagree', 'last walk: withdrawn']);
@@ -114,7 +120,6 @@ test('reasons, what is awaited, and what is not stored are shown without a regis
   world.registration.session = { state: 'collecting', elapsedSeconds: 12, targetSeconds: 30 };
   await headline(page, /^Registering: 12 of 30 s of the walk seen\.$/);
   await page.close();
-  server.stop();
 });
 
 test('a proposed registration is shown beside the old one, and accepted or declined', async () => {
@@ -124,7 +129,7 @@ test('a proposed registration is shown beside the old one, and accepted or decli
     { sensorId: 's1', presentRadius: 0, expectedRadius: 0, moves: 0, turnsDegrees: 0 },
     { sensorId: 's2', expectedRadius: 0.0231, moves: 0.117, turnsDegrees: 1.26 }] };
   world.registration.proposal = proposal;
-  const server = await startFakeFusion(FILES, world);
+  const server = await startFusion(FILES, world);
   const { page } = await openViewer(browser, server.url);
   await headline(page, /^New places wait for your decision\.$/);
   assert.deepEqual(await page.locator('#changes tr:nth-child(2) td').allTextContents(), ['s2', '–', '23 mm', '117 mm', '1.3°']);
@@ -142,7 +147,6 @@ test('a proposed registration is shown beside the old one, and accepted or decli
   await page.waitForSelector('#proposal', { state: 'hidden' });
   assert.deepEqual(world.posted, ['/registration/accept 200', '/registration/decline 401', '/registration/decline 401', '/registration/decline 200']);
   await page.close();
-  server.stop();
 });
 
 /// Where the head of the fake person is now [px]; the person sways, so it is asked for again and again.
@@ -158,17 +162,17 @@ const pointAtHead = async (page) => {
 
 test('uncertainty is shown when asked for: ellipsoids, people, and a joint with its sensors', async () => {
   const world = usualWorld();
-  const server = await startFakeFusion(FILES, world);
+  const server = await startFusion(FILES, world);
   const { page, complaints } = await openViewer(browser, server.url);
-  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, { timeout: 30000 });
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, SOON);
   assert.equal(await page.evaluate(() => window.chorusViewer.ellipsoids), 0, 'not before');
   assert.equal(await text(page, '#people'), '');
   const before = await colorsOnCanvas(page);
   await page.keyboard.press('u');
   assert.equal(await page.isChecked('#show-uncertainty'), true, 'by key and by switch');
-  await page.waitForFunction(() => window.chorusViewer.ellipsoids === 24, null, { timeout: 10000 });
+  await page.waitForFunction(() => window.chorusViewer.ellipsoids === 24, null, SOON);
   assert.notEqual(await colorsOnCanvas(page), before);
-  await page.waitForFunction(() => document.querySelector('#people li'), null, { timeout: 5000 });
+  await page.waitForFunction(() => document.querySelector('#people li'), null, SOON);
   assert.deepEqual(await page.locator('#people li').allTextContents(), ['person 1: seen, left and right 98 % certain']);
   await pointAtHead(page);
   await page.mouse.down();
@@ -180,37 +184,35 @@ test('uncertainty is shown when asked for: ellipsoids, people, and a joint with 
   assert.match(said[3], /^seen, \d+ ms old$/);
   await picture(page, 'uncertainty');
   world.person = { sidesConfidence: 0.5, carriedFor: 0.42 };
-  await page.waitForFunction(() => /from no sensor/.test(document.getElementById('joint').textContent), null, { timeout: 5000 });
-  await page.waitForFunction(() => /out of sight for 0\.4 s, left and right 50 %/.test(document.getElementById('people').textContent), null, { timeout: 5000 });
+  await page.waitForFunction(() => /from no sensor/.test(document.getElementById('joint').textContent), null, SOON);
+  await page.waitForFunction(() => /out of sight for 0\.4 s, left and right 50 %/.test(document.getElementById('people').textContent), null, SOON);
   await page.keyboard.press('Escape');
-  await page.waitForFunction(() => document.getElementById('joint').hidden, null, { timeout: 5000 });
+  await page.waitForFunction(() => document.getElementById('joint').hidden, null, SOON);
   await page.keyboard.press('u');
-  await page.waitForFunction(() => window.chorusViewer.ellipsoids === 0 && !document.querySelector('#people li'), null, { timeout: 5000 });
+  await page.waitForFunction(() => window.chorusViewer.ellipsoids === 0 && !document.querySelector('#people li'), null, SOON);
   assert.deepEqual(complaints, []);
   await page.close();
-  server.stop();
 });
 
 test('frames that stand still are grey, then gone', async () => {
-  const server = await startFakeFusion(FILES);
+  const server = await startFusion(FILES);
   const { page } = await openViewer(browser, server.url);
-  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, { timeout: 30000 });
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, SOON);
   server.world.frozen = true;
   await headline(page, /^The fused output has stood still for \d+ s\.$/);
   assert.equal(await page.evaluate(() => document.body.dataset.fresh), 'stale');
-  await page.waitForFunction(() => window.chorusViewer.fusedJoints === 0, null, { timeout: 15000 });
+  await page.waitForFunction(() => window.chorusViewer.fusedJoints === 0, null, SOON);
   await page.close();
-  server.stop();
 });
 
 test('says so when the server goes away, and shows nothing of it any more', async () => {
-  const doomed = await startFakeFusion(FILES);
+  const doomed = await startFusion(FILES);
   const { page } = await openViewer(browser, doomed.url);
-  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5 && window.chorusViewer.rawBones.s1 > 0, null, { timeout: 30000 });
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5 && window.chorusViewer.rawBones.s1 > 0, null, SOON);
   doomed.stop();
   await headline(page, /^The fusion server has not answered for \d+ s\.$/);
   assert.equal(await colour(page, '#headline'), RED);
-  await page.waitForFunction(() => window.chorusViewer.fresh === 'gone', null, { timeout: 20000 });
+  await page.waitForFunction(() => window.chorusViewer.fresh === 'gone', null, SOON);
   await page.waitForTimeout(500);
   const shown = await page.evaluate(() => window.chorusViewer);
   assert.equal(shown.fusedJoints, 0, 'no skeleton of a dead server');
@@ -226,11 +228,10 @@ test('says what is missing when three.js is not installed', async () => {
   for (const file of ['index.html', 'boot.js', 'viewer.js', 'viewer.css', 'poll.js', 'panel.js', 'state.js', 'coverage.js', 'framing.js', 'certainty.js',
     'readout.js', 'skeleton_view.js'])
     await copyFile(join(FILES, file), join(folder, file));
-  const server = await startFakeFusion(folder);
+  const server = await startFusion(folder);
   const { page } = await openViewer(browser, server.url);
   await headline(page, /three\.js is missing/);
   assert.match(await text(page, '#next'), /npm ci/);
   await page.close();
-  server.stop();
   await rm(folder, { recursive: true });
 });
