@@ -1,6 +1,7 @@
 // chorus-bench soak: a day of a workshop in one hour.  Sensors restart, a cable falls out, clients
 // come and go, walks are registered, recordings are made, all on real processes, and at the end the
-// server is killed.  CHORUS_SOAK_SECONDS sets another length than an hour.
+// server is killed.  CHORUS_SOAK_SECONDS sets another length than an hour; CHORUS_SOAK_PACE lets
+// walks and recordings come so many times as often.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -25,6 +26,7 @@ constexpr double kMaxRise = 1.0;          // the claim: memory after the warm-up
 constexpr double kMaxRecover = 1.5;       // the claim: a restarted sensor contributes again [s]
 constexpr double kMaxReturn = 1.0;        // the claim: a restarted server answers [s]
 constexpr int kWarmUp = 300;              // [s]
+constexpr int kMostPace = 10;             // a walk has to end before the next one
 constexpr int kRegistrationSeconds = 10;  // of a walk
 constexpr const char* kWalks = "device.simulated.scene.reach_m=1.2";
 constexpr std::string_view kRequests[] = {
@@ -41,6 +43,15 @@ int soak_seconds(const Report& report) {
   const int length = asked == nullptr ? kHour : std::atoi(asked);
   return report.quick() ? kQuick : std::max(kQuick, length);
 }
+
+/// How many times as often as in an ordinary day walks are registered and recordings made.
+int soak_pace() {
+  const char* asked = std::getenv("CHORUS_SOAK_PACE");
+  return asked == nullptr ? 1 : std::clamp(std::atoi(asked), 1, kMostPace);
+}
+
+/// Until the server keeps as much history, and as many sessions, as it ever will [s].
+int warm_up() { return soak_pace() > 1 ? kWarmUp / 2 : kWarmUp; }
 
 /// Resident memory of the server at some time since the beginning.
 struct Memory {
@@ -91,7 +102,7 @@ class Visitors {
 /// What happens in the day, and what came of it.
 class Day {
  public:
-  explicit Day(Cell& cell) : cell_(cell) {}
+  explicit Day(Cell& cell) : cell_(cell), pace_(soak_pace()) {}
 
   /// Lets happen what is due at this second.
   Result<void> pass_second(int second);
@@ -112,6 +123,7 @@ class Day {
   void post(const char* path, const std::string& body, int expected);
 
   Cell& cell_;
+  int pace_;
 };
 
 void Day::post(const char* path, const std::string& body, int expected) {
@@ -140,17 +152,17 @@ Result<void> Day::pass_second(int second) {
     cell_.link(2).freeze(false);
     ++cables;
   }
-  if (due(150, 12)) {
+  if (due(150 / pace_, 12 / pace_)) {
     recordings.push_back(fmt::format("soak-{}", second));
     post("/recordings/", nlohmann::json{{"name", recordings.back()}}.dump(),
          http::status::kCreated);
   }
-  if (due(150, 32)) end_recording();
-  if (due(300, 40)) {
+  if (due(150 / pace_, 32 / pace_)) end_recording();
+  if (due(300 / pace_, 40 / pace_)) {
     post("/registration", "", http::status::kAccepted);
     ++registrations;
   }
-  if (second >= kWarmUp && due(5, 0))
+  if (second >= warm_up() && due(5, 0))
     memory.push_back({static_cast<double>(second), cell_.fusion().resident_mb()});
   return due(20, 7) ? restart_sensor() : Result<void>{};
 }
@@ -202,7 +214,7 @@ void report_memory(Report& report, const Day& day, Cell& cell) {
   const double rise = rise_of(day.memory);
   report.row("soak", "rss_rise_mb", rise, "MB");
   report.condition(
-      fmt::format("memory rises by less than {} MB after {} s: {:.2f}", kMaxRise, kWarmUp, rise),
+      fmt::format("memory rises by less than {} MB after {} s: {:.2f}", kMaxRise, warm_up(), rise),
       rise < kMaxRise);
 }
 
