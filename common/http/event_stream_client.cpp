@@ -183,8 +183,9 @@ void AsyncEventStream::Impl::on_read(net::error_code failed) {
   net::error_code broken = parse();
   if (!broken && failed == asio::error::eof) parser->put_eof(broken);
   if (!broken && failed != asio::error::eof) broken = failed;
-  const std::string bytes = std::exchange(parser->get().body(), {});
+  std::string& bytes = parser->get().body();
   auto events = reader->take(bytes);
+  bytes.clear();  // Keeps its memory for what comes next.
   const auto mine = attempt;
   const auto told = handlers;
   if (events && !events->empty()) told->on_events(std::move(*events));

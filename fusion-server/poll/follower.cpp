@@ -215,9 +215,10 @@ void Follower::take_frame(const http::ClientResponse& response, Resource asked) 
   if (answer.frame) answered_ = Arrival{std::move(answer.frame), received_, kept};
   if (kept) return feed(KeptAnswered{answered_.has_value(), rest});
   if (answered_) {
-    if (auto error = untimely_now(*answered_)) {
+    const SensorFrame here = dated(*answered_);
+    if (auto error = untimely_now(here)) {
       answer.event = Unreadable{std::move(*error)};
-      note_untimely(placed(*answered_));
+      note_untimely(here);
     }
   }
   if (auto* good = std::get_if<FrameAnswered>(&answer.event)) good->rest = rest;
@@ -244,9 +245,9 @@ void Follower::take_event(std::string_view text) {
     return feed(StreamEnded{{ErrorCode::Unsupported, "event stream", to_string(frame.error())}});
   }
   answered_ = Arrival{std::move(*frame), received_, false};
-  const SensorFrame here = placed(*answered_);
+  const SensorFrame here = dated(*answered_);
   const bool odd = ages_.odd(here) && clock_.at(received_);
-  if (const auto error = untimely_now(*answered_); error && !odd) {
+  if (const auto error = untimely_now(here); error && !odd) {
     answered_.reset();
     stream_.close();  // polling will find out what is wrong
     return feed(StreamEnded{{ErrorCode::Unsupported, "event stream", to_string(*error)}});
@@ -254,14 +255,17 @@ void Follower::take_event(std::string_view text) {
   feed(StreamFrame{here.sequence, answered_->raw->captured, odd});
 }
 
-SensorFrame Follower::placed(const Arrival& arrival) const {
-  const auto clock = clock_.at(arrival.received);
-  return place_in_time(*arrival.raw, sensor_.id, arrival.received, clock, floor_);
+SensorFrame Follower::dated(const Arrival& arrival) const {
+  SensorFrame frame;
+  frame.sequence = arrival.raw->sequence;
+  frame.captured = arrival.raw->captured + correction(clock_.at(arrival.received));
+  frame.received = arrival.received;
+  return frame;
 }
 
-std::optional<Error> Follower::untimely_now(const Arrival& arrival) const {
+std::optional<Error> Follower::untimely_now(const SensorFrame& frame) const {
   if (clock_.doubtful()) return std::nullopt;  // decide once it is known which clock was set
-  return untimely(placed(arrival));
+  return untimely(frame);
 }
 
 void Follower::note_untimely(const SensorFrame& frame) {
@@ -276,18 +280,19 @@ void Follower::deliver(Arrival arrival) {
 
 void Follower::hand_on_held() {
   for (const Arrival& arrival : std::exchange(held_, {})) {
-    const SensorFrame here = placed(arrival);
+    const SensorFrame here = dated(arrival);
     untimely(here) ? note_untimely(here) : hand_on(arrival);
   }
 }
 
 void Follower::hand_on(const Arrival& arrival) {
-  SensorFrame frame = placed(arrival);
+  const auto clock = clock_.at(arrival.received);
+  SensorFrame frame = place_in_time(*arrival.raw, sensor_.id, arrival.received, clock, floor_);
   {
     const std::scoped_lock lock(mutex_);
     arrival.late ? tally_.note_late(frame) : tally_.note(frame);
   }
-  options_.deliver({std::move(frame), arrival.raw, clock_.at(arrival.received)});
+  options_.deliver({std::move(frame), arrival.raw, clock});
 }
 
 void Follower::publish_state() {

@@ -48,8 +48,10 @@ class Follower : public std::enable_shared_from_this<Follower> {
   void take_frame(const http::ClientResponse& response, Resource asked);
   void take_events(const std::vector<http::ServerEvent>& events);
   void take_event(std::string_view text);
-  [[nodiscard]] SensorFrame placed(const Arrival& arrival) const;
-  [[nodiscard]] std::optional<Error> untimely_now(const Arrival& arrival) const;
+  /// The frame with its times by our clock but without its bodies, which are placed only once it
+  /// is certain that it is handed on.
+  [[nodiscard]] SensorFrame dated(const Arrival& arrival) const;
+  [[nodiscard]] std::optional<Error> untimely_now(const SensorFrame& frame) const;
   /// Counts a frame that was refused because of its time.
   void note_untimely(const SensorFrame& frame);
   [[nodiscard]] bool in_doubt() const { return clock_.doubtful() || fsm_.checking_clock(); }
