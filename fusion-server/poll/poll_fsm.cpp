@@ -25,6 +25,8 @@ constexpr Duration kClockHurry = std::chrono::milliseconds(100);
 constexpr Duration kClockInterval = std::chrono::milliseconds(500);
 constexpr Duration kNoClockInterval = std::chrono::seconds(5);
 constexpr Duration kWellKnown = std::chrono::microseconds(300);
+// After so many requests in a hurry the delays are what keeps the offset from being known better.
+constexpr int kMostHurried = 50;
 constexpr Duration kOddInterval = std::chrono::seconds(2);
 constexpr std::size_t kMaxBeside = 100;
 // Clock requests after an odd frame; the filter accepts a step of the clock with the third answer.
@@ -161,8 +163,11 @@ Step PollFsm::on(const ClockAnswered& answer, Duration now, double) {
     clock_due_ = now + kNoClockInterval;
   } else if (clock_checks_ > 0 || answer.doubtful) {
     clock_due_ = now;
+    clock_hurried_ = 0;
   } else {
-    clock_due_ = now + (*answer.uncertainty > kWellKnown ? kClockHurry : kClockInterval);
+    const bool hurry = *answer.uncertainty > kWellKnown && clock_hurried_ < kMostHurried;
+    clock_hurried_ += hurry ? 1 : 0;
+    clock_due_ = now + (hurry ? kClockHurry : kClockInterval);
   }
   return {after(timings_.min_interval, now)};
 }
@@ -198,6 +203,7 @@ Step PollFsm::on(const StreamFrame& frame, Duration now, double) {
   if (!std::exchange(streaming_, true)) {
     streamed_since_ = now;
     clock_due_ = now + kClockHurry;
+    clock_hurried_ = 0;
   }
   if (now - streamed_since_ > kStreamProven) stream_pause_ = Duration{0};
   streamed_at_ = now;

@@ -98,6 +98,7 @@ class PollFsm {
   std::deque<Timestamp> taken_beside_;
   Duration clock_due_{0};
   int clock_checks_ = 0;
+  int clock_hurried_ = 0;  ///< Requests made in a hurry since the stream began or a clock was set.
   std::optional<Duration> clock_checked_at_;
 
   std::optional<Notice> pending_notice_;

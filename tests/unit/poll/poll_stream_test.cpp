@@ -62,6 +62,52 @@ TEST(PollFsmStream, ItsFramesAreDeliveredAndTheRequestsOnlyKeepTheClock) {
   EXPECT_GT(sleep_of(calm), milliseconds(400));
 }
 
+/// A stream of 30 Hz whose clock is asked for again and again.
+class Hurried {
+ public:
+  Hurried() { (void)fsm_.resume(Woke{}, now_, kFull); }
+
+  /// How long the follower waits after each of `count` answers that leave the offset so uncertain.
+  std::vector<Duration> pauses(int count, const ClockAnswered& answer) {
+    std::vector<Duration> all;
+    for (int i = 0; i < count; ++i) {
+      now_ += milliseconds(1);
+      const Duration since = now_;
+      Step step = fsm_.resume(answer, now_, kFull);
+      while (std::holds_alternative<Sleep>(*step.action)) step = wake(now_ + sleep_of(step));
+      EXPECT_EQ(send_of(step).resource, Resource::Clock);
+      all.push_back(now_ - since);
+    }
+    return all;
+  }
+
+ private:
+  Step wake(Duration at) {
+    for (; now_ + kFrame < at; ++sequence_) {
+      now_ += kFrame;
+      (void)fsm_.resume(streamed(sequence_, static_cast<int>(now_ / milliseconds(1))), now_, kFull);
+    }
+    now_ = at;
+    return fsm_.resume(Woke{}, now_, kFull);
+  }
+
+  static constexpr Duration kFrame = milliseconds(33);
+  PollFsm fsm_ = streaming(milliseconds(0));
+  Duration now_ = milliseconds(150);
+  std::uint64_t sequence_ = 3;
+};
+
+TEST(PollFsmStream, AClockThatDoesNotBecomeBetterKnownIsAskedInAHurryForAWhileOnly) {
+  Hurried hurried;
+  const auto pauses = hurried.pauses(55, {milliseconds(5)});
+  EXPECT_LE(pauses[1], milliseconds(110));
+  EXPECT_LE(pauses[48], milliseconds(110));
+  EXPECT_GE(pauses.back(), milliseconds(400));
+  (void)hurried.pauses(1, {milliseconds(5), true});
+  EXPECT_LE(hurried.pauses(1, {milliseconds(5)}).back(), milliseconds(110))
+      << "a clock that was set is new";
+}
+
 TEST(PollFsmStream, AFrameTwiceIsNoNews) {
   PollFsm fsm = streaming(milliseconds(0));
   EXPECT_FALSE(fsm.resume(streamed(2, 33), milliseconds(5), kFull).deliver);
