@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/record/cell_sorting.h"
+#include "common/record/cell_writer.h"
 #include "common/record/frame_schema.h"
 #include "common/resource/frame_resource.h"
 
@@ -62,6 +63,47 @@ Result<Timestamp> captured(const Message& message, const std::optional<Message>&
   if (!shift) return fail(ErrorCode::Malformed, file.string(), shift.error().message);
   (void)moved(t, *shift);
   return t;
+}
+
+/// When a stream of a file begins and ends.
+struct Extent {
+  Timestamp first;
+  Timestamp last;
+  bool left_over = false;  ///< See SensorStay.
+};
+
+/// The second message of a topic; none if there is only one.
+std::optional<Message> second_of(const fs::path& file, const std::string& topic) {
+  ReadLimits limits;
+  limits.wanted = [&](std::string_view one) { return one == topic; };
+  auto stream = RecordingStream::open(file, limits);
+  if (!stream) return std::nullopt;
+  const auto first = stream->next();
+  if (!first || !*first) return std::nullopt;
+  const auto second = stream->next();
+  return second && *second ? std::optional((*second)->copy()) : std::nullopt;
+}
+
+/// None when the file holds of this cell's stream only a frame that was left over, or nothing.
+Result<std::optional<Extent>> extent_of(RecordingStream& stream, const std::string& prefix,
+                                        bool cell, const fs::path& file) {
+  const auto first = stream.first_of(prefix + "frame");
+  const auto last = stream.last_of(prefix + "frame");
+  if (!first || !last) return std::nullopt;
+  const auto clock = cell ? stream.first_of(prefix + "clock") : std::nullopt;
+  const auto begin = captured(*first, clock, file);
+  const auto end = captured(*last, cell ? stream.last_of(prefix + "clock") : std::nullopt, file);
+  if (!begin) return pass(begin);
+  if (!end) return pass(end);
+  const bool old = cell && first->log_time - *begin > kLeftOverAfter;
+  if (!old) return Extent{*begin, *end};
+  const auto second = second_of(file, prefix + "frame");
+  if (!second) return std::nullopt;
+  // If all frames are that old, the sensor's clock is wrong, and nothing was left over.
+  if (last->log_time - *end > kLeftOverAfter) return Extent{*begin, *end};
+  const auto next = captured(*second, clock, file);
+  if (!next) return pass(next);
+  return Extent{*next, *end, true};
 }
 
 /// Collects the time span of every sensor over all files.
@@ -123,18 +165,13 @@ class Stays {
 
   Result<void> widen(RecordingStream& stream, const Where& where) {
     const std::string topic = where.prefix + "frame";
-    const auto first = stream.first_of(topic);
-    const auto last = stream.last_of(topic);
-    if (!first || !last) return {};
-    const std::string clock = where.prefix + "clock";
-    const auto begin =
-        captured(*first, where.cell ? stream.first_of(clock) : std::nullopt, where.file);
-    const auto end = captured(*last, where.cell ? stream.last_of(clock) : std::nullopt, where.file);
-    if (!begin) return pass(begin);
-    if (!end) return pass(end);
+    const auto extent = extent_of(stream, where.prefix, where.cell, where.file);
+    if (!extent) return pass(extent);
+    if (!*extent) return {};
+    const auto [begin, end, left_over] = **extent;
     const auto [entry, fresh] = stays_.try_emplace(where.about.sensor);
     Known& known = entry->second;
-    if (fresh) known = {{where.about, {}, *begin, *end, 0, where.cell}, where.line};
+    if (fresh) known = {{where.about, {}, begin, end, 0, where.cell, left_over}, where.line};
     if (known.line != where.line) {
       return fail(ErrorCode::Conflict, where.file.string(),
                   "is a recording of sensor " + where.about.sensor.str() + ", and so is " +
@@ -143,9 +180,10 @@ class Stays {
     }
     SensorStay& stay = known.stay;
     stay.files.push_back(where.file);
-    stay.first = std::min(stay.first, *begin);
-    stay.last = std::max(stay.last, *end);
-    const auto frames = stream.count(topic);
+    stay.first = std::min(stay.first, begin);
+    stay.last = std::max(stay.last, end);
+    auto frames = stream.count(topic);
+    if (frames && left_over) --*frames;
     stay.frames = stay.frames && frames ? std::optional(*stay.frames + *frames) : std::nullopt;
     return {};
   }

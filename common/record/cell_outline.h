@@ -32,7 +32,8 @@ struct CellLine {
 [[nodiscard]] Result<std::optional<std::string>> last_registration(
     const std::vector<CellLine>& lines);
 
-/// The time during which a recording contains one sensor.
+/// The time during which a recording contains one sensor.  What was left over from before
+/// (kLeftOverAfter), which recordings of cells may begin with, is no part of it.
 struct SensorStay {
   FrameRecording about;  ///< The sensor and its description, without frames.
   std::vector<std::filesystem::path> files;
@@ -43,6 +44,8 @@ struct SensorStay {
   std::optional<std::uint64_t> frames;
   /// True if it is from the recording of a cell, even if the other sensors are missing here.
   bool cell = false;
+  /// True if the first frame of the files was left over; it is not counted in `frames`.
+  bool left_over = false;
 };
 
 /// One entry for each sensor with frames, ordered by id; unpacks only a few chunks, if the files

@@ -11,6 +11,7 @@
 // single sensor has its raw frames on /frame and its floor on /floor-plane (frame_recording.h).
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -33,6 +34,10 @@ struct ClockModel {
   Duration ours_minus_theirs{0};
   std::optional<Duration> uncertainty;  ///< None: the sensor's clock offset is unknown.
 };
+
+/// A stream's first frame that was captured longer than this before it was received is left over: a
+/// sensor that has died, or has seen nothing since, still gives its last frame to whoever asks.
+inline constexpr Duration kLeftOverAfter = std::chrono::seconds(10);
 
 struct RawFrame {
   SensorId sensor;

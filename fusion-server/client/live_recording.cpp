@@ -131,10 +131,18 @@ void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
   }
 }
 
+bool LiveRecording::left_over(const std::string& topic, Timestamp captured, Timestamp received) {
+  // Of a host whose clock is wrong by more than that and unknown, only the first frame is lost.
+  const bool old = received - captured > record::kLeftOverAfter;
+  const auto first = left_over_.try_emplace(topic, old ? std::optional(captured) : std::nullopt);
+  return first.first->second == captured;
+}
+
 void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,
                              const http::ClientResponse& answer) {
   auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
   if (!frame) return counts_[topic].cannot_read(frame.error());
+  if (left_over(topic, frame->captured + clocks_[sensor].applied, received(answer))) return;
   counts_[topic].take(frame->sequence);
   record::RawFrame raw{sensor,
                        std::make_shared<const resource::FrameResource>(std::move(*frame)),
@@ -148,6 +156,7 @@ void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,
 void LiveRecording::take_fused(const http::ClientResponse& answer) {
   auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
   if (!frame) return counts_["/frame"].cannot_read(frame.error());
+  if (left_over("/frame", frame->captured, received(answer))) return;
   counts_["/frame"].take(frame->sequence);
   const Timestamp instant = frame->captured;
   recorder_->offer(record::FusedFrame{instant, received(answer),

@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,9 @@ struct LiveRecordingOptions {
   bool fused = true;
 };
 
-/// Runs on the io_context's thread; only the file is written on the recorder's thread.
+/// Runs on the io_context's thread; only the file is written on the recorder's thread.  A frame
+/// that was left over from before the recording (record::kLeftOverAfter) is neither counted nor
+/// recorded.
 class LiveRecording {
  public:
   /// Asks the service for its description and begins.  Errors: the service does not answer, is not
@@ -51,6 +54,8 @@ class LiveRecording {
   void take_raw(const SensorId& sensor, const std::string& topic,
                 const http::ClientResponse& answer);
   void take_fused(const http::ClientResponse& answer);
+  /// Whether this is the frame that the topic began with and that was left over from before.
+  bool left_over(const std::string& topic, Timestamp captured, Timestamp received);
   void take_clocks(const http::ClientResponse& answer);
   void take_registration(const http::ClientResponse& answer);
 
@@ -61,6 +66,8 @@ class LiveRecording {
   std::deque<LivePoll> polls_;
   std::map<std::string, StreamCount> counts_;
   std::map<std::string, std::string> troubles_;
+  /// The capture time of the frame that a topic began with, if it was left over.
+  std::map<std::string, std::optional<Timestamp>> left_over_;
   std::map<SensorId, record::ClockModel> clocks_;
   std::map<SensorId, FloorPlane> floors_;
 };

@@ -75,6 +75,18 @@ void share(const Round& round, Child& child) {
   }
 }
 
+/// Names the sensors that the files name but of which nothing can be played.
+void tell_absent(const std::vector<record::CellLine>& lines,
+                 const std::vector<record::SensorStay>& stays) {
+  for (const auto& line : lines) {
+    for (const SensorId& sensor : line.sensors) {
+      const auto same = [&](const auto& stay) { return stay.about.sensor == sensor; };
+      if (std::ranges::none_of(stays, same))
+        std::cerr << "note: " << sensor.str() << " delivered no frame while this was recorded\n";
+    }
+  }
+}
+
 /// The streams to play; after an error, such as a sensor that occurs twice, nothing may be started.
 Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellLine>& lines) {
   for (const auto& line : lines) {
@@ -84,6 +96,7 @@ Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellL
   if (stays && stays->empty())
     return fail(ErrorCode::NotFound, "recordings",
                 "hold no frames of a sensor; were they recorded with --fused alone?");
+  if (stays) tell_absent(lines, *stays);
   return stays;
 }
 

@@ -7,7 +7,9 @@
 #include <atomic>
 
 #include "common/http/server.h"
+#include "common/record/cell_reader.h"
 #include "common/resource/frame_resource.h"
+#include "common/time/clock.h"
 #include "services/ctl/command.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
@@ -51,7 +53,7 @@ class BrokenCell : public ::testing::Test {
     EXPECT_THAT(server_->start(), IsOk());
   }
 
-  Result<http::DocumentPtr> frame(const std::string& sensor) {
+  virtual Result<http::DocumentPtr> frame(const std::string& sensor) {
     if (sensor == "s2") return fail(ErrorCode::Unauthorized, "frame", "who are you?");
     if (sensor == "s3")
       return http::make_document("text/turtle", "<a> <b>",
@@ -93,6 +95,44 @@ TEST_F(BrokenCell, CountsWhatFailedAndWhatCouldNotBeReadFromTheBeginning) {
   EXPECT_THAT(s2.error, HasSubstr("who are you?"));
   EXPECT_EQ(s3.frames, 0u);
   EXPECT_NE(s3.error, "");
+}
+
+/// s1 is well; s2 died five minutes ago and is asked for what it saw last.
+class HalfDeadCell : public BrokenCell {
+ protected:
+  Result<http::DocumentPtr> frame(const std::string& sensor) override {
+    if (sensor == "s3") return fail(ErrorCode::Unavailable, "frame", "none yet");
+    const int n = sensor == "s2" ? 1 : std::min(++asked_, 5);
+    resource::FrameResource frame;
+    frame.sequence = static_cast<std::uint64_t>(n);
+    frame.captured = SystemClock().now() - kFrameInterval * (5 - n);
+    if (sensor == "s2") ++dead_asked_, frame.captured = died_;
+    frame.source = sensor;
+    return http::make_document("text/turtle", resource::write(frame, resource::Format::Turtle),
+                               {std::to_string(n)});
+  }
+
+  std::atomic<int> dead_asked_ = 0;
+  const Timestamp died_ = SystemClock().now() - std::chrono::minutes(5);
+};
+
+TEST_F(HalfDeadCell, WhatADeadSensorSawLastIsNotRecorded) {
+  asio::io_context io{1};
+  LiveRecordingOptions options;
+  options.service = http::parse_url(url()).value();
+  options.file = (folder_ / "a.mcap").string();
+  options.fused = false;
+  const auto live = LiveRecording::start(io, options);
+  ASSERT_TRUE(live) << to_string(live.error());
+  const auto& counts = (*live)->counts();
+  while (counts.at("/sensors/s1/frame").frames < 4 || dead_asked_ < 2) io.run_one();
+  (void)(*live)->stop();
+  EXPECT_EQ(counts.at("/sensors/s2/frame").frames, 0u);
+  EXPECT_EQ(counts.at("/sensors/s2/frame").failed, 0u);
+  const auto cell = record::read_cell(options.file);
+  ASSERT_TRUE(cell) << to_string(cell.error());
+  ASSERT_EQ(cell->sensors.size(), 1u);
+  EXPECT_EQ(cell->sensors.front().sensor.str(), "s1");
 }
 
 TEST(StreamCount, WhatComesLateIsNotMissed) {

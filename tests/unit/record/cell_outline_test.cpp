@@ -61,6 +61,56 @@ TEST(CellOutline, TellsWhoWasThereAndWhenWithoutReadingItThrough) {
   EXPECT_EQ(last_registration(*lines).value(), R"({"version":1,"sensors":{}})");
 }
 
+/// s1 is well; s2 gives for an answer what it saw minutes ago, and after a second `later` frames.
+void write_cell_with_left_over(const std::filesystem::path& path, int later) {
+  auto writer = CellWriter::create(path, {});
+  ASSERT_TRUE(writer);
+  RawFrame old = raw_frame("s2", outline_seen_by("s2", -9000));
+  old.received = kStart;
+  ASSERT_TRUE(writer->write(old));
+  for (int i = 0; i < kCellFrames; ++i) {
+    ASSERT_TRUE(writer->write(raw_frame("s1", outline_seen_by("s1", i))));
+    if (i < kCellFrames - later) continue;
+    ASSERT_TRUE(writer->write(raw_frame("s2", outline_seen_by("s2", i))));
+  }
+  ASSERT_TRUE(writer->close());
+}
+
+TEST(CellOutline, BeginsWithoutWhatADeadSensorHadLeftOver) {
+  const TemporaryFolder folder;
+  write_cell_with_left_over(folder / "back.mcap", 10);
+  const auto back = sensor_stays(cell_lines({folder / "back.mcap"}).value());
+  ASSERT_TRUE(back);
+  ASSERT_THAT(*back, SizeIs(2));
+  EXPECT_FALSE(back->front().left_over);
+  EXPECT_TRUE(back->back().left_over);
+  EXPECT_EQ(back->back().first, kStart + kFrameInterval * (kCellFrames - 10));
+  EXPECT_EQ(back->back().frames, 10u);
+
+  write_cell_with_left_over(folder / "dead.mcap", 0);
+  const auto dead = sensor_stays(cell_lines({folder / "dead.mcap"}).value());
+  ASSERT_TRUE(dead);
+  ASSERT_THAT(*dead, SizeIs(1)) << "s2 was not there";
+  EXPECT_EQ(dead->front().about.sensor.str(), "s1");
+}
+
+TEST(CellOutline, ASensorWhoseClockIsWrongHasLeftNothingOver) {
+  const TemporaryFolder folder;
+  auto writer = CellWriter::create(folder / "a.mcap", {});
+  ASSERT_TRUE(writer);
+  for (int i = 0; i < kCellFrames; ++i) {
+    RawFrame behind = raw_frame("s1", outline_seen_by("s1", i));
+    behind.received += std::chrono::hours(1);
+    ASSERT_TRUE(writer->write(behind));
+  }
+  ASSERT_TRUE(writer->close());
+  const auto stays = sensor_stays(cell_lines({folder / "a.mcap"}).value());
+  ASSERT_TRUE(stays);
+  ASSERT_THAT(*stays, SizeIs(1));
+  EXPECT_EQ(stays->front().first, kStart);
+  EXPECT_FALSE(stays->front().left_over);
+}
+
 TEST(CellOutline, RefusesTwoRecordingsOfOneSensor) {
   const TemporaryFolder folder;
   write_outlined_cell(folder / "a.mcap");

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/record/cell_writer.h"
 #include "tests/support/builders.h"
 #include "tests/support/temporary_folder.h"
 
@@ -110,6 +111,31 @@ TEST(Replay, PlaysAFileAsItPlaysMemory) {
     EXPECT_EQ(frame.floor->offset, 1.2);
   }
   EXPECT_FALSE(open_tape(folder / "none.mcap", sensor_id("s1")));
+}
+
+TEST(Replay, LeavesOutWhatADeadSensorHadLeftOver) {
+  const chorus::testing::TemporaryFolder folder;
+  auto writer = record::CellWriter::create(folder / "cell.mcap", {});
+  ASSERT_TRUE(writer);
+  for (const int i : {-9000, 0, 1, 2, 3, 4}) {
+    auto frame = std::make_shared<resource::FrameResource>();
+    frame->sequence = static_cast<std::uint64_t>(i + 9001);
+    frame->captured = kStart + kFrameInterval * i;
+    frame->source = "s1";
+    const Timestamp received = kStart + kFrameInterval * std::max(i, 0);
+    ASSERT_TRUE(writer->write(record::RawFrame{sensor_id("s1"), frame, received, {}, {}}));
+  }
+  ASSERT_TRUE(writer->close());
+  auto tape = open_tape(folder / "cell.mcap", sensor_id("s1"));
+  ASSERT_TRUE(tape) << to_string(tape.error());
+  EXPECT_EQ((*tape)->span().first, kStart);
+  EXPECT_EQ((*tape)->span().frames, 5u);
+  Played played;
+  played.play(std::move(*tape), {}, 12);
+  ASSERT_EQ(played.captures.size(), 12u) << "in later rounds, too";
+  for (std::size_t i = 1; i < played.captures.size(); ++i)
+    EXPECT_EQ(played.captures[i].frame.captured - played.captures[i - 1].frame.captured,
+              kFrameInterval);
 }
 
 TEST(Replay, LoopsWithoutGapOrRepeatedTime) {

@@ -52,7 +52,7 @@ class MemoryTape final : public ReplayTape {
 class FileTape final : public ReplayTape {
  public:
   FileTape(record::SensorStay stay, std::vector<std::string> damage)
-      : stay_(std::move(stay)), stream_(fresh()) {
+      : stay_(std::move(stay)), stream_(fresh()), leave_out_(stay_.left_over) {
     for (std::size_t i = 0; i < damage.size(); ++i)
       stay_.about.notes["damage." + std::to_string(i + 1)] = std::move(damage[i]);
   }
@@ -82,10 +82,14 @@ class FileTape final : public ReplayTape {
       if (!item) return pass(item);
       if (!*item) return std::nullopt;
       auto* frame = std::get_if<SensorFrame>(&**item);
-      if (frame != nullptr && frame->sensor == stay_.about.sensor) return std::move(*frame);
+      if (frame == nullptr || frame->sensor != stay_.about.sensor) continue;
+      if (!std::exchange(leave_out_, false)) return std::move(*frame);
     }
   }
-  void rewind() override { stream_ = fresh(); }
+  void rewind() override {
+    stream_ = fresh();
+    leave_out_ = stay_.left_over;
+  }
 
  private:
   [[nodiscard]] record::CellStream fresh() const {
@@ -96,6 +100,7 @@ class FileTape final : public ReplayTape {
 
   record::SensorStay stay_;
   record::CellStream stream_;
+  bool leave_out_ = false;  ///< Whether the next frame was left over from before the recording.
   TapeSpan span_;
 };
 
