@@ -203,6 +203,7 @@ Result<ServiceWishes> write_sensor(InitArguments& arguments) {
   }
   if (wishes.device == "replay" && wishes.recording.empty())
     return fail(ErrorCode::InvalidArgument, "--recording", "a replay needs the file to play");
+  wishes.socket = push_socket(wishes.id, arguments.out == kSensorFile, own_environment());
   wishes.service = service_wishes(arguments, kSensorPort);
   if (auto ok = write_new(arguments.out, sensor_config(wishes)); !ok) return pass(ok);
   announce(arguments, wishes.service);

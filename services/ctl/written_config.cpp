@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <filesystem>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -122,7 +123,8 @@ std::string section_of(const SensorWishes& wishes) {
   }
   if (wishes.device == "bridge") {
     return "    // Programs of this host that may open this socket push without a token.\n"
-           "    \"bridge\": { \"socket\": \"/run/chorus-sensor/push\" }";
+           "    \"bridge\": { \"socket\": " +
+           quoted(wishes.socket) + " }";
   }
   if (wishes.device == "camera") {
     return "    // A webcam (chorus camera list shows them), a stream (rtsp://...) or a video "
@@ -261,6 +263,15 @@ Result<OutputWish> output_wish(std::string_view text) {
     }
   }
   return wish;
+}
+
+std::string push_socket(const std::string& id, bool of_the_unit, const Environment& environment) {
+  namespace fs = std::filesystem;
+  if (of_the_unit) return "/run/chorus-sensor/push";
+  const fs::path run = value_of(environment, "XDG_RUNTIME_DIR");
+  std::error_code unknown;
+  const bool usable = run.is_absolute() && fs::is_directory(run, unknown);
+  return ((usable ? run : fs::path("/tmp")) / ("chorus-" + id + ".push")).string();
 }
 
 std::string sensor_config(const SensorWishes& wishes) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/environment.h"
 #include "common/base/result.h"
 
 namespace chorus::ctl {
@@ -26,6 +27,7 @@ struct SensorWishes {
   std::string device = "bridge";  ///< bridge, camera, phone, replay or simulated
   std::string camera = "/dev/video0";
   std::string recording;  ///< The recording that a replay plays.
+  std::string socket;     ///< The local socket of a bridge.
   bool images = false;
 };
 
@@ -53,6 +55,12 @@ struct FusionWishes {
 
 /// Reads "vrpn=10.0.0.20,10.0.0.21", "dtrack=10.0.0.20:5000" or "trackd"
 [[nodiscard]] Result<OutputWish> output_wish(std::string_view text);
+
+/// The local socket of the bridge `id`.  `of_the_unit`: in the folder that systemd makes for the
+/// unit chorus-sensor; otherwise in one where the user may make a file, which has the user's run
+/// folder first.
+[[nodiscard]] std::string push_socket(const std::string& id, bool of_the_unit,
+                                      const Environment& environment);
 
 [[nodiscard]] std::string sensor_config(const SensorWishes& wishes);
 [[nodiscard]] std::string fusion_config(const FusionWishes& wishes);

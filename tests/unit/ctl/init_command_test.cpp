@@ -78,6 +78,29 @@ TEST(Init, ACameraIsOneOption) {
   EXPECT_THAT(made.out, HasSubstr("\"camera\": { \"source\": \"rtsp://10.0.0.5/1\" }"));
 }
 
+Environment with_run_folder(const std::string& folder) {
+  return [folder](const char* name) {
+    return std::string_view(name) == "XDG_RUNTIME_DIR" ? folder.c_str() : nullptr;
+  };
+}
+
+TEST(Init, ABridgesSocketIsWhereItsUserMayMakeAFile) {
+  const testing::TemporaryFolder folder;
+  const Environment user = with_run_folder(folder.path().string());
+  EXPECT_EQ(push_socket("s1", true, user), "/run/chorus-sensor/push")
+      << "systemd makes that folder";
+  EXPECT_EQ(push_socket("s1", false, user), (folder / "chorus-s1.push").string());
+  EXPECT_NE(push_socket("s1", false, user), push_socket("s2", false, user)) << "both on one host";
+  EXPECT_EQ(push_socket("s1", false, with_run_folder((folder / "gone").string())),
+            "/tmp/chorus-s1.push");
+  EXPECT_EQ(push_socket("s1", false, with_run_folder("")), "/tmp/chorus-s1.push");
+}
+
+TEST(Init, ABridgeWrittenForAUserNamesNoFolderOfThePackage) {
+  EXPECT_THAT(run({"sensor", "--id", "s1", "--device", "bridge", "--out", "-"}).out,
+              AllOf(HasSubstr("/chorus-s1.push\" }"), Not(HasSubstr("/run/chorus-sensor"))));
+}
+
 TEST(Init, APhoneIsABridgeWithItsPageAndALinkToOpen) {
   const testing::TemporaryFolder folder;
   const std::string file = (folder / "sensor.json").string();

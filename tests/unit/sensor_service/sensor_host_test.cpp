@@ -11,6 +11,7 @@
 namespace chorus::sensor_service {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// Throws during its first run; then delivers one frame and waits.
@@ -80,7 +81,9 @@ TEST(SensorHost, ASocketThatCannotBeMadeIsAConcernBeforeTheStart) {
     const auto host = SensorHost::make(settings);
     return host ? ::testing::PrintToString((*host)->concerns()) : to_string(host.error());
   };
-  EXPECT_THAT(concerns("/nonexistent/x.sock"), HasSubstr("device.bridge.socket"));
+  EXPECT_THAT(concerns("/nonexistent/x.sock"),
+              AllOf(HasSubstr("device.bridge.socket"), HasSubstr("there is no folder /nonexistent"),
+                    HasSubstr("/run/chorus-sensor")));
   EXPECT_THAT(concerns("/etc/passwd"), HasSubstr("there is a file that is no socket"));
   EXPECT_THAT(concerns(""), ::testing::Not(HasSubstr("socket")));
 }

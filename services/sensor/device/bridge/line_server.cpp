@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <filesystem>
 #include <thread>
 #include <unordered_set>
 #include <utility>
@@ -139,6 +140,19 @@ tl::unexpected<Error> cannot(const std::string& path, const std::string& why) {
   return fail(ErrorCode::Io, "device.bridge.socket", path + ": " + why);
 }
 
+/// Why there can be no socket at the path, and what to change.
+tl::unexpected<Error> cannot_bind(const std::string& path, const error_code& failed) {
+  const std::string folder = std::filesystem::absolute(path).parent_path().string();
+  if (failed == boost::system::errc::no_such_file_or_directory) {
+    return cannot(path, "there is no folder " + folder +
+                            ": name a file in one that is there (systemd makes "
+                            "/run/chorus-sensor while the unit of the package runs)");
+  }
+  if (failed == boost::system::errc::permission_denied)
+    return cannot(path, "this user may make no file in " + folder + ": name one elsewhere");
+  return cannot(path, failed.message());
+}
+
 }  // namespace
 
 struct LineServer::Impl {
@@ -171,7 +185,7 @@ Result<void> LineServer::Impl::open() {
   error_code failed;
   acceptor.open(local_stream(), failed);
   if (!failed) acceptor.bind(local_stream::endpoint(path), failed);
-  if (failed) return cannot(path, failed.message());
+  if (failed) return cannot_bind(path, failed);
   bound = true;
   // Done before listen(), so that nobody can connect while the socket has another mode.
   if (::chmod(path.c_str(), kMode) != 0) return cannot(path, "its mode cannot be set");
