@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "fusion-server/registration/error_radius.h"
+#include "common/geometry/error_radius.h"
 
 namespace chorus::core {
 namespace {
@@ -19,7 +19,7 @@ std::optional<double> radius_of(const Registration& registration, const SensorId
   const Extrinsics* place = place_in(registration, sensor);
   if (place == nullptr) return std::nullopt;
   if (place->covariance.isZero(0.0) && sensor != registration.master) return std::nullopt;
-  const double radius = registration::radius_on_floor(place->covariance);
+  const double radius = radius_on_floor(place->covariance);
   return std::isfinite(radius) ? std::optional(radius) : std::nullopt;
 }
 
@@ -30,7 +30,7 @@ std::vector<SensorAccuracy> accuracy_of(const Registration& candidate) {
   for (const auto& [sensor, verdict] : candidate.verdicts) {
     SensorAccuracy own{sensor, {}};
     const Extrinsics* place = place_in(candidate, sensor);
-    if (place != nullptr) own.radius = registration::radius_on_floor(place->covariance);
+    if (place != nullptr) own.radius = radius_on_floor(place->covariance);
     all.push_back(std::move(own));
   }
   return all;

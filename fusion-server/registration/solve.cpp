@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "common/geometry/error_radius.h"
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
 #include "fusion-server/registration/common_scale.h"
 #include "fusion-server/registration/consensus.h"
-#include "fusion-server/registration/error_radius.h"
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/impossible_place.h"
 #include "fusion-server/registration/known_places.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/units.h"
+#include "common/geometry/error_radius.h"
 
 namespace chorus::wire {
 namespace {
@@ -57,8 +58,11 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
     put("nextError", place.next_error, kPlaceDigits);
   }
   if (place.scale != 1.0) put("scale", place.scale, kRotationDigits);
-  if (!place.covariance.isZero(0.0))  // All zero means that the covariance is unknown.
-    node.properties.emplace_back("covariance", decimals_of(place.covariance));
+  // All zero means that the covariance is unknown.
+  if (place.covariance.isZero(0.0)) return node;
+  node.properties.emplace_back("covariance", decimals_of(place.covariance));
+  const double radius = radius_on_floor(place.covariance);
+  if (std::isfinite(radius)) put("presentRadius", radius, kPlaceDigits);
   return node;
 }
 

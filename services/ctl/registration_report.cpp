@@ -101,7 +101,8 @@ std::string registration_report(const nlohmann::json& registration) {
   const bool kept = stored != registration.end() && *stored == true;
   if (!problem.empty()) text += (kept ? "  " : "  not stored: ") + printable(problem) + "\n";
   std::vector<std::vector<std::string>> rows{{"sensor", "verdict", "x [m]", "y [m]", "z [m]",
-                                              "yaw [deg]", "error [mm]", "chain", "next best"}};
+                                              "yaw [deg]", "95 % [mm]", "error [mm]", "chain",
+                                              "next best"}};
   for (const auto& [name, sensor] : client::part_at(registration, "sensors").items()) {
     const auto polled = sensor.find("polled");
     const bool idle = polled != sensor.end() && *polled == false;
@@ -109,11 +110,13 @@ std::string registration_report(const nlohmann::json& registration) {
                     shown(client::number_at(sensor, "x"), 3),
                     shown(client::number_at(sensor, "y"), 3),
                     shown(client::number_at(sensor, "z"), 3), yaw_shown(sensor),
+                    shown(to_mm(client::number_at(sensor, "presentRadius")), 0),
                     shown(to_mm(client::number_at(sensor, "error")), 1),
                     chain_shown(sensor, "chain"), next_shown(sensor)});
   }
   for (const auto& [name, sensor] : client::part_at(registration, "unplaced").items())
-    rows.push_back({name, client::text_at(sensor, "verdict"), "-", "-", "-", "-", "-", "-", "-"});
+    rows.push_back(
+        {name, client::text_at(sensor, "verdict"), "-", "-", "-", "-", "-", "-", "-", "-"});
   if (rows.size() > 1) text += table(std::move(rows));
   return text;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fusion-server/registration/error_radius.h"
+#include "common/geometry/error_radius.h"
 #include "tests/bench/methods/pair_estimators.h"
 #include "tests/judge/place_error.h"
 
@@ -74,8 +74,7 @@ void add(Score& score, const Extrinsics& place, const Eigen::Isometry3d& exact,
   score.centre += point_error(place.world_from_sensor, exact, centre_in_world);
   score.lost += error.position <= kLost ? 0U : 1U;
   score.covered += covers(place, exact) ? 1U : 0U;
-  const double radius =
-      registration::radius_of_95(place.covariance.block<3, 3>(3, 3)({0, 2}, {0, 2}));
+  const double radius = radius_of_95(place.covariance.block<3, 3>(3, 3)({0, 2}, {0, 2}));
   score.inside += error.horizontal <= radius ? 1U : 0U;
   score.stated.push_back(radius);
   score.off.push_back(error.horizontal);

@@ -153,6 +153,15 @@ TEST(RegistrationReport, PutsAlarmsFirstAndWhatToDoNextLast) {
             "  next: walk in front of s2\n");
 }
 
+TEST(RegistrationReport, SaysHowWellEachPlaceIsKnown) {
+  const Json sensors{{"far", {{"x", 1.0}, {"presentRadius", 0.0414}, {"error", 0.005}}},
+                     {"master", {{"x", 0.0}, {"error", 0.0}}}};
+  const std::string text = registration_report({{"sensors", sensors}});
+  EXPECT_THAT(text, HasSubstr("95 % [mm]"));
+  EXPECT_THAT(row_of(text, "far"), MatchesRegex(".* 41 +5\\.0 .*"));
+  EXPECT_THAT(row_of(text, "master"), MatchesRegex(".* - +0\\.0 .*"));
+}
+
 TEST(RegistrationReport, NamesThePairWhoseLoopsCloseWorst) {
   const Json edges = {{{"target", "s1"}, {"source", "s2"}, {"loopError", 0.004}},
                       {{"target", "s2"}, {"source", "s3"}, {"loopError", 0.0316}},
@@ -200,7 +209,7 @@ TEST(RegistrationReport, MarksSensorsThatAreNotPolledAndThoseWithoutAPlace) {
   const std::string text = registration_report(registration);
   EXPECT_THAT(row_of(text, "s1"), MatchesRegex("s1 +Good  +- .*"));
   EXPECT_THAT(row_of(text, "s2"), MatchesRegex("s2 +Good, not polled +- .*s1 > s2.*"));
-  EXPECT_THAT(row_of(text, "s9"), MatchesRegex("s9 +Refused +- +- +- +- +- +- +-"));
+  EXPECT_THAT(row_of(text, "s9"), MatchesRegex("s9 +Refused +- +- +- +- +- +- +- +-"));
 }
 
 TEST(RegistrationReport, ShowsPlacesErrorsAndTheNextBestChain) {
@@ -220,7 +229,7 @@ TEST(RegistrationReport, ShowsPlacesErrorsAndTheNextBestChain) {
                               {"nextError", 0.024}}}}}};
   EXPECT_THAT(
       row_of(registration_report(registration), "s2"),
-      MatchesRegex("s2 +Good +1\\.235 +-0\\.500 +3\\.000 +-30\\.0 +7\\.4 +s1 > s3 > s2 +s1 > "
+      MatchesRegex("s2 +Good +1\\.235 +-0\\.500 +3\\.000 +-30\\.0 +- +7\\.4 +s1 > s3 > s2 +s1 > "
                    "s2 \\(24\\.0 mm\\)"));
 }
 

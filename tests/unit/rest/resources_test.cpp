@@ -226,6 +226,17 @@ TEST_F(Registering, ASessionThatRunsByItselfIsTakenOverAndASecondClientIsRefused
   EXPECT_NE(second.error().message.find("/registration/sessions/40"), std::string::npos);
 }
 
+TEST_F(Registering, EachPlaceSaysHowWellItIsKnown) {
+  for (const char* id : {"s1", "s2"}) registration_.sensors[sensor_id(id)] = Extrinsics{};
+  auto& known = registration_.sensors[sensor_id("s2")].covariance;
+  known.diagonal() << 1e-6, 1e-6, 1e-6, 4e-4, 1.0, 4e-4;  // 20 mm on the floor, 1 m in height
+  registration_.master = sensor_id("s1");
+  publish();
+  const std::string text = shown();
+  EXPECT_EQ(text.find("presentRadius"), text.rfind("presentRadius")) << "nothing is known of s1";
+  EXPECT_NE(text.find("\"presentRadius\": 0.049"), std::string::npos) << text;
+}
+
 TEST_F(Registering, AProposalIsShownWithItsNumbersAndAcceptedOrDeclined) {
   EXPECT_FALSE(parse_session_request(R"({"adopt": "later"})", {}));
   registration_.sensors[sensor_id("s1")] = Extrinsics{};

@@ -1,4 +1,4 @@
-#include "fusion-server/registration/error_radius.h"
+#include "common/geometry/error_radius.h"
 
 #include <random>
 
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-namespace chorus::registration {
+namespace chorus {
 namespace {
 
 TEST(RadiusOf95, OfARoundAndOfAnInfinitelyNarrowOne) {
@@ -34,14 +34,14 @@ TEST(RadiusOf95, HoldsNineteenOfTwentyHoweverNarrowAndTurned) {
     const Eigen::Matrix2d squares = sigma.cwiseAbs2().asDiagonal();
     const double radius = radius_of_95(turn * squares * turn.transpose());
     int inside = 0;
-    constexpr int kDraws = 20000;
-    for (int i = 0; i < kDraws; ++i) {
+    constexpr int kSamples = 20000;
+    for (int i = 0; i < kSamples; ++i) {
       const double x = sigma[0] * normal(random);
       inside += std::hypot(x, sigma[1] * normal(random)) <= radius ? 1 : 0;
     }
-    EXPECT_NEAR(static_cast<double>(inside) / kDraws, 0.95, 0.006) << narrow;
+    EXPECT_NEAR(static_cast<double>(inside) / kSamples, 0.95, 0.006) << narrow;
   }
 }
 
 }  // namespace
-}  // namespace chorus::registration
+}  // namespace chorus

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace chorus::registration {
+namespace chorus {
 
 /// Radius of the circle about the mean that holds 95 % of a normal distribution on the plane [m]:
 /// 2.45 sigma for a round one, 1.96 sigma of the long axis for a narrow one.  Infinite if the
@@ -14,4 +14,4 @@ namespace chorus::registration {
 /// position) in world axes.
 [[nodiscard]] double radius_on_floor(const Eigen::Matrix<double, 6, 6>& covariance);
 
-}  // namespace chorus::registration
+}  // namespace chorus

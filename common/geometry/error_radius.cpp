@@ -1,4 +1,4 @@
-#include "fusion-server/registration/error_radius.h"
+#include "common/geometry/error_radius.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace chorus::registration {
+namespace chorus {
 namespace {
 
 /// 95 % radius / sigma of the long axis, for short axes of 0, 0.1, ... 1 times the long one.
@@ -35,4 +35,4 @@ double radius_on_floor(const Eigen::Matrix<double, 6, 6>& covariance) {
   return radius_of_95(covariance.block<3, 3>(3, 3)({0, 2}, {0, 2}));
 }
 
-}  // namespace chorus::registration
+}  // namespace chorus
