@@ -76,7 +76,7 @@ test('a page of an allowed origin pushes rays with its token', async (t) => {
     return now.pusher?.frames > 20 && now;
   });
   assert.equal(state.state, 'live');
-  assert.equal(state.pusher.refused, 0);
+  assert.equal(state.pusher.refused, 0, JSON.stringify(state));
   assert.ok(Math.abs(state.pusher.clockOffsetMilliseconds) < 20, 'one computer, one clock');
   const frame = await asked(`${sensor}frame`);
   const ray = frame.bodies[0].joints.ShoulderLeft;

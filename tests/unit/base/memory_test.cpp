@@ -14,7 +14,7 @@ namespace {
 
 TEST(Memory, ABlockIsLargeHoweverLargeTheOnesBeforeWere) {
 #if !defined(__GLIBC__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "another allocator";
+  GTEST_SKIP() << "runs with glibc's allocator only: in builds without a sanitizer";
 #else
   return_large_blocks();
   constexpr std::size_t kMegabyte = 1 << 20;

@@ -67,6 +67,15 @@ class BrokenCell : public ::testing::Test {
     return "http://127.0.0.1:" + std::to_string(server_->port()) + "/";
   }
 
+  /// Records the raw frames of the three sensors.
+  [[nodiscard]] LiveRecordingOptions options() const {
+    LiveRecordingOptions raw;
+    raw.service = http::parse_url(url()).value();
+    raw.file = (folder_ / "a.mcap").string();
+    raw.fused = false;
+    return raw;
+  }
+
   chorus::testing::TemporaryFolder folder_;
   std::atomic<int> asked_ = 0;
   std::atomic<int> nonsense_ = 0;
@@ -75,11 +84,7 @@ class BrokenCell : public ::testing::Test {
 
 TEST_F(BrokenCell, CountsWhatFailedAndWhatCouldNotBeReadFromTheBeginning) {
   asio::io_context io{1};
-  LiveRecordingOptions options;
-  options.service = http::parse_url(url()).value();
-  options.file = (folder_ / "a.mcap").string();
-  options.fused = false;
-  const auto live = LiveRecording::start(io, options);
+  const auto live = LiveRecording::start(io, options());
   ASSERT_TRUE(live) << to_string(live.error());
   const auto& counts = (*live)->counts();
   ASSERT_EQ(counts.size(), 3u) << "all that was announced, before anything has come";
@@ -118,18 +123,14 @@ class HalfDeadCell : public BrokenCell {
 
 TEST_F(HalfDeadCell, WhatADeadSensorSawLastIsNotRecorded) {
   asio::io_context io{1};
-  LiveRecordingOptions options;
-  options.service = http::parse_url(url()).value();
-  options.file = (folder_ / "a.mcap").string();
-  options.fused = false;
-  const auto live = LiveRecording::start(io, options);
+  const auto live = LiveRecording::start(io, options());
   ASSERT_TRUE(live) << to_string(live.error());
   const auto& counts = (*live)->counts();
   while (counts.at("/sensors/s1/frame").frames < 4 || dead_asked_ < 2) io.run_one();
   (void)(*live)->stop();
   EXPECT_EQ(counts.at("/sensors/s2/frame").frames, 0u);
   EXPECT_EQ(counts.at("/sensors/s2/frame").failed, 0u);
-  const auto cell = record::read_cell(options.file);
+  const auto cell = record::read_cell(options().file);
   ASSERT_TRUE(cell) << to_string(cell.error());
   ASSERT_EQ(cell->sensors.size(), 1u);
   EXPECT_EQ(cell->sensors.front().sensor.str(), "s1");
