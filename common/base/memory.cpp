@@ -10,7 +10,7 @@ namespace chorus {
 
 void return_large_blocks() {
 #ifdef __GLIBC__
-  // glibc's own defaults; that they are set ends their adjustment (mallopt(3)).
+  // glibc's initial values.  Setting them turns off its automatic adjustment (mallopt(3)).
   constexpr int kLarge = 128 * 1024;
   ::mallopt(M_MMAP_THRESHOLD, kLarge);
   ::mallopt(M_TRIM_THRESHOLD, kLarge);

@@ -132,10 +132,12 @@ void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
 }
 
 bool LiveRecording::left_over(const std::string& topic, Timestamp captured, Timestamp received) {
-  // Of a host whose clock is wrong by more than that and unknown, only the first frame is lost.
+  // If a host's clock is wrong by more than that and its offset unknown, only the first frame is
+  // lost.
   const bool old = received - captured > record::kLeftOverAfter;
-  const auto first = left_over_.try_emplace(topic, old ? std::optional(captured) : std::nullopt);
-  return first.first->second == captured;
+  const auto entry =
+      left_over_.try_emplace(topic, old ? std::optional(captured) : std::nullopt).first;
+  return entry->second == captured;
 }
 
 void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,

@@ -25,7 +25,8 @@ constexpr Duration kClockHurry = std::chrono::milliseconds(100);
 constexpr Duration kClockInterval = std::chrono::milliseconds(500);
 constexpr Duration kNoClockInterval = std::chrono::seconds(5);
 constexpr Duration kWellKnown = std::chrono::microseconds(300);
-// After so many requests in a hurry the delays are what keeps the offset from being known better.
+// If the offset is still uncertain after so many hurried requests, more of them will not help: the
+// network's delays limit it.
 constexpr int kMostHurried = 50;
 constexpr Duration kOddInterval = std::chrono::seconds(2);
 constexpr std::size_t kMaxBeside = 100;

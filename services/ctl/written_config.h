@@ -56,9 +56,9 @@ struct FusionWishes {
 /// Reads "vrpn=10.0.0.20,10.0.0.21", "dtrack=10.0.0.20:5000" or "trackd"
 [[nodiscard]] Result<OutputWish> output_wish(std::string_view text);
 
-/// The local socket of the bridge `id`.  `of_the_unit`: in the folder that systemd makes for the
-/// unit chorus-sensor; otherwise in one where the user may make a file, which has the user's run
-/// folder first.
+/// Path of the local socket of the bridge `id`.  `of_the_unit`: in the folder that systemd makes
+/// for the unit chorus-sensor.  Otherwise in the user's run folder ($XDG_RUNTIME_DIR), or in /tmp
+/// if there is none.
 [[nodiscard]] std::string push_socket(const std::string& id, bool of_the_unit,
                                       const Environment& environment);
 
