@@ -94,7 +94,7 @@ TEST(FitErrors, GammaFindsTheMeanOfSkewedErrors) {
 }
 
 TEST(FitErrors, BoostingFindsWhatAddsUpInNoLine) {
-  if (!can_boost()) GTEST_SKIP() << "libxgboost0 is not installed";
+  if (!can_boost()) GTEST_SKIP() << "runs where libxgboost0 is installed";
   const auto samples = samples_of(
       3000, [](const Truth& t) { return t.turn > 1.5 && t.distance > 2.5 ? 0.08 : 0.01; }, exactly);
   const auto gamma = fit_errors(samples, {.kind = PredictorKind::Gamma});
@@ -105,7 +105,7 @@ TEST(FitErrors, BoostingFindsWhatAddsUpInNoLine) {
 }
 
 TEST(FitErrors, SaysWhenItsLibraryIsMissing) {
-  if (can_boost()) GTEST_SKIP() << "libxgboost0 is installed";
+  if (can_boost()) GTEST_SKIP() << "runs where libxgboost0 is not installed";
   const auto samples = samples_of(
       400, [](const Truth&) { return 0.01; }, exactly);
   const auto refused = fit_errors(samples, {.kind = PredictorKind::Boosting});
