@@ -10,7 +10,9 @@
 #include "common/base/units.h"
 #include "tests/bench/accuracy/fusion_cases.h"
 #include "tests/bench/accuracy/fusion_cost.h"
+#include "tests/bench/accuracy/fusion_motions.h"
 #include "tests/bench/accuracy/fusion_prediction.h"
+#include "tests/bench/accuracy/fusion_report.h"
 #include "tests/bench/methods/comparison.h"
 #include "tests/bench/methods/contest.h"
 #include "tests/bench/methods/over_draws.h"
@@ -28,13 +30,6 @@ constexpr std::size_t kQuickDraws = 2;
 constexpr Duration kQuickLength =
     std::chrono::seconds(10);  // the shortest walk from which sensors are registered
 
-using Draws = std::vector<std::vector<Scored>>;
-
-bool is_short_metric(const Metric& metric) {
-  return metric.name == "mpjpe_mm" || metric.name == "flip_percent" ||
-         metric.name == "limb_flip_percent" || metric.name == "missing_percent";
-}
-
 Draws draw_all(const Report& report, const FusionCase& each,
                const std::vector<Contender>& contenders) {
   const std::size_t count = report.quick() ? kQuickDraws : each.draws;
@@ -45,54 +40,6 @@ Draws draw_all(const Report& report, const FusionCase& each,
     if (each.cold) begin_cold(one.setting, draw);
     return hold(one, contenders);
   });
-}
-
-/// True if the method has this figure; not every method has every figure.
-bool has_any(const Draws& draws, std::size_t method, std::size_t metric) {
-  return std::ranges::any_of(draws, [&](const std::vector<Scored>& draw) {
-    return !std::isnan(draw[method].values[metric]);
-  });
-}
-
-Comparison compare(const std::string& name, const Draws& draws, std::size_t metric) {
-  const Metric& shown = metrics()[metric];
-  Comparison comparison(name, shown.name, shown.unit);
-  for (std::size_t method = 0; !draws.empty() && method < draws.front().size(); ++method) {
-    if (!has_any(draws, method, metric)) continue;
-    for (std::size_t draw = 0; draw < draws.size(); ++draw) {
-      const Scored& scored = draws[draw][method];
-      const double value = scored.values[metric];
-      // NaN here means that there were no joints of this kind, which is not a failure.
-      if (shown.kind == Kind::Stated && std::isnan(value)) continue;
-      comparison.add(scored.method, draw, value);
-    }
-  }
-  return comparison;
-}
-
-/// Reports the figures of stated covariances, of which lower is not better, for every method that
-/// states covariances.
-void report_stated(Report& report, const std::string& name, const Draws& draws,
-                   std::size_t metric) {
-  const Comparison found = compare(name, draws, metric);
-  const Metric& shown = metrics()[metric];
-  for (std::size_t method = 0; !draws.empty() && method < draws.front().size(); ++method) {
-    if (!has_any(draws, method, metric)) continue;
-    const std::string& of = draws.front()[method].method;
-    const Spread spread = found.spread_of(of);
-    report.row({name, shown.name, spread.median, shown.unit, of, kNoRatio, spread});
-  }
-}
-
-/// Reports errors over the joints that every method reports.
-void report_common(Report& report, const std::string& name, const Draws& draws) {
-  Comparison comparison(name, "mpjpe_common_mm", "mm");
-  for (std::size_t draw = 0; draw < draws.size(); ++draw) {
-    for (const Scored& scored : draws[draw]) {
-      if (!std::isnan(scored.common)) comparison.add(scored.method, draw, to_mm(scored.common));
-    }
-  }
-  comparison.report(report);
 }
 
 /// Reports one row for each way in which the person begins.
@@ -106,22 +53,6 @@ void report_cold_starts(Report& report, const std::string& name, const Draws& dr
       if (is_short_metric(metrics()[metric])) compare(with, own, metric).report(report);
     }
   }
-}
-
-/// Returns the comparison of mpjpe_mm.
-Comparison report_draws(Report& report, const std::string& name, const Draws& draws, bool in_full) {
-  for (std::size_t metric = 0; metric < metrics().size(); ++metric) {
-    if (!in_full && !is_short_metric(metrics()[metric])) continue;
-    if (metrics()[metric].kind == Kind::Stated) {
-      report_stated(report, name, draws, metric);
-    } else {
-      compare(name, draws, metric).report(report);
-    }
-  }
-  if (in_full) report_common(report, name, draws);
-  Comparison errors = compare(name, draws, 0);
-  errors.report_wins(report);
-  return errors;
 }
 
 Comparison measure(Report& report, const FusionCase& each) {
@@ -227,12 +158,18 @@ bool run_chosen(Report& report) {
     any = true;
     measure_prediction(report, each);
   }
+  for (const std::string& name : motion_cases()) {
+    if (!is_chosen(report, name, false)) continue;
+    any = true;
+    measure_motions(report, name);
+  }
   return any;
 }
 
 void list_cases() {
   for (const FusionCase& each : all_cases()) std::cout << each.name << '\n';
   for (const PredictionCase& each : prediction_cases()) std::cout << each.name << '\n';
+  for (const std::string& name : motion_cases()) std::cout << name << '\n';
   for (const std::string& name : cost_cases()) std::cout << name << '\n';
 }
 

@@ -1,7 +1,6 @@
 #include "tests/bench/methods/contest.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -14,6 +13,7 @@
 #include "tests/bench/methods/averaging.h"
 #include "tests/bench/methods/kalman.h"
 #include "tests/judge/labelled_error.h"
+#include "tests/judge/measures.h"
 #include "tests/judge/plausibility.h"
 #include "tests/judge/stated_error.h"
 
@@ -28,7 +28,6 @@ constexpr double kReach = 0.6;  // [m] horizontally: a body farther away belongs
 constexpr Duration kFresh = std::chrono::milliseconds(100);  // largest age of a reported body
 constexpr double kPercent = 100.0;
 constexpr double kToMs = 1000.0;
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 template <class Of>
 Metric in_mm(std::string name, Of of) {
@@ -291,8 +290,22 @@ Answers answers_at_arrival(const Stage& stage) {
   return answers;
 }
 
+/// Mean error of each joint where it is seen [m].
+auto joint_errors(const Answers& answers) {
+  std::array<double, kJointCount> errors{};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    Mean mean;
+    for (const auto& [at, body, exact, views] : answers) {
+      const Joint& joint = body.joints[j];
+      if (joint.seen()) mean.add((joint.position - exact.joints[j].position).norm());
+    }
+    errors[j] = mean.value();
+  }
+  return errors;
+}
+
 Scored score(std::string method, const Answers& answers) {
-  Scored scored{std::move(method), {}, kNothing};
+  Scored scored{std::move(method), {}, kNothing, joint_errors(answers)};
   for (const Metric& metric : metrics()) scored.values.push_back(metric.of(answers));
   return scored;
 }

@@ -1,6 +1,7 @@
 // One draw of the workshop, with every method of fusion measured in the same way.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -81,6 +82,7 @@ struct Scored {
   std::string method;
   std::vector<double> values;  ///< In the order of metrics().
   double common = 0.0;         ///< Mean error over the joints that every contender reports [m].
+  std::array<double, kJointCount> joints{};  ///< Mean error of each joint [m]; NaN: never seen.
 };
 
 /// Runs one draw.  If registration fails, all values are NaN.
