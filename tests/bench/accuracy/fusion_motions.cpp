@@ -63,18 +63,20 @@ std::vector<Take> takes_in(const fs::path& folder, Report& report) {
   return takes;
 }
 
-/// The take as it is played in this draw.
+/// The take as it is played in this draw: once, and forwards, because nobody runs backwards.  Of a
+/// longer take another part is shown in each draw; after a shorter one the person keeps still.
 synthetic::Person performer_of(const Take& take, std::uint64_t seed) {
   synthetic::Draw draw{seed, kDrawTake};
   synthetic::PerformerScript script;
   script.turn = draw.uniform(-std::numbers::pi, std::numbers::pi);
   script.body_scale += draw.uniform(-kBuildSpread, kBuildSpread);
-  const Duration loop = synthetic::Performer(take.performance, script).loop();
-  // Frames count from 1970.
-  script.start =
-      from_seconds(draw.uniform() * seconds(loop)) - begin_of(seed).time_since_epoch() % loop;
-  return [performer = synthetic::Performer(take.performance, script)](Duration since_epoch) {
-    return performer.at(since_epoch);
+  const synthetic::Performer performer(take.performance, script);
+  const Duration length = performer.loop() / 2;  // played back and forth
+  const double part = draw.uniform();
+  const Duration longer = std::max(Duration{0}, length - kTakeLength);
+  const Duration begin = begin_of(seed).time_since_epoch() - from_seconds(part * seconds(longer));
+  return [=](Duration since_epoch) {
+    return performer.at(std::clamp(since_epoch - begin, Duration{0}, length));
   };
 }
 
