@@ -32,7 +32,7 @@ constexpr double kBuildSpread = 0.08;  // the same as for people who walk
 constexpr std::size_t kWorst = 6;      // joints that are named
 constexpr const char* kMean = "flip-fixed-mean-true-labels";
 
-struct Take {
+struct CapturedTake {
   std::string name;
   std::shared_ptr<const synthetic::Performance> performance;
 };
@@ -42,14 +42,14 @@ fs::path folder_of_takes() {
   return given != nullptr ? fs::path(given) : fs::path();
 }
 
-std::vector<Take> takes_in(const fs::path& folder, Report& report) {
+std::vector<CapturedTake> takes_in(const fs::path& folder, Report& report) {
   std::set<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path kind = entry.path().extension();
     if (kind == ".bvh" || kind == ".amc" || kind == ".c3d" || kind == ".mvnx")
       files.insert(entry.path());
   }
-  std::vector<Take> takes;
+  std::vector<CapturedTake> takes;
   for (const fs::path& file : files) {
     auto performance = synthetic::read_performance({file});
     if (!performance) {
@@ -65,7 +65,7 @@ std::vector<Take> takes_in(const fs::path& folder, Report& report) {
 
 /// The take as it is played in this draw: once, and forwards, because nobody runs backwards.  Of a
 /// longer take another part is shown in each draw; after a shorter one the person keeps still.
-synthetic::Person performer_of(const Take& take, std::uint64_t seed) {
+synthetic::Person performer_of(const CapturedTake& take, std::uint64_t seed) {
   synthetic::Draw draw{seed, kDrawTake};
   synthetic::PerformerScript script;
   script.turn = draw.uniform(-std::numbers::pi, std::numbers::pi);
@@ -150,7 +150,7 @@ void report_worst_joints(Report& report, const std::string& name, const Draws& d
   for (std::size_t i = 0; i < std::min(kWorst, joints.size()); ++i) joints[i].second.report(report);
 }
 
-void measure_takes(Report& report, const MotionCase& each, const std::vector<Take>& takes) {
+void measure_takes(Report& report, const MotionCase& each, const std::vector<CapturedTake>& takes) {
   const std::vector<Contender> contenders = motion_contenders();
   const std::size_t per_take = report.quick() ? 1 : kDrawsOfTake;
   const Draws draws = over_draws(per_take * takes.size(), [&](std::size_t draw) {
@@ -180,8 +180,8 @@ std::vector<std::string> motion_cases() {
 
 void measure_motions(Report& report, const std::string& name) {
   const fs::path folder = folder_of_takes();
-  const std::vector<Take> takes =
-      fs::is_directory(folder) ? takes_in(folder, report) : std::vector<Take>{};
+  const std::vector<CapturedTake> takes =
+      fs::is_directory(folder) ? takes_in(folder, report) : std::vector<CapturedTake>{};
   if (takes.empty()) {
     report.note(fmt::format("left out: {}: CHORUS_MOTIONS names no folder of takes", name));
     return;
