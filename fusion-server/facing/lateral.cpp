@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
@@ -63,6 +64,11 @@ double agreement(const Spans& a, const Spans& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
   return sum;
+}
+
+void exchange_sides(Skeleton<WorldSpace>& body) {
+  for (const auto& [left, right] : kMirrorPairs) std::swap(body[left], body[right]);
+  for (Joint& joint : body.joints) joint.orientation.coeffs().setZero();
 }
 
 Eigen::Vector3d forward_of(const Spans& spans) {

@@ -30,6 +30,10 @@ inline constexpr double kMinSpan = 0.05;  ///< [m]; shorter spans have no direct
 /// swapped.
 [[nodiscard]] double agreement(const Spans& a, const Spans& b);
 
+/// Exchanges left and right.  The body loses its orientations, because they describe one that faces
+/// the sensor.
+void exchange_sides(Skeleton<WorldSpace>& body);
+
 /// Horizontal unit vector in the direction in which a body with these spans faces; zero when
 /// unknown.
 [[nodiscard]] Eigen::Vector3d forward_of(const Spans& spans);

@@ -240,16 +240,11 @@ void learn(const Instant& now, const Person& person, const Sides& sides, SidesMe
   }
 }
 
-void exchange(Skeleton<WorldSpace>& body) {
-  for (const auto& [left, right] : kMirrorPairs) std::swap(body[left], body[right]);
-  for (Joint& joint : body.joints) joint.orientation.coeffs().setZero();
-}
-
 void apply(const Instant& now, const Spans& spans, Person& person) {
   const Eigen::Vector3d forward = forward_of(spans);
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     SensorView& view = person.views[v];
-    if (now.exchanged[v]) exchange(view.skeleton);
+    if (now.exchanged[v]) exchange_sides(view.skeleton);
     if (const auto facing = facing_of(view, forward)) view.facing = *facing;
   }
 }
@@ -271,6 +266,10 @@ void remember(const Instant& now, const Person& person, const Spans& spans, Side
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config, std::span<const Figure> flat) {
   if (!config.resolve || person.views.empty()) return;
+  if (config.by == SidesBy::Shoulders) {
+    resolve_sides_by_shoulders(person, instant, memory.shoulders);
+    return;
+  }
   Instant now{instant, 0.0, true, all_spans(person), {}, {}, {}};
   auto before = recall(memory, person.id, instant, config);
   now.first = !before;

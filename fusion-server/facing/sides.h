@@ -15,14 +15,21 @@
 #include "fusion-server/facing/limbs.h"
 #include "fusion-server/facing/person_sides.h"
 #include "fusion-server/facing/posture.h"
+#include "fusion-server/facing/shoulder_sides.h"
 #include "fusion-server/facing/stand_in.h"
 #include "fusion-server/facing/telling.h"
 #include "fusion-server/facing/walking.h"
 
 namespace chorus::facing {
 
+enum class SidesBy {
+  Evidence,  ///< All sensors and all evidence, the model of this file.
+  Shoulders  ///< Each sensor by itself, as Otto 5.2.2, for comparison: shoulder_sides.h.
+};
+
 struct SidesConfig {
   bool resolve = true;  ///< False: left and right stay as the sensors give them.
+  SidesBy by = SidesBy::Evidence;
   PostureCues posture = {};
   WalkingCue walking = {};
   PersonPrior person = {};
@@ -63,6 +70,7 @@ struct SidesMemory {
   // Learned from all people whom the sensor saw.
   std::map<SensorId, ExchangeHabit> habits;
   std::map<SensorId, Telling> telling;
+  ShoulderMemory shoulders;
 };
 
 /// Swaps left and right in the views that have them wrong, calls mend_limbs(), sets each view's

@@ -150,6 +150,8 @@ void forget_the_gone(Memory& memory) {
   const std::set<PersonId> tracked = ids_of(memory.tracks);
   std::erase_if(memory.sides.people,
                 [&](const auto& entry) { return !tracked.contains(entry.first); });
+  std::erase_if(memory.sides.shoulders,
+                [&](const auto& entry) { return !tracked.contains(entry.first.first); });
   memory.fusion.keep_only(tracked);
 }
 

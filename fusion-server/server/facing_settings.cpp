@@ -67,6 +67,9 @@ void read_limbs(ConfigReader reader, facing::LimbLimits& out) {
 
 void read_facing(ConfigReader reader, facing::SidesConfig& out) {
   reader.read("resolve_sides", out.resolve);
+  std::size_t by = static_cast<std::size_t>(out.by);
+  reader.read_choice("by", by, {"evidence", "shoulders"});
+  out.by = by == 0 ? facing::SidesBy::Evidence : facing::SidesBy::Shoulders;
   read_posture(reader.child("posture"), out.posture);
   read_walking(reader.child("walking"), out.walking);
   read_spell(reader.child("backwards"), out.person.backwards);

@@ -80,6 +80,11 @@ std::vector<FusionCase> main_cases() {
   FusionCase registered{"workshop6-A-own-registration", contest_of("A", 6, PathKind::Random)};
   registered.contest.own_registration = true;
   cases.push_back(std::move(registered));
+  for (const char* profile : {"A", "B", "D"}) {
+    cases.push_back({fmt::format("workshop6-{}-by-shoulders", profile),
+                     contest_of(profile, 6, PathKind::Random)});
+    cases.back().contest.pipeline.sides.by = facing::SidesBy::Shoulders;
+  }
   for (FusionCase& each : cases) {
     each.quick =
         each.name == kMainCase || each.name == "workshop6-A-cold" || each.name == "workshop6-D";
