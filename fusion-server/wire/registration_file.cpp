@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/json.h"
+#include "common/base/units.h"
 #include "common/sensor/limits.h"
 #include "fusion-server/wire/registration_fields.h"
 #include "fusion-server/wire/registration_nodes.h"
@@ -174,6 +175,7 @@ json edge_json(const PairwiseRegistration& edge) {
               {"inliers", edge.inliers}};
   if (edge.apart) object["apart"] = *edge.apart;
   if (edge.loop) object["loopError"] = *edge.loop;
+  if (edge.loop_turn) object["loopDegrees"] = to_deg(*edge.loop_turn);
   return object;
 }
 
@@ -199,6 +201,12 @@ Result<PairwiseRegistration> edge_of(const json& object) {
     const auto value = number(object, "edges", key, kMaxPlace);
     if (!value) return pass(value);
     *out = *value;
+  }
+  if (object.contains("loopDegrees")) {
+    constexpr double kHalfTurn = 180.0;
+    const auto turn = number(object, "edges", "loopDegrees", kHalfTurn);
+    if (!turn) return pass(turn);
+    edge.loop_turn = deg(*turn);
   }
   edge.rms = *rms;
   edge.pairs = static_cast<std::size_t>(std::max(0.0, *pairs));
