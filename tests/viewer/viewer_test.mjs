@@ -155,7 +155,7 @@ test('the origin is set where one person stands still', async () => {
   world.still = true;
   const server = await startFusion(FILES, world);
   const { page } = await openViewer(browser, server.url);
-  await headline(page, /^Live: one person\.$/);
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, SOON);
   await page.click('#origin');
   await page.waitForFunction(() => document.getElementById('origin-said').textContent.startsWith('Stand where the world shall begin'));
   assert.equal(await page.isDisabled('#origin'), true);
