@@ -16,27 +16,37 @@ namespace {
 
 // If the marks of a sensor differ by more than this, it was moved [m].
 constexpr double kSame = 0.3;
+constexpr double kMarkHeight = 0.5;  // [m]
 // By how much sensors that were not moved are off at least, from one walk to another [m].
 constexpr double kLeastUsual = 0.015;
 constexpr double kMedianToUsual = 0.85;  // median of the norm of a 2-D Gaussian: 1.177 sigma
 constexpr double kCutoff = 3.0;  // standard deviations, where the weight of a sensor is a quarter
 
-/// A sensor that both worlds have: its position and a point in front of it.
+/// A sensor that both worlds have: where they put two points below and before it.  These are half a
+/// metre above the floor, because the tilt between the two worlds turns about them: what is marked
+/// on the floor and the waists of people then stay equally well.
 struct Common {
   SensorId sensor;
   std::array<Eigen::Vector3d, 2> before;
   std::array<Eigen::Vector3d, 2> after;
 };
 
-std::array<Eigen::Vector3d, 2> marks_of(const Eigen::Isometry3d& place) {
-  return {place.translation(), place * Eigen::Vector3d(0.0, 0.0, kReach)};
+Common marks_of(const SensorId& sensor, const Eigen::Isometry3d& before,
+                const Eigen::Isometry3d& after) {
+  const Eigen::Vector3d ahead = about_y(yaw_of(before.linear())) * Eigen::Vector3d(0, 0, kReach);
+  Eigen::Vector3d below = before.translation();
+  below.y() = kMarkHeight;
+  const Eigen::Isometry3d after_from_before = after * before.inverse();
+  return {sensor,
+          {below, below + ahead},
+          {after_from_before * below, after_from_before * (below + ahead)}};
 }
 
 std::vector<Common> common_sensors(const Anchors& before, const Registration& after) {
   std::vector<Common> found;
   for (const auto& [sensor, place] : before) {
     if (const auto other = after.sensors.find(sensor); other != after.sensors.end())
-      found.push_back({sensor, marks_of(place), marks_of(other->second.world_from_sensor)});
+      found.push_back(marks_of(sensor, place, other->second.world_from_sensor));
   }
   return found;
 }

@@ -64,6 +64,7 @@ void report_stage(Report& report, const std::string& profile, const std::vector<
   add_row(report, name, "mark_mm", "mm", largest(lives, stage, &Drift::horizontal, per_metre));
   add_row(report, name, "mark_yaw_deg", "deg", largest(lives, stage, &Drift::yaw, per_radian));
   add_row(report, name, "corner_mm", "mm", largest(lives, stage, &Drift::corner, per_metre));
+  add_row(report, name, "waist_mm", "mm", largest(lives, stage, &Drift::waist, per_metre));
   add_row(report, name, "height_mm", "mm", largest(lives, stage, &Drift::vertical, per_metre));
 }
 
@@ -112,7 +113,8 @@ Result<void> run_origin(Report& report) {
       "a new person with new errors for every walk of 30 s.  The origin is set once, in the middle "
       "of the workspace.  mark_mm, mark_yaw_deg: how far the mark and its direction have gone from "
       "where they were then, the largest of all steps of the stage; spread: 5 % of the draws, and "
-      "the worst.  corner_mm: the worst of four marks 1.4 m away.  within_percent: draws in which "
+      "the worst.  corner_mm: the worst of four marks 1.4 m away; "
+      "waist_mm: a point 1 m above the mark.  within_percent: draws in which "
       "mark and direction stay within 10 mm and 0.1 deg in all steps.");
   return {};
 }

@@ -39,12 +39,17 @@ std::vector<Eigen::Isometry3d> places() {
   return all;
 }
 
+constexpr std::size_t kCorners = 4;
+constexpr std::size_t kWaist = 5;
+
+/// In the middle of the floor, four around it, and one above it.
 std::vector<Eigen::Vector3d> marks() {
   return {{0, 0, 0},
           {kReach, 0, kReach},
           {-kReach, 0, kReach},
           {kReach, 0, -kReach},
-          {-kReach, 0, -kReach}};
+          {-kReach, 0, -kReach},
+          {0, 1, 0}};
 }
 
 class Cell {
@@ -177,7 +182,8 @@ Drift Cell::drift() const {
   Drift out;
   out.horizontal = across(0);
   out.vertical = std::abs(found[0].y() - marked_[0].y());
-  for (std::size_t k = 1; k < found.size(); ++k) out.corner = std::max(out.corner, across(k));
+  for (std::size_t k = 1; k <= kCorners; ++k) out.corner = std::max(out.corner, across(k));
+  out.waist = across(kWaist);
   out.yaw = std::abs(yaw_of(fit_yaw(marked_, found)->target_from_source.linear()));
   return out;
 }

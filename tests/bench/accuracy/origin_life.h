@@ -24,6 +24,7 @@ struct Drift {
   double vertical = 0.0;    ///< [m]
   double yaw = 0.0;         ///< Of the directions between marks up to 1.4 m away [rad].
   double corner = 0.0;      ///< Horizontal drift of the worst of four marks 1.4 m away [m].
+  double waist = 0.0;       ///< Horizontal drift of a point 1 m above the mark [m].
 };
 
 struct Life {
