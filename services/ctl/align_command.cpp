@@ -224,6 +224,33 @@ Result<void> align_walk(const AlignArguments& arguments, const Trace& ours,
   return {};
 }
 
+/// The alignment: by the walk where the reference has a body that is no sensor, else by the
+/// sensors.
+Result<AlignmentFindings> aligned(const AlignArguments& arguments, const Reference& reference,
+                                  const std::map<SensorId, SensorMark>& marks,
+                                  const std::optional<Registration>& places,
+                                  std::optional<Trace> ours) {
+  AlignmentFindings found;
+  found.joint = arguments.joint;
+  const auto moving = moving_bodies(reference, marks);
+  if (moving.empty() || arguments.seconds == 0.0) {
+    const auto fit = ours_from_marks(marks, places.value_or(Registration{}));
+    if (!fit) return pass(fit);
+    found.ours_from_reference = *fit;
+    return found;
+  }
+  const auto body = chosen_body(arguments, reference, moving);
+  if (!body) return pass(body);
+  found.body = *body;
+  if (!ours) {
+    auto trace = our_trace(arguments);
+    if (!trace) return pass(trace);
+    ours = std::move(*trace);
+  }
+  if (auto done = align_walk(arguments, *ours, reference, found); !done) return pass(done);
+  return found;
+}
+
 /// The walk of a server is watched before the reference is read: both are recorded at one time.
 Result<AlignmentFindings> findings_of(const AlignArguments& arguments,
                                       const std::optional<Registration>& places) {
@@ -237,29 +264,12 @@ Result<AlignmentFindings> findings_of(const AlignArguments& arguments,
   if (!reference) return pass(reference);
   std::map<SensorId, SensorMark> marks;
   if (places) marks = sensor_marks(*reference, *places);
-  const auto moving = moving_bodies(*reference, marks);
-  AlignmentFindings found;
-  found.joint = arguments.joint;
-  if (!moving.empty() && arguments.seconds > 0.0) {
-    const auto body = chosen_body(arguments, *reference, moving);
-    if (!body) return pass(body);
-    found.body = *body;
-    if (!ours) {
-      auto trace = our_trace(arguments);
-      if (!trace) return pass(trace);
-      ours = std::move(*trace);
-    }
-    if (auto done = align_walk(arguments, *ours, *reference, found); !done) return pass(done);
-  } else {
-    const auto fit = ours_from_marks(marks, places.value_or(Registration{}));
-    if (!fit) return pass(fit);
-    found.ours_from_reference = *fit;
-  }
-  if (!places) return found;
-  found.sensors = deviations(marks, *places, found.ours_from_reference, arguments.sensor_axes);
+  auto found = aligned(arguments, *reference, marks, places, std::move(ours));
+  if (!found || !places) return found;
+  found->sensors = deviations(marks, *places, found->ours_from_reference, arguments.sensor_axes);
   const auto master = by_master(marks, *places);
   if (arguments.sensor_axes && master)
-    found.from_master = deviations(marks, *places, *master, true);
+    found->from_master = deviations(marks, *places, *master, true);
   return found;
 }
 
@@ -331,6 +341,21 @@ void add_reference_options(CLI::App& options, AlignArguments& arguments) {
                    "Bodies that are called as sensors have the sensors' axes: compare turns, too");
 }
 
+void add_source_options(CLI::App& options, AlignArguments& arguments) {
+  const std::vector<std::string> joints(kJointNames.begin(), kJointNames.end());
+  options.add_option("--joint", arguments.joint, "Our joint that carries the marker")
+      ->check(CLI::IsMember(joints))
+      ->capture_default_str();
+  options.add_option("--person", arguments.person, "Our person of this id");
+  options
+      .add_option("--seconds", arguments.seconds,
+                  "How long to listen to a server; 0: compare only the sensors")
+      ->check(number_range(0.0, 3600.0))
+      ->capture_default_str();
+  options.add_option("--registration", arguments.registration,
+                     "Extrinsics as JSON; by default those of the source");
+}
+
 }  // namespace
 
 Run add_align(CLI::App& options) {
@@ -344,21 +369,10 @@ Run add_align(CLI::App& options) {
                   "Recording (.mcap), NDJSON of chorus fuse, or address of a fusion server")
       ->capture_default_str();
   add_reference_options(options, *arguments);
-  std::vector<std::string> joints(kJointNames.begin(), kJointNames.end());
-  options.add_option("--joint", arguments->joint, "Our joint that carries the marker")
-      ->check(CLI::IsMember(joints))
-      ->capture_default_str();
-  options.add_option("--person", arguments->person, "Our person of this id");
-  options
-      .add_option("--seconds", arguments->seconds,
-                  "How long to listen to a server; 0: compare only the sensors")
-      ->check(number_range(0.0, 3600.0))
-      ->capture_default_str();
+  add_source_options(options, *arguments);
   options.add_flag("--marker-offset", arguments->marker_offset,
                    "Also find where the marker sits beside the joint");
   options.add_flag("--full", arguments->full, "Let the worlds be tilted against each other");
-  options.add_option("--registration", arguments->registration,
-                     "Extrinsics as JSON; by default those of the source");
   options.add_flag("--apply", arguments->apply, "Move the server's world there (chorus origin)");
   options.add_option("--url", arguments->url, "The server for --apply, if the source is none")
       ->capture_default_str();

@@ -240,22 +240,21 @@ Result<int> run_origin(const OriginArguments& arguments) {
 }
 
 /// The options that only matter while a person is watched.
-std::vector<const CLI::Option*> add_watch_options(CLI::App& options, OriginArguments& arguments) {
+std::vector<CLI::Option*> add_watch_options(CLI::App& options, OriginArguments& arguments) {
   std::vector<std::string> names(kJointNames.begin(), kJointNames.end());
   names.emplace_back(kFeet);
-  const auto* with =
+  auto* with =
       options
           .add_option("--with", arguments.with, "What of the person is above a mark: a joint, feet")
           ->check(CLI::IsMember(names))
           ->capture_default_str();
-  const auto* seconds =
+  auto* seconds =
       options.add_option("--seconds", arguments.seconds, "How long the person stands still [s]")
           ->check(number_range(0.5, 30.0))
           ->capture_default_str();
-  const auto* wait =
-      options.add_option("--wait", arguments.wait, "How long each mark is waited for [s]")
-          ->check(number_range(0.5, 3600.0))
-          ->capture_default_str();
+  auto* wait = options.add_option("--wait", arguments.wait, "How long each mark is waited for [s]")
+                   ->check(number_range(0.5, 3600.0))
+                   ->capture_default_str();
   return {with, seconds, wait};
 }
 
@@ -268,44 +267,68 @@ void check_marks(const OriginArguments& arguments, bool about_watching) {
     throw CLI::ValidationError("--with, --seconds, --wait", "nobody is watched by these options");
 }
 
+/// Each way to give an origin; the options of one way exclude those of the others.
+using Ways = std::vector<std::vector<CLI::Option*>>;
+
+std::vector<CLI::Option*> add_numbers(CLI::App& options, OriginArguments& arguments) {
+  const auto place = number_range(-kFarthest, kFarthest);
+  return {options.add_option("--x", arguments.x, "Of the new origin, in the world as it is [m]")
+              ->check(place),
+          options.add_option("--z", arguments.z, "Likewise [m]")->check(place),
+          options
+              .add_option("--yaw", arguments.yaw,
+                          "Where the new front is, about +y from the front there is [deg]")
+              ->check(number_range(-360.0, 360.0))};
+}
+
+std::vector<CLI::Option*> add_marks(CLI::App& options, OriginArguments& arguments) {
+  return {options.add_option("--mark", arguments.marks,
+                             "A point X,Z of the world as it is, and where it shall be: "
+                             "--mark=1.2,3.4=0,0; two or more of them"),
+          options.add_option("--stand", arguments.stand,
+                             "A point of the world to be on which one person stands: "
+                             "--stand=0,0; two or more, in this order")};
+}
+
+std::vector<CLI::Option*> add_points(CLI::App& options, OriginArguments& arguments) {
+  auto* points = options.add_flag("--points", arguments.points,
+                                  "One person stands on the origin, then straight ahead of it, "
+                                  "then on the left");
+  options.add_flag("--two", arguments.two, "Without the third point, which checks")->needs(points);
+  return {points};
+}
+
+void exclude_one_another(const Ways& ways) {
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (std::size_t k = i + 1; k < ways.size(); ++k) {
+      for (CLI::Option* one : ways[i]) {
+        for (CLI::Option* other : ways[k]) one->excludes(other);
+      }
+    }
+  }
+}
+
+bool any_given(const std::vector<CLI::Option*>& options) {
+  return std::ranges::any_of(options, [](const CLI::Option* each) { return each->count() > 0; });
+}
+
 }  // namespace
 
 Run add_origin(CLI::App& options) {
   const auto arguments = std::make_shared<OriginArguments>();
   add_server_option(options, arguments->url, "The fusion server");
-  const auto place = number_range(-kFarthest, kFarthest);
-  auto* x = options.add_option("--x", arguments->x, "Of the new origin, in the world as it is [m]");
-  auto* z = options.add_option("--z", arguments->z, "Likewise [m]");
-  auto* yaw = options.add_option("--yaw", arguments->yaw,
-                                 "Where the new front is, about +y from the front there is [deg]");
-  x->check(place);
-  z->check(place);
-  yaw->check(number_range(-360.0, 360.0));
   auto* here = options.add_flag("--here", arguments->here,
                                 "Where one person stands, facing what shall be the front");
-  auto* marks = options.add_option("--mark", arguments->marks,
-                                   "A point X,Z of the world as it is, and where it shall be: "
-                                   "--mark=1.2,3.4=0,0; two or more of them");
-  auto* stand = options.add_option("--stand", arguments->stand,
-                                   "A point of the world to be on which one person stands: "
-                                   "--stand=0,0; two or more, in this order");
-  auto* points = options.add_flag("--points", arguments->points,
-                                  "One person stands on the origin, then straight ahead of it, "
-                                  "then on the left");
-  auto* two = options.add_flag("--two", arguments->two, "Without the third point, which checks");
-  for (CLI::Option* number : {x, z, yaw}) {
-    for (CLI::Option* other : {here, marks, stand, points}) number->excludes(other);
-  }
-  here->excludes(marks)->excludes(stand)->excludes(points);
-  points->excludes(marks)->excludes(stand);
-  two->needs(points);
+  const Ways ways{add_numbers(options, *arguments),
+                  {here},
+                  add_points(options, *arguments),
+                  add_marks(options, *arguments)};
+  exclude_one_another(ways);
   const auto watching = add_watch_options(options, *arguments);
   options.add_flag("--json", arguments->json, "Report as JSON");
   options.callback([=] {
-    for (const CLI::Option* each : {x, z, yaw, here, marks, stand, points})
-      arguments->set = arguments->set || each->count() > 0;
-    check_marks(*arguments,
-                std::ranges::any_of(watching, [](const auto* o) { return o->count(); }));
+    arguments->set = std::ranges::any_of(ways, any_given);
+    check_marks(*arguments, any_given(watching));
   });
   return [arguments] { return run_origin(*arguments); };
 }

@@ -262,7 +262,8 @@ Result<Alignment> align_traces(const Trace& ours, const Trace& reference,
                                const AlignmentConfig& config) {
   const auto offset = rough_offset(ours, reference, config);
   if (!offset) return pass(offset);
-  const bool poses = std::ranges::all_of(reference, [](const auto& p) { return p.axes.has_value(); });
+  const bool poses =
+      std::ranges::all_of(reference, [](const auto& p) { return p.axes.has_value(); });
   const Problem problem{ours, reference, config, config.marker_offset && poses};
   Solved solved;
   solved.state.offset = *offset;
