@@ -5,7 +5,7 @@
 #   fusion  chorus-fusion, its service and the viewer
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
 #           runs this program
-#   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise
+#   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise, align
 #
 # With CHORUS_ONLY_SENSOR, only common and sensor.
 include(GNUInstallDirs)
@@ -143,7 +143,7 @@ set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams, video files an
 set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
  Reads sensors, places them by a person who walks, and serves one tracker.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
- The commands import, replay, fuse, export, train-error, calibrate and characterise.")
+ The commands import, replay, fuse, export, train-error, calibrate, characterise and align.")
 include(CPack)
 foreach(component ${components})
   cpack_add_component_group(${component})

@@ -240,6 +240,7 @@ Result<Registration> extended(const Registration& current, const Registration& c
     Extrinsics place = moved(candidate.sensors.at(sensor), *world_from_candidate);
     lead_from_master(current, place);
     wider.sensors.insert_or_assign(sensor, std::move(place));
+    wider.anchors.erase(sensor);
     take_verdict(wider, sensor, sentence_of(candidate, sensor));
   }
   take_clocks(wider, candidate, added);
@@ -260,7 +261,7 @@ Result<Registration> adopted(const Registration& current, const Registration& ca
                                      [&](const auto& e) { return stands_well(current, e.first); });
   const bool bound = hold && any_good;
   if (!bound && should_replace(current, candidate, kind))
-    return in_world_of(current.sensors, candidate);
+    return in_world_of(anchors_of(current), candidate);
   return extended(current, candidate, kind);
 }
 
@@ -276,6 +277,7 @@ void note_contradiction(Registration& current) { add_once(current.reasons, {kCon
 Registration without(Registration current, const SensorId& sensor, const std::string& reason) {
   spell_out_verdicts(current);
   current.sensors.erase(sensor);
+  current.anchors.erase(sensor);
   current.clocks.erase(sensor);
   std::erase_if(current.edges, [&](const PairwiseRegistration& edge) {
     return edge.source == sensor || edge.target == sensor;
@@ -291,6 +293,7 @@ Registration without(Registration current, const SensorId& sensor, const std::st
 void keep_configured(Registration& registration, const std::set<SensorId>& sensors) {
   const auto gone = [&](const auto& entry) { return !sensors.contains(entry.first); };
   std::erase_if(registration.sensors, gone);
+  std::erase_if(registration.anchors, gone);
   std::erase_if(registration.verdicts, gone);
   std::erase_if(registration.clocks, gone);
   std::erase_if(registration.edges, [&](const PairwiseRegistration& edge) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/geometry/rotation.h"
 #include "fusion-server/registration/transform_graph.h"
 
 namespace chorus::core {
@@ -24,17 +25,22 @@ std::optional<Eigen::Isometry3d> between(const EdgeMap& edges, const SensorId& a
   return std::nullopt;
 }
 
-std::optional<double> worst_loop(const PairwiseRegistration& edge, const EdgeMap& edges,
-                                 const Registration& registration) {
-  std::optional<double> worst;
+/// Notes how far the worst loop through one other sensor is from closing.
+void note_loops(PairwiseRegistration& edge, const EdgeMap& edges,
+                const Registration& registration) {
+  edge.loop.reset();
+  edge.loop_turn.reset();
   for (const auto& [third, place] : registration.sensors) {
     const auto there = between(edges, edge.target, third);
     const auto back = between(edges, third, edge.source);
     if (!there || !back) continue;
-    const double gap = (*there * *back * kWalk - edge.target_from_source * kWalk).norm();
-    worst = std::max(worst.value_or(0.0), gap);
+    const Eigen::Isometry3d around = *there * *back;
+    const double gap = (around * kWalk - edge.target_from_source * kWalk).norm();
+    const double turn = angular_distance(Eigen::Quaterniond(around.linear()),
+                                         Eigen::Quaterniond(edge.target_from_source.linear()));
+    edge.loop = std::max(edge.loop.value_or(0.0), gap);
+    edge.loop_turn = std::max(edge.loop_turn.value_or(0.0), turn);
   }
-  return worst;
 }
 
 /// Notes the best chain that reaches the sensor by another last edge than the chosen chain.
@@ -64,7 +70,7 @@ void note_closure(Registration& registration) {
   for (const PairwiseRegistration& edge : registration.edges)
     edges[{edge.target, edge.source}] = &edge;
   for (PairwiseRegistration& edge : registration.edges) {
-    edge.loop = worst_loop(edge, edges, registration);
+    note_loops(edge, edges, registration);
     edge.apart.reset();
     const auto target = registration.sensors.find(edge.target);
     const auto source = registration.sensors.find(edge.source);

@@ -6,9 +6,9 @@
 
 namespace chorus::core {
 
-/// Sets `apart` and `loop` of every edge, and the next best chain of every sensor. Each difference
-/// is the distance between the places at which two chains of edges put one point: 2.5 m in front of
-/// the edge's source, where people walk.
+/// Sets `apart`, `loop` and `loop_turn` of every edge, and the next best chain of every sensor.
+/// Each difference is the distance between the places at which two chains of edges put one
+/// point: 2.5 m in front of the edge's source, where people walk.
 void note_closure(Registration& registration);
 
 }  // namespace chorus::core

@@ -101,7 +101,7 @@ void Registrar::show_progress(SessionStatus& session) const {
 void Registrar::forget() {
   (void)take_back();  // a session's own result is not worth going back to
   end_session(SessionState::Cancelled);
-  if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
+  if (!registration_.sensors.empty()) forgotten_ = anchors_of(registration_);
   drop_proposal("given up: the registration it was compared with was forgotten");
   lacks_displaced_ = false;
   keep_earlier(registration_);

@@ -123,7 +123,7 @@ class Registrar {
   /// True if `earlier_` is from before a sensor was displaced; the session that registers the
   /// sensor again keeps `earlier_`.
   bool lacks_displaced_ = false;
-  Places forgotten_;  ///< Places of the last registration that was forgotten.
+  Anchors forgotten_;  ///< Of the last registration that was forgotten.
   bool solving_ = false;
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;

@@ -1,10 +1,13 @@
 #include "fusion-server/core/world.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
+#include "common/base/median.h"
 #include "common/geometry/rigid_fit.h"
 #include "common/geometry/rotation.h"
 
@@ -13,54 +16,74 @@ namespace {
 
 // If the marks of a sensor differ by more than this, it was moved [m].
 constexpr double kSame = 0.3;
+constexpr double kMarkHeight = 0.5;  // [m]
+// By how much sensors that were not moved are off at least, from one walk to another [m].
+constexpr double kLeastUsual = 0.015;
+constexpr double kMedianToUsual = 0.85;  // median of the norm of a 2-D Gaussian: 1.177 sigma
+constexpr double kCutoff = 3.0;  // standard deviations, where the weight of a sensor is a quarter
 
-/// A sensor that both worlds have: its position and a point in front of it.
+/// A sensor that both worlds have: where they put two points below and before it.  These are half a
+/// metre above the floor, because the tilt between the two worlds turns about them: what is marked
+/// on the floor and the waists of people then stay equally well.
 struct Common {
   SensorId sensor;
   std::array<Eigen::Vector3d, 2> before;
   std::array<Eigen::Vector3d, 2> after;
 };
 
-std::array<Eigen::Vector3d, 2> marks_of(const Extrinsics& place) {
-  return {place.world_from_sensor.translation(),
-          place.world_from_sensor * Eigen::Vector3d(0.0, 0.0, kReach)};
+Common marks_of(const SensorId& sensor, const Eigen::Isometry3d& before,
+                const Eigen::Isometry3d& after) {
+  const Eigen::Vector3d ahead = about_y(yaw_of(before.linear())) * Eigen::Vector3d(0, 0, kReach);
+  Eigen::Vector3d below = before.translation();
+  below.y() = kMarkHeight;
+  const Eigen::Isometry3d after_from_before = after * before.inverse();
+  return {sensor,
+          {below, below + ahead},
+          {after_from_before * below, after_from_before * (below + ahead)}};
 }
 
-std::vector<Common> common_sensors(const Places& before, const Places& after) {
+std::vector<Common> common_sensors(const Anchors& before, const Registration& after) {
   std::vector<Common> found;
   for (const auto& [sensor, place] : before) {
-    if (const auto other = after.find(sensor); other != after.end())
-      found.push_back({sensor, marks_of(place), marks_of(other->second)});
+    if (const auto other = after.sensors.find(sensor); other != after.sensors.end())
+      found.push_back(marks_of(sensor, place, other->second.world_from_sensor));
   }
   return found;
 }
 
-std::optional<Eigen::Isometry3d> fit(const std::vector<Common>& sensors) {
+/// `weights`: of each sensor; empty: all the same.
+std::optional<Eigen::Isometry3d> fit(const std::vector<Common>& sensors,
+                                     const std::vector<double>& weights = {}) {
   std::vector<Eigen::Vector3d> source;
   std::vector<Eigen::Vector3d> target;
-  for (const Common& each : sensors) {
+  std::vector<double> both;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const Common& each = sensors[i];
     source.insert(source.end(), each.after.begin(), each.after.end());
     target.insert(target.end(), each.before.begin(), each.before.end());
+    if (!weights.empty()) both.insert(both.end(), each.before.size(), weights[i]);
   }
-  auto fitted = fit_yaw(source, target);
+  auto fitted = fit_yaw(source, target, both);
   if (!fitted) return std::nullopt;
   fitted->target_from_source.translation().y() = 0.0;
   return fitted->target_from_source;
 }
 
-/// Heights are ignored: both worlds have their floor at y = 0.
-bool agrees(const Common& each, const Eigen::Isometry3d& before_from_after) {
+/// How far the worse of a sensor's marks is off.  Heights are ignored: both worlds have their floor
+/// at y = 0.
+double off_by(const Common& each, const Eigen::Isometry3d& before_from_after) {
+  double most = 0.0;
   for (std::size_t i = 0; i < each.before.size(); ++i) {
     const Eigen::Vector3d apart = before_from_after * each.after[i] - each.before[i];
-    if (std::hypot(apart.x(), apart.z()) > kSame) return false;
+    most = std::max(most, std::hypot(apart.x(), apart.z()));
   }
-  return true;
+  return most;
 }
 
 std::vector<Common> agreeing(const std::vector<Common>& all, const Eigen::Isometry3d& move) {
   std::vector<Common> out;
   for (const Common& each : all) {
-    if (agrees(each, move)) out.push_back(each);
+    if (off_by(each, move) <= kSame) out.push_back(each);
   }
   return out;
 }
@@ -85,6 +108,48 @@ std::vector<Common> unmoved(const std::vector<Common>& all, const SensorId& mast
   return best;
 }
 
+/// The fit of the one sensor that most others agree with.
+std::optional<Eigen::Isometry3d> first_guess(const std::vector<Common>& group) {
+  std::optional<Eigen::Isometry3d> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Common& one : group) {
+    const auto alone = fit({one});
+    if (!alone) continue;
+    double sum = 0.0;
+    for (const Common& each : group) sum += std::min(off_by(each, *alone), kSame);
+    if (sum < least) {
+      least = sum;
+      best = alone;
+    }
+  }
+  return best;
+}
+
+struct RobustWorld {
+  Eigen::Isometry3d before_from_after = Eigen::Isometry3d::Identity();
+  double usual = 0.0;  ///< Standard deviation by which the sensors are off [m].
+};
+
+/// Geman-McClure weights; they and the fit are repeated in turn.
+std::optional<RobustWorld> fit_robustly(const std::vector<Common>& group) {
+  constexpr int kRounds = 20;
+  auto move = first_guess(group);
+  RobustWorld out;
+  for (int round = 0; move && round < kRounds; ++round) {
+    std::vector<double> off;
+    for (const Common& each : group) off.push_back(off_by(each, *move));
+    out = {*move, std::max(kLeastUsual, kMedianToUsual * median(off))};
+    for (double& value : off) {
+      const double ratio = value / (kCutoff * out.usual);
+      value = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));
+    }
+    move = fit(group, off);
+  }
+  if (!move) return std::nullopt;
+  out.before_from_after = *move;
+  return out;
+}
+
 Registration all_moved(Registration registration, const Eigen::Isometry3d& new_from_old) {
   for (auto& [sensor, place] : registration.sensors) place = moved(std::move(place), new_from_old);
   return registration;
@@ -101,11 +166,24 @@ Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& new_from_old) {
   return place;
 }
 
-Registration in_world_of(const Places& before, Registration candidate) {
-  const auto stay = unmoved(common_sensors(before, candidate.sensors), candidate.master);
-  const auto before_from_candidate = fit(stay);
-  if (!before_from_candidate) return candidate;
-  return all_moved(std::move(candidate), *before_from_candidate);
+Anchors anchors_of(const Registration& registration) {
+  Anchors all = registration.anchors;
+  for (const auto& [sensor, place] : registration.sensors)
+    all.try_emplace(sensor, place.world_from_sensor);
+  return all;
+}
+
+Registration in_world_of(const Anchors& anchors, Registration candidate) {
+  const auto common = common_sensors(anchors, candidate);
+  const auto world = fit_robustly(unmoved(common, candidate.master));
+  if (!world) return candidate;
+  candidate = all_moved(std::move(candidate), world->before_from_after);
+  candidate.anchors = anchors;
+  for (const Common& each : common) {
+    if (off_by(each, world->before_from_after) > kCutoff * world->usual)
+      candidate.anchors.erase(each.sensor);
+  }
+  return candidate;
 }
 
 Result<Registration> with_origin(Registration registration, const Origin& origin) {
@@ -118,6 +196,7 @@ Result<Registration> with_origin(Registration registration, const Origin& origin
   Eigen::Isometry3d old_from_new = Eigen::Isometry3d::Identity();
   old_from_new.translation() = Eigen::Vector3d(origin.x, 0.0, origin.z);
   old_from_new.linear() = about_y(origin.yaw).toRotationMatrix();
+  registration.anchors.clear();
   return all_moved(std::move(registration), old_from_new.inverse());
 }
 

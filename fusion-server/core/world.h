@@ -6,8 +6,6 @@
 // estimates the floor again.
 #pragma once
 
-#include <map>
-
 #include "common/base/result.h"
 #include "fusion-server/flow/registration.h"
 
@@ -15,8 +13,6 @@ namespace chorus::core {
 
 /// Distance [m] from a sensor to the walk, at which rotation errors are judged.
 inline constexpr double kReach = 2.5;
-
-using Places = std::map<SensorId, Extrinsics>;
 
 /// The origin of a new world, given in the present one.
 struct Origin {
@@ -30,15 +26,21 @@ struct Origin {
 /// The place in another world; its covariance is rotated accordingly.
 [[nodiscard]] Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& new_from_old);
 
-/// The registration, moved into the world in which sensors stand as in `before`.  This is decided
-/// by the largest group of sensors whose relative places are the same in both (within 0.3 m); of
-/// equally large groups, by the one with the master.  So a sensor that was moved does not change
-/// the world while two others agree.  Unchanged if they have no sensor in common.
-[[nodiscard]] Registration in_world_of(const Places& before, Registration candidate);
+/// Where people rely on each sensor to stand: its anchor, or else its place.
+[[nodiscard]] Anchors anchors_of(const Registration& registration);
+
+/// The registration, moved into the world of these anchors.  This is decided by the largest group
+/// of sensors whose relative places are the same in both (within 0.3 m); of equally large groups,
+/// by the one with the master.  Within the group a robust fit decides, so that a sensor which was
+/// pushed by centimetres does not pull the world.  The anchors stay as they are, so that errors of
+/// many registrations do not add up; a sensor that does not fit is anchored at its new place.
+/// Unchanged if they have no sensor in common.
+[[nodiscard]] Registration in_world_of(const Anchors& anchors, Registration candidate);
 
 inline constexpr double kMaxOrigin = 1000.0;  ///< Along x and along z [m].
-/// The registration in the world whose origin is `origin`.  Errors: NotFound (no sensor has a
-/// place), InvalidArgument (not finite, or beyond kMaxOrigin).
+/// The registration in the world whose origin is `origin`, where all sensors are anchored where
+/// they stand.  Errors: NotFound (no sensor has a place), InvalidArgument (not finite, or beyond
+/// kMaxOrigin).
 [[nodiscard]] Result<Registration> with_origin(Registration registration, const Origin& origin);
 
 }  // namespace chorus::core

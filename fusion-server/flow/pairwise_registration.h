@@ -28,6 +28,8 @@ struct PairwiseRegistration {
   /// The worst closure error of the loops that the edge forms with two other edges [m]; none: it is
   /// in no such loop.
   std::optional<double> loop = {};
+  /// By how much the worst of these loops turns [rad]; need not be the loop of `loop`.
+  std::optional<double> loop_turn = {};
   double inflation = 1.0;  ///< Number of pairs per independent pair; above 1 because pairs are
                            ///< correlated.
   /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad

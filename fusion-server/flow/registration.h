@@ -47,6 +47,9 @@ struct WalkedDepthBias {
   double sigma = 0.0;  ///< [m]
 };
 
+/// Where sensors stood when people began to rely on the world (world_from_sensor).
+using Anchors = std::map<SensorId, Eigen::Isometry3d>;
+
 /// The places of all sensors.  It is replaced as a whole, stored, and has a version.
 struct Registration {
   std::uint64_t version = 0;
@@ -62,6 +65,9 @@ struct Registration {
   /// Offsets found from the walk because the clock of some sensor was not known; empty if all were
   /// known.
   std::map<SensorId, ClockOffset> clocks = {};
+  /// What later registrations are moved to, so that their errors do not add up (core/world.h).  A
+  /// sensor that is not in it is anchored where it stands.
+  Anchors anchors = {};
   /// Only when the walk was asked for it (registration.depth_bias_sigma_m), or shows a large one;
   /// not stored.
   std::optional<WalkedDepthBias> depth_bias = {};

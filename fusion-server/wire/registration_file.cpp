@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/json.h"
+#include "common/base/units.h"
 #include "common/sensor/limits.h"
 #include "fusion-server/wire/registration_fields.h"
 #include "fusion-server/wire/registration_nodes.h"
@@ -36,29 +37,28 @@ json verdict_json(const SensorVerdict& own) {
   return {{"verdict", name_of(own.verdict)}, {"reasons", own.reasons}};
 }
 
-json sensor_json(const SensorId& id, const Extrinsics& place) {
+json pose_json(const Eigen::Isometry3d& pose) {
   // Humans and other programs read the quaternion; the matrix is exact to the bit.
   json rotation = json::array();
-  for (const double value : place.world_from_sensor.linear().reshaped()) rotation.push_back(value);
-  const Eigen::Vector3d p = place.world_from_sensor.translation();
-  const Eigen::Quaterniond q(place.world_from_sensor.rotation());
+  for (const double value : pose.linear().reshaped()) rotation.push_back(value);
+  const Eigen::Vector3d p = pose.translation();
+  const Eigen::Quaterniond q(pose.rotation());
+  return {{"x", p.x()},  {"y", p.y()},  {"z", p.z()},  {"qx", q.x()},
+          {"qy", q.y()}, {"qz", q.z()}, {"qw", q.w()}, {"rotation", std::move(rotation)}};
+}
+
+json sensor_json(const SensorId& id, const Extrinsics& place) {
   json covariance = json::array();
   for (const double value : place.covariance.reshaped()) covariance.push_back(value);
-  return {{"@id", "sensors/" + id.str()},
-          {"x", p.x()},
-          {"y", p.y()},
-          {"z", p.z()},
-          {"qx", q.x()},
-          {"qy", q.y()},
-          {"qz", q.z()},
-          {"qw", q.w()},
-          {"rotation", std::move(rotation)},
-          {"error", place.error},
-          {"chain", names_of(place.chain)},
-          {"nextChain", names_of(place.next_chain)},
-          {"nextError", place.next_error},
-          {"covariance", std::move(covariance)},
-          {"scale", place.scale}};
+  json object = pose_json(place.world_from_sensor);
+  object.update({{"@id", "sensors/" + id.str()},
+                 {"error", place.error},
+                 {"chain", names_of(place.chain)},
+                 {"nextChain", names_of(place.next_chain)},
+                 {"nextError", place.next_error},
+                 {"covariance", std::move(covariance)},
+                 {"scale", place.scale}});
+  return object;
 }
 
 Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) {
@@ -174,6 +174,7 @@ json edge_json(const PairwiseRegistration& edge) {
               {"inliers", edge.inliers}};
   if (edge.apart) object["apart"] = *edge.apart;
   if (edge.loop) object["loopError"] = *edge.loop;
+  if (edge.loop_turn) object["loopDegrees"] = to_deg(*edge.loop_turn);
   return object;
 }
 
@@ -200,6 +201,12 @@ Result<PairwiseRegistration> edge_of(const json& object) {
     if (!value) return pass(value);
     *out = *value;
   }
+  if (object.contains("loopDegrees")) {
+    constexpr double kHalfTurn = 180.0;
+    const auto turn = number(object, "edges", "loopDegrees", kHalfTurn);
+    if (!turn) return pass(turn);
+    edge.loop_turn = deg(*turn);
+  }
   edge.rms = *rms;
   edge.pairs = static_cast<std::size_t>(std::max(0.0, *pairs));
   edge.inliers = static_cast<std::size_t>(std::max(0.0, *inliers));
@@ -222,6 +229,25 @@ Result<void> read_sensors(const json& root, Registration& out) {
     if (place->chain.empty()) place->chain = {*id};
     if (auto ok = read_clock(object, "sensors." + name, *id, out); !ok) return ok;
     out.sensors.emplace(std::move(*id), std::move(*place));
+  }
+  return {};
+}
+
+/// Reads the anchors, if there are any.
+Result<void> read_anchors(const json& root, Registration& out) {
+  const auto it = root.find("anchors");
+  if (it == root.end()) return {};
+  if (!it->is_object() || it->size() > kMaxSensors)
+    return tl::unexpected(wrong("anchors", "an object of sensor places is wanted"));
+  for (const auto& [name, object] : it->items()) {
+    const std::string where = "anchors." + name;
+    auto id = SensorId::parse(name);
+    if (!id) return tl::unexpected(wrong(where, id.error().message));
+    if (!object.is_object()) return tl::unexpected(wrong(where, "an object is wanted"));
+    auto pose = pose_of(object, where);
+    if (!pose) return pass(pose);
+    if (auto ok = read_rotation(object, where, *pose); !ok) return ok;
+    out.anchors.emplace(std::move(*id), *pose);
   }
   return {};
 }
@@ -282,6 +308,7 @@ Result<Registration> registration_of(const json& root) {
   Registration out;
   if (auto ok = read_sensors(root, out); !ok) return pass(ok);
   if (auto ok = read_header(root, out); !ok) return pass(ok);
+  if (auto ok = read_anchors(root, out); !ok) return pass(ok);
   if (auto ok = read_verdicts(root, "sensors", out.verdict, out); !ok) return pass(ok);
   if (auto ok = read_verdicts(root, "unplaced", Verdict::Refused, out); !ok) return pass(ok);
   if (const auto it = root.find("reasons"); it != root.end() && it->is_array()) {
@@ -315,6 +342,8 @@ std::string write_registration(const Registration& registration) {
   for (const auto& [id, clock] : registration.clocks) {
     if (sensors.contains(id.str())) add_clock(sensors[id.str()], clock);
   }
+  json anchors = json::object();
+  for (const auto& [id, pose] : registration.anchors) anchors[id.str()] = pose_json(pose);
   json edges = json::array();
   for (const PairwiseRegistration& edge : registration.edges) {
     edges.push_back(edge_json(edge));
@@ -327,6 +356,7 @@ std::string write_registration(const Registration& registration) {
                   {"solved", to_iso8601(registration.solved)},
                   {"sensors", std::move(sensors)},
                   {"unplaced", std::move(unplaced)},
+                  {"anchors", std::move(anchors)},
                   {"edges", std::move(edges)}};
   return root.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }

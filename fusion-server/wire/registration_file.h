@@ -11,7 +11,7 @@
 namespace chorus::wire {
 
 /// Writes JSON with the keys of /registration in full precision, and what only a restart needs: the
-/// rotations as matrices, and how well each clock was known during the walk.
+/// rotations as matrices, the anchors, and how well each clock was known during the walk.
 [[nodiscard]] std::string write_registration(const Registration& registration);
 
 /// Reads such a file, a saved answer of GET /registration, or a file with given extrinsics, for

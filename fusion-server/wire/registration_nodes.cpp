@@ -90,6 +90,8 @@ Node edge_node(const PairwiseRegistration& edge) {
              {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
   if (edge.apart) node.properties.emplace_back("apart", Decimal{*edge.apart, kDigits});
   if (edge.loop) node.properties.emplace_back("loopError", Decimal{*edge.loop, kDigits});
+  if (edge.loop_turn)
+    node.properties.emplace_back("loopDegrees", Decimal{to_deg(*edge.loop_turn), kDigits});
   return node;
 }
 

@@ -34,8 +34,8 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 7> kRecordingCommandNames{
-    "import", "replay", "fuse", "export", "train-error", "calibrate", "characterise"};
+inline constexpr std::array<std::string_view, 8> kRecordingCommandNames{
+    "import", "replay", "fuse", "export", "train-error", "calibrate", "characterise", "align"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -52,6 +52,7 @@ Run add_train_error(CLI::App& options);
 Run add_camera(CLI::App& options);
 Run add_calibrate(CLI::App& options);
 Run add_characterise(CLI::App& options);
+Run add_align(CLI::App& options);
 Run add_discover(CLI::App& options);
 
 /// The whole program: parses, runs, prints errors to standard error.  Never throws.

@@ -50,6 +50,9 @@ constexpr std::array kHostCommands{
             "Examples:\n"
             "  chorus origin                          shows where it is now\n"
             "  chorus origin --here                   stand there, face the front\n"
+            "  chorus origin --points                 stand there, then ahead, then on the left\n"
+            "  chorus origin --stand=0,0 --stand=0,2.5   stand on marks of the world to be\n"
+            "  chorus origin --mark=1.2,3.4=0,0 --mark=1.3,5.9=0,2.5   where marks are, shall be\n"
             "  chorus origin --x 1.5 --z -2           by numbers, in the world as it is\n"
             "  chorus origin --yaw 90                 turns the world and leaves its origin\n"
             "The world then stays: over new walks, another master, and restarts.",

@@ -73,6 +73,17 @@ constexpr std::array kRecordingCommands{
             "in 20 to 60 s,\n"
             "and turns back; or a mannequin.  What it says: docs/guide/research.md.",
             &add_characterise},
+    Command{"align", "Compares our world with another tracker's, and makes them one",
+            "Examples:\n"
+            "  chorus align take.csv walk.mcap --body Cap              a marker on the head\n"
+            "  chorus align take.csv --body Cap --marker-offset        walk now, for 60 s\n"
+            "  chorus align vive.csv walk.mcap --joint HandRight --apply\n"
+            "  chorus align optitrack.csv --seconds 0 --sensor-axes    bodies s1, s2 on the "
+            "sensors\n"
+            "Walk for half a minute, straight and in turns, while both trackers record.\n"
+            "Exit code 0: they fit; 1: they do not, and why is printed.  More: "
+            "docs/guide/align.md.",
+            &add_align},
 };
 
 }  // namespace

@@ -49,7 +49,9 @@ std::string worst_loop_shown(const nlohmann::json& registration) {
     const double error = client::number_at(edge, "loopError");
     if (!(error > worst)) continue;
     worst = error;
-    text = fmt::format("  loops close to within {:.0f} mm (worst: {} and {})\n", to_mm(error),
+    const double turn = client::number_at(edge, "loopDegrees");
+    text = fmt::format("  loops close to within {:.0f} mm{} (worst: {} and {})\n", to_mm(error),
+                       std::isfinite(turn) ? fmt::format(", {:.2f} deg", turn) : std::string(),
                        printable(client::text_at(edge, "target")),
                        printable(client::text_at(edge, "source")));
   }

@@ -1,4 +1,6 @@
 // A registration that waits to be accepted: what it would change for each sensor, and the two answers.
+import { request } from './request.js';
+
 const element = (id) => document.getElementById(id);
 const millimetres = (value) => (Number.isFinite(value) ? `${(1000 * value).toFixed(0)} mm` : '–');
 const degrees = (value) => (Number.isFinite(value) ? `${value.toFixed(1)}°` : '–');
@@ -20,27 +22,11 @@ export function showProposal(proposal) {
   }));
 }
 
-let token = null; // as typed on this page; kept in no storage
-
-/// Sends the answer; a server that asks for a token gets one that is typed.
-async function decide(url, ask) {
-  const send = () => fetch(url, { method: 'POST', headers: token ? { Authorization: `Bearer ${token}` } : {} });
-  let answer = await send();
-  if (answer.status === 401 || answer.status === 403) {
-    token = ask('The token that allows changes:');
-    if (token) answer = await send();
-  }
-  if (answer.ok) return '';
-  token = null;
-  const problem = await answer.json().catch(() => ({}));
-  return problem.detail ?? `the server answered ${answer.status}`;
-}
-
 /// `resource`: the URL of a resource by its path.  Who has answered sees what came of it with the next /registration.
-export function offerDecision(resource, ask = (text) => window.prompt(text)) {
+export function offerDecision(resource) {
   for (const answer of ['accept', 'decline']) {
     element(answer).addEventListener('click', async () => {
-      element('decision').textContent = await decide(resource(`registration/${answer}`), ask).catch((error) => String(error.message));
+      element('decision').textContent = await request(resource(`registration/${answer}`)).catch((error) => String(error.message));
     });
   }
 }

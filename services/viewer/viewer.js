@@ -8,6 +8,7 @@ import { EllipsoidView, FusedView, RawView, frustum } from './skeleton_view.js';
 import { jointLines } from './certainty.js';
 import { showCoverage } from './coverage.js';
 import { framing, roomOf } from './framing.js';
+import { offerOrigin, watchOrigin } from './origin.js';
 import { offerDecision, showProposal } from './proposal.js';
 import { showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
 import { Readout } from './readout.js';
@@ -111,6 +112,7 @@ follow(resource('frame', 10), 0, (frame) => {
   known.rate = outputRate.after(frame);
   shown.fusedJoints = fused.show(frame.bodies ?? []);
   shown.fusedFrames += 1;
+  watchOrigin(frame);
 }, failed);
 
 follow(resource('sensors/'), 1000, ({ sensors: all }) => {
@@ -134,6 +136,7 @@ follow(resource('registration'), 1000, (registration) => {
 }, failed);
 
 offerDecision((path) => new URL(path, base).href);
+offerOrigin((path) => new URL(path, base).href);
 
 /// The map of the walk, while a session runs.
 let session = null;

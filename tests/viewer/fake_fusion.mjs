@@ -32,9 +32,9 @@ const COVARIANCE = { cxx: 0.0004, cxy: 0, cxz: 0, cyy: 0.0001, cyz: 0, czz: 0.00
 export const CLOCK_AHEAD_MS = 3600000;
 const serverNow = () => Date.now() + CLOCK_AHEAD_MS;
 
-function frame(sequence, place, about = {}) {
+function frame(sequence, place, about = {}, still = false) {
   const now = serverNow();
-  const sway = 0.4 * Math.sin(sequence / 20);
+  const sway = still ? 0 : 0.4 * Math.sin(sequence / 20);
   const joints = Object.fromEntries(Object.entries(STANDING).map(([name, [x, y, z]]) => {
     const [jx, jy, jz] = place ? toSensor(place, [x + sway, y, z]) : [x + sway, y, z];
     const from = about.carriedFor === undefined ? { contributors: ['s1', 's2'], shares: [0.8, 0.2] } : { contributors: [], age: about.carriedFor };
@@ -68,7 +68,7 @@ export async function startFakeFusion(files, world = usualWorld()) {
   let fused = null;
   const timer = setInterval(() => { sequence += world.frozen ? 0 : 1; }, 33);
   const current = () => {
-    if (!world.frozen || !fused) fused = frame(sequence, null, world.person);
+    if (!world.frozen || !fused) fused = frame(sequence, null, world.person, world.still);
     return { ...fused, bodies: world.people > 0 ? fused.bodies : [] };
   };
   const answers = {
@@ -81,6 +81,9 @@ export async function startFakeFusion(files, world = usualWorld()) {
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
     if (request.method === 'POST') {
+      let text = '';
+      for await (const part of request) text += part;
+      world.bodies = [...(world.bodies ?? []), text];
       const allowed = !world.token || request.headers.authorization === `Bearer ${world.token}`;
       world.posted = [...(world.posted ?? []), `${pathname} ${allowed ? 200 : 401}`];
       if (allowed) delete world.registration.proposal;

@@ -149,6 +149,27 @@ test('a proposed registration is shown beside the old one, and accepted or decli
   await page.close();
 });
 
+test('the origin is set where one person stands still', async () => {
+  const world = usualWorld();
+  world.sensors = { s1: live(), s2: live() };
+  world.still = true;
+  const server = await startFusion(FILES, world);
+  const { page } = await openViewer(browser, server.url);
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, SOON);
+  await page.click('#origin');
+  await page.waitForFunction(() => document.getElementById('origin-said').textContent.startsWith('Stand where the world shall begin'));
+  assert.equal(await page.isDisabled('#origin'), true);
+  await page.waitForFunction(() => document.getElementById('origin-said').textContent.startsWith('The world begins'));
+  assert.deepEqual(world.posted, ['/registration/origin 200']);
+  const { x, z, yawDegrees } = JSON.parse(world.bodies[0]);
+  assert.deepEqual([x, z, Math.round(yawDegrees)], [0, 0, 0], 'the fake person stands there and looks along +z');
+  world.still = false;
+  await page.click('#origin');
+  await page.waitForFunction(() => document.getElementById('origin-said').textContent === 'the person moved or turned; stand still and retry');
+  assert.equal(world.posted.length, 1);
+  await page.close();
+});
+
 /// Where the head of the fake person is now [px]; the person sways, so it is asked for again and again.
 const pointAtHead = async (page) => {
   for (let i = 0; i < 60; ++i) {

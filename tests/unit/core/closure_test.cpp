@@ -54,6 +54,16 @@ TEST(Closure, APairThatIsOffShowsInItsLoopAndBesideTheRest) {
   for (const PairwiseRegistration& pair : r.edges) EXPECT_NEAR(*pair.loop, 0.05, 1e-9);
 }
 
+TEST(Closure, ATurnThatIsOffIsToldAsAnAngle) {
+  Registration r = triangle();
+  r.edges[2].target_from_source.rotate(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitX()));
+  note_closure(r);
+  for (const PairwiseRegistration& pair : r.edges) EXPECT_NEAR(*pair.loop_turn, 0.02, 1e-9);
+  r.edges.pop_back();
+  note_closure(r);
+  EXPECT_FALSE(r.edges[0].loop_turn) << "there is no loop left";
+}
+
 TEST(Closure, ANextBestChainEndsWithAnotherEdge) {
   Registration r = triangle();
   note_closure(r);

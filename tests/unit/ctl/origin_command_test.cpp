@@ -50,6 +50,86 @@ TEST(Origin, ThePersonIsWatchedOnOneConnection) {
       << "one to see that it is there, one for the frames, one to set the origin";
 }
 
+/// One frame a second of a person who stands for 30 s at each of these places (x, z).
+std::vector<std::string> standing(const std::vector<std::pair<double, double>>& places) {
+  std::vector<std::string> frames;
+  int index = 0;
+  for (const auto& [x, z] : places) {
+    for (int i = 0; i < 30; ++i, ++index) {
+      const Json body{{"joints", {{"SpineBase", {{"x", x}, {"y", 1.0}, {"z", z}}}}}};
+      const auto time = std::to_string(index / 600) + std::to_string(index / 60 % 10) + ":" +
+                        std::to_string(index / 10 % 6) + std::to_string(index % 10);
+      frames.push_back(
+          Json{{"captured", "2026-11-22T10:" + time + "Z"}, {"bodies", Json::array({body})}}
+              .dump());
+    }
+  }
+  return frames;
+}
+
+TEST(Origin, IsWhereThePersonStandsFirstAndTheFrontWhereTheyStandNext) {
+  const ScriptedServer server(ScriptedServer::Texts{{"/frame", standing({{1, 2}, {4, 2}, {2, 0}})},
+                                                    {"/registration", {"{}"}}});
+  const Outcome done =
+      run_chorus({"origin", "--url", server.url(), "--points", "--seconds", "5", "--wait", "20"});
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_THAT(done.error, HasSubstr("1 of 3: go to the point that shall be the origin"));
+  EXPECT_THAT(done.error, HasSubstr("the marks are 3.00 m apart"));
+  const Json asked = origin_asked(server);
+  EXPECT_NEAR(asked.at("x"), 1.0, 1e-9);
+  EXPECT_NEAR(asked.at("z"), 2.0, 1e-9);
+  EXPECT_NEAR(asked.at("yawDegrees"), 90.0, 1e-9) << "they went along +x";
+}
+
+TEST(Origin, AThirdPointOnTheWrongSideIsRefused) {
+  const ScriptedServer server(ScriptedServer::Texts{{"/frame", standing({{1, 2}, {4, 2}, {2, 4}})},
+                                                    {"/registration", {"{}"}}});
+  const Outcome done =
+      run_chorus({"origin", "--url", server.url(), "--points", "--seconds", "5", "--wait", "20"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("on the right")) << "left of +x is -z";
+  EXPECT_TRUE(server.written().empty());
+}
+
+TEST(Origin, IsFittedToMarksThatThePersonStandsOn) {
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/frame", standing({{1, 2}, {1, 5.04}})}, {"/registration", {"{}"}}});
+  const Outcome done = run_chorus({"origin", "--url", server.url(), "--stand=0,1", "--stand=0,4",
+                                   "--seconds", "5", "--wait", "20"});
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_THAT(done.error, HasSubstr("2 of 2: go to x,z = 0,4"));
+  EXPECT_THAT(done.error, HasSubstr("the distance between the marks is off by 40 mm"));
+  const Json asked = origin_asked(server);
+  EXPECT_NEAR(asked.at("x"), 1.0, 1e-9);
+  EXPECT_NEAR(asked.at("z"), 1.02, 1e-9);
+}
+
+TEST(Origin, WhoNeverStandsStillIsGivenUp) {
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/frame", standing({{1, 2}})}, {"/registration", {"{}"}}});
+  const Outcome done =
+      run_chorus({"origin", "--url", server.url(), "--points", "--two", "--wait", "1"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("given up after 1 s: nobody has stood still there"));
+  EXPECT_TRUE(server.written().empty());
+}
+
+TEST(Origin, IsFittedToMarksByNumbers) {
+  const ScriptedServer server(ScriptedServer::Texts{{"/registration", {"{}"}}});
+  const Outcome done = run_chorus(
+      {"origin", "--url", server.url(), "--mark=1,2=0,0", "--mark=-1,2=0,2", "--mark=1,3=1,0"});
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_THAT(done.error, HasSubstr("mark 3: 0 mm from where it shall be"));
+  const Json asked = origin_asked(server);
+  EXPECT_NEAR(asked.at("x"), 1.0, 1e-9);
+  EXPECT_NEAR(asked.at("z"), 2.0, 1e-9);
+  EXPECT_NEAR(asked.at("yawDegrees"), -90.0, 1e-9);
+  const Outcome refused =
+      run_chorus({"origin", "--url", server.url(), "--mark=1,2=0,0", "--mark=1,3=0,2"});
+  EXPECT_EQ(refused.code, kExitFailed);
+  EXPECT_EQ(server.written().size(), 1u) << "marks that do not fit move nothing";
+}
+
 TEST(Origin, NobodyThereIsSaid) {
   const ScriptedServer server(ScriptedServer::Texts{
       {"/frame", {R"({"captured": "x", "bodies": []})"}}, {"/registration", {"{}"}}});
@@ -130,7 +210,15 @@ TEST(Origin, RefusesPlacesAndTimesThatAreNone) {
                                                                  {"--here", "--x", "1"},
                                                                  {"--here", "--seconds", "0.4"},
                                                                  {"--here", "--seconds", "31"},
-                                                                 {"--seconds", "2"}}) {
+                                                                 {"--seconds", "2"},
+                                                                 {"--with", "feet", "--x", "1"},
+                                                                 {"--mark=1,2=0,0"},
+                                                                 {"--mark=1,2", "--mark=1,2=3,4"},
+                                                                 {"--stand=1,2"},
+                                                                 {"--points", "--here"},
+                                                                 {"--points", "--stand=0,0"},
+                                                                 {"--two"},
+                                                                 {"--points", "--with", "Nose"}}) {
     std::vector<std::string> whole{"origin", "--url", "http://127.0.0.1:1/"};
     whole.insert(whole.end(), words.begin(), words.end());
     EXPECT_EQ(run_chorus(whole).code, kExitUsage) << ::testing::PrintToString(words);

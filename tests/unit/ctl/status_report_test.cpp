@@ -170,6 +170,9 @@ TEST(RegistrationReport, NamesThePairWhoseLoopsCloseWorst) {
   EXPECT_THAT(registration_report({{"edges", edges}}),
               HasSubstr("  loops close to within 32 mm (worst: s2 and s3)\n"));
   EXPECT_THAT(registration_report({{"edges", {edges[3]}}}), Not(HasSubstr("loops")));
+  Json turned = edges[1];
+  turned["loopDegrees"] = 0.254;
+  EXPECT_THAT(registration_report({{"edges", {turned}}}), HasSubstr("within 32 mm, 0.25 deg ("));
 }
 
 TEST(RegistrationReport, TellsClocksThatDifferByMoreThanIsOpen) {

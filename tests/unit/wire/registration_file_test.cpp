@@ -40,7 +40,10 @@ Registration example() {
   r.clocks[sensor_id("s1")].stated = std::chrono::milliseconds(12);
   r.clocks[sensor_id("s1")].least_age = std::chrono::milliseconds(-204);
   r.clocks[sensor_id("s2")] = {};
+  r.anchors = {
+      {sensor_id("gone"), Eigen::Isometry3d(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()))}};
   r.edges.back().apart = 0.012;
+  r.edges.back().loop_turn = 0.003;
   r.sensors.at(sensor_id("s3")).next_chain = {sensor_id("s2"), sensor_id("s1"), sensor_id("s3")};
   r.sensors.at(sensor_id("s3")).next_error = 0.034;
   r.sensors.at(sensor_id("s2")).scale = 1.0625;
@@ -69,7 +72,10 @@ TEST(RegistrationFile, ReadsWhatItWrites) {
   EXPECT_EQ(read->clocks.at(sensor_id("s1")).least_age, std::chrono::milliseconds(-204));
   EXPECT_FALSE(exchanges_time(seconds(read->clocks.at(sensor_id("s2")).stated)));
   EXPECT_FALSE(read->clocks.at(sensor_id("s2")).least_age);
+  EXPECT_EQ(read->anchors.at(sensor_id("gone")).matrix(),
+            written.anchors.at(sensor_id("gone")).matrix());
   EXPECT_EQ(read->edges.at(0).apart, 0.012);
+  EXPECT_NEAR(*read->edges.at(0).loop_turn, 0.003, 1e-12);
   EXPECT_FALSE(read->edges.at(0).loop);
   EXPECT_EQ(read->sensors.at(sensor_id("s3")).next_chain.size(), 3u);
   EXPECT_EQ(read->sensors.at(sensor_id("s2")).scale, 1.0625);
