@@ -21,13 +21,15 @@ constexpr double kFrameTime = 0.033;    // [s]; the labels of one frame count as
 
 /// Everything that the model computes for one person at one instant.
 struct Instant {
-  Timestamp at;
+  Timestamp at = {};
   double elapsed = 0.0;  ///< Time since the person was last seen [s].
   bool first = true;
-  std::vector<Spans> views;
-  std::vector<double> agree;     ///< Log odds of each view, see agreement_log_odds().
-  std::vector<bool> exchanged;   ///< For each view, whether it opposes the held sides.
-  std::vector<LabelStep> steps;  ///< For each view; `exchanged` is 0.5 if unknown.
+  double upright = 1.0;  ///< See upright_share().
+  double posture = 0.0;  ///< See posture_log_odds().
+  std::vector<Spans> views = {};
+  std::vector<double> agree = {};     ///< Log odds of each view, see agreement_log_odds().
+  std::vector<bool> exchanged = {};   ///< For each view, whether it opposes the held sides.
+  std::vector<LabelStep> steps = {};  ///< For each view; `exchanged` is 0.5 if unknown.
 };
 
 std::vector<Spans> all_spans(const Person& person) {
@@ -131,6 +133,14 @@ double misled(const Spans& spans, const Spans& held, double sigma) {
   return 1.0 / (1.0 + std::exp(std::numbers::pi * short_of_side / (sigma * sigma)));
 }
 
+/// How much less likely it is that the held sides became wrong in this instant, given the log odds
+/// of the posture now and at the instant before: they change their sign with the sides.  If they
+/// keep it, either of the two postures misleads, the one before or the one now.
+double reversed_unseen(double now, double before) {
+  if (now * before <= 0) return 1.0;
+  return std::exp(-std::min(std::abs(now), std::abs(before)));
+}
+
 /// The chance that, since the last instant, the sides became wrong because the held spans followed
 /// the views with the wrong sign.  The held spans lag behind for the whole smoothing time, so each
 /// instant counts only for its part of that time.
@@ -138,7 +148,8 @@ double slipped_by_turning(const Instant& now, const Spans& spans, const Sides& s
                           const SidesConfig& config) {
   if (now.first) return 0.0;
   const double share = now.elapsed / std::max(config.smoothing, now.elapsed);
-  return share * misled(spans, sides.spans, config.turn_sigma);
+  return share * misled(spans, sides.spans, config.turn_sigma) *
+         reversed_unseen(now.posture, sides.posture);
 }
 
 /// Advances the labels of a view by one step.
@@ -195,19 +206,18 @@ double sight_of_all(const Instant& now, const Person& person, const SidesMemory&
 /// as it is new.
 Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, const Spans& spans,
                      const SidesMemory& memory, const SidesConfig& config) {
-  const Eigen::Vector3d forward = forward_of(spans);
-  const double posture = posture_log_odds(person.views, forward, config.posture);
   Evidence evidence;
-  evidence.news =
-      now.first ? posture : new_evidence(posture, sides.posture, now.elapsed, config.posture.same);
+  evidence.news = now.first
+                      ? now.posture
+                      : new_evidence(now.posture, sides.posture, now.elapsed, config.posture.same);
   for (const LabelStep& step : now.steps) evidence.news += step.log_ratio;
   const double sight = sight_of_all(now, person, memory, config.telling);
   if (!now.first)
     evidence.news += new_evidence(sight, sides.sight, now.elapsed, config.telling.same);
   sides.sight = sight;
-  evidence.walking = sides.walk.log_odds(forward, config.walking);
+  evidence.walking = now.upright * sides.walk.log_odds(forward_of(spans), config.walking);
   evidence.share = now.first ? 1.0 : std::min(1.0, now.elapsed / config.walking.same);
-  sides.posture = posture;
+  sides.posture = now.posture;
   return evidence;
 }
 
@@ -227,10 +237,11 @@ bool must_turn(const PersonFilter& filter, bool first, const SidesConfig& config
   return std::log((1.0 - right) / right) > (first ? 0.0 : config.change_odds);
 }
 
-/// Learns habits, but only while the sides are certain, and from views that were seen before.
+/// Learns habits, but only while the sides are certain and the person is upright, because the angle
+/// to the sensor is one about the vertical, and from views that were seen before.
 void learn(const Instant& now, const Person& person, const Sides& sides, SidesMemory& memory,
            const SidesConfig& config) {
-  if (sides.filter.right() < config.learn_from) return;
+  if (sides.filter.right() < config.learn_from || now.upright < 1.0) return;
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     const Passage& passage = now.steps[v].passage;
     if (!(passage.elapsed > 0)) continue;
@@ -271,7 +282,8 @@ void remember(const Instant& now, const Person& person, const Spans& spans, Side
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config, std::span<const Figure> flat) {
   if (!config.resolve || person.views.empty()) return;
-  Instant now{instant, 0.0, true, all_spans(person), {}, {}, {}};
+  Instant now{.at = instant, .views = all_spans(person)};
+  now.upright = upright_share(trunk_of(person.views), config.upright);
   auto before = recall(memory, person.id, instant, config);
   now.first = !before;
   Sides sides =
@@ -284,6 +296,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   spans = followed(sides.spans, spans, trust_in(spans, sides.spans));
   keep_lost(spans, sides.spans);
   step_views(now, person, spans, sides, memory, config);
+  now.posture = posture_log_odds(person.views, left_of(spans), now.upright, config.posture);
   sides.walk.follow(person.views, instant, config.walking);
   sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
   sides.filter.slip(slipped_by_turning(now, spans, sides, config));

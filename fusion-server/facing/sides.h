@@ -25,6 +25,7 @@ struct SidesConfig {
   bool resolve = true;  ///< False: left and right stay as the sensors give them.
   PostureCues posture = {};
   WalkingCue walking = {};
+  UprightRange upright = {};
   PersonPrior person = {};
   HabitPrior habit = {};
   TellingPrior telling = {};
