@@ -33,6 +33,7 @@ class Watched {
   }
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double confidence() const { return confidence_; }
+  [[nodiscard]] const SidesMemory& memory() const { return memory_; }
 
  private:
   SidesMemory memory_;
@@ -85,6 +86,23 @@ TEST(SidesOfAcrobats, WhoSpinStayCertain) {
     ASSERT_EQ(watched.look(body_at({0, 0, 0}, heading, posture)), 0) << i;
   }
   EXPECT_GT(watched.confidence(), before - 0.02);
+}
+
+/// Somebody turns a cartwheel half, with the chest to a sensor, and stays on their hands: the line
+/// of the shoulders alone looks like that of somebody with their back to it.
+TEST(SidesOfAcrobats, WhoAreUpsideDownTeachNothingAboutASensor) {
+  Watched watched;
+  const auto body = body_at({0, 0, 0}, 0, {.knees = 0.10, .wrists = 0.1, .elbows = -0.02});
+  const SensorId first = view_from(0, 0, body).sensor;
+  for (int i = 0; i < 150; ++i) watched.look(body);
+  ASSERT_GT(watched.confidence(), SidesConfig{}.learn_from);
+  for (int i = 0; i < 60; ++i) {
+    const double angle = std::min(deg(180), deg(360) * i * kAcrobatStep);
+    const auto wheel = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).matrix();
+    ASSERT_EQ(watched.look(turned(body, wheel)), 0) << i;
+  }
+  ASSERT_GT(watched.confidence(), SidesConfig{}.learn_from);
+  EXPECT_EQ(watched.memory().telling.at(first).log_odds(), 0.0);
 }
 
 }  // namespace
