@@ -133,14 +133,6 @@ double misled(const Spans& spans, const Spans& held, double sigma) {
   return 1.0 / (1.0 + std::exp(std::numbers::pi * short_of_side / (sigma * sigma)));
 }
 
-/// How much less likely it is that the held sides became wrong in this instant, given the log odds
-/// of the posture now and at the instant before: they change their sign with the sides.  If they
-/// keep it, either of the two postures misleads, the one before or the one now.
-double reversed_unseen(double now, double before) {
-  if (now * before <= 0) return 1.0;
-  return std::exp(-std::min(std::abs(now), std::abs(before)));
-}
-
 /// The chance that, since the last instant, the sides became wrong because the held spans followed
 /// the views with the wrong sign.  The held spans lag behind for the whole smoothing time, so each
 /// instant counts only for its part of that time.
@@ -148,9 +140,13 @@ double slipped_by_turning(const Instant& now, const Spans& spans, const Sides& s
                           const SidesConfig& config) {
   if (now.first) return 0.0;
   const double share = now.elapsed / std::max(config.smoothing, now.elapsed);
-  return share * misled(spans, sides.spans, config.turn_sigma) *
-         reversed_unseen(now.posture, sides.posture);
+  return share * misled(spans, sides.spans, config.turn_sigma);
 }
+
+/// What the posture, as log odds, tells again about sides that have slipped with this chance.  What
+/// it told before was about the sides that were held then, and is forgotten with them in the share
+/// of twice the chance: at a half, nothing is left of it.
+double seen_anew(double slipped, double posture) { return std::min(1.0, 2.0 * slipped) * posture; }
 
 /// Advances the labels of a view by one step.
 LabelStep step_of_view(const SensorView& view, double agree, double facing, const Sides& sides,
@@ -299,8 +295,11 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   now.posture = posture_log_odds(person.views, left_of(spans), now.upright, config.posture);
   sides.walk.follow(person.views, instant, config.walking);
   sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
-  sides.filter.slip(slipped_by_turning(now, spans, sides, config));
-  sides.filter.update(evidence_of(now, person, sides, spans, memory, config));
+  const double slipped = slipped_by_turning(now, spans, sides, config);
+  sides.filter.slip(slipped);
+  Evidence evidence = evidence_of(now, person, sides, spans, memory, config);
+  evidence.news += seen_anew(slipped, now.posture);
+  sides.filter.update(evidence);
   if (must_turn(sides.filter, now.first, config)) {
     turn_round(now, sides, spans);
   } else {

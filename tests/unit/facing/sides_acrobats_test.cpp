@@ -76,16 +76,16 @@ TEST(SidesOfAcrobats, WhoLeapBackwardsStay) {
   }
 }
 
+/// The views stay far from the sides held, and what the posture tells is told again.
 TEST(SidesOfAcrobats, WhoSpinStayCertain) {
   Watched watched;
   const Posture posture{.knees = 0.06, .wrists = 0.1, .elbows = -0.02};
   for (int i = 0; i < 90; ++i) watched.look(body_at({0, 0, 0}, 0, posture));
-  const double before = watched.confidence();
   for (int i = 0; i < 90; ++i) {
     const double heading = wrap_angle(deg(560) * i * kAcrobatStep);
     ASSERT_EQ(watched.look(body_at({0, 0, 0}, heading, posture)), 0) << i;
   }
-  EXPECT_GT(watched.confidence(), before - 0.02);
+  EXPECT_GT(watched.confidence(), 0.85);
 }
 
 /// Somebody turns a cartwheel half, with the chest to a sensor, and stays on their hands: the line
