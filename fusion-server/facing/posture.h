@@ -1,10 +1,11 @@
 // Judges by the posture alone where the front of a body is; swapping left and right does not change
 // the result (docs/papers/sides.md, Posture).
 //
-// Knees bend forwards, elbows backwards: both are hinges whose axis shows where left is, however
-// somebody stands, lies or turns over.  Hands work in front of the shoulders and people bend
-// forwards, but only while they are upright.  Feet and heads are not used, because a body tracker
-// places them too close to the sensor when it sees a person from behind.
+// Knees bend forwards: they are hinges whose axis shows where left is, however somebody stands,
+// lies or turns over.  Elbows bend backwards, hands work in front of the shoulders and people bend
+// forwards, while they are upright; the elbows of others are hinges, too.  Feet and heads are not
+// used, because a body tracker places them too close to the sensor when it sees a person from
+// behind.
 #pragma once
 
 #include <vector>
@@ -21,14 +22,16 @@ struct Cue {
   bool operator==(const Cue&) const = default;
 };
 
-/// Learned by tests/learn/posture_weights.py from recordings of people who face a sensor.  Knees
-/// and elbows: how far the joint is off the line between its neighbours, times the cosine between
-/// the axis about which the limb is bent and the left of the person.
+/// Learned by tests/learn/posture_weights.py from recordings of people who face a sensor.
 struct PostureCues {
-  Cue knees{1.44, 0.05};
-  Cue elbows{-1.60, 0.05};  ///< Times that cosine's size once more: the upper arm rolls.
-  Cue wrists{1.56, 0.10};   ///< Wrists in front of the shoulders, of upright people.
-  Cue lean{0.52, 0.15};     ///< Shoulders in front of the hips, of upright people.
+  /// How far knees are off the line from hip to ankle, times the cosine between the axis about
+  /// which the leg is bent and the left of the person.
+  Cue knees{1.38, 0.05};
+  Cue wrists{1.66, 0.10};  ///< Wrists in front of the shoulders, of upright people.
+  /// Elbows in front of the line from shoulder to wrist; of people who are not upright as for
+  /// knees, times the size of the cosine once more.
+  Cue elbows{-1.49, 0.05};
+  Cue lean{0.53, 0.15};  ///< Shoulders in front of the hips, of upright people.
   /// Arm joints that sensors in front of the person see and sensors behind infer; here `at` is a
   /// fraction of these joints.
   Cue hidden{0.5, 0.25};

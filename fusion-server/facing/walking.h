@@ -16,8 +16,8 @@ struct WalkingCue {
   double same = 0.5;       ///< Walking within this time is a single piece of evidence [s].
   /// Vertical speed of the trunk, as a share of its horizontal speed, up to which a movement can be
   /// walking; somebody who jumps, falls or turns over rises and sinks more.
-  double level = 0.15;
-  double steep = 0.3;  ///< Share from which it is no walking.
+  double level = 0.2;
+  double steep = 0.4;  ///< Share from which it is no walking.
 
   bool operator==(const WalkingCue&) const = default;
 };

@@ -140,11 +140,10 @@ def left_of(body):
     return None if math.sqrt(dot(left, left)) < 0.05 else unit(left)
 
 
-def bend(root, middle_joint, end, left):
+def hinge(off, root, middle_joint, end, left):
     """How far a limb is bent off its line [m], and the cosine between its hinge and the left."""
-    off = off_line(middle_joint, root, end)
-    hinge = unit(cross(minus(middle_joint, root), minus(end, middle_joint)))
-    return math.sqrt(dot(off, off)), dot(hinge, left)
+    axis = unit(cross(minus(middle_joint, root), minus(end, middle_joint)))
+    return math.sqrt(dot(off, off)), dot(axis, left)
 
 
 def offsets(body):
@@ -152,21 +151,28 @@ def offsets(body):
     left = left_of(body)
     if left is None:
         return None
+    front = unit(cross(left, [0, 1, 0]))
     trunk = minus(body["SpineShoulder"], body["SpineBase"])
     upright = min(1, max(0, (unit(trunk)[1] - LYING) / (UPRIGHT - LYING)))
 
     def bends(root, mid, end, weigh):
-        limbs = [[part + side for part in (root, mid, end)] for side in ("Left", "Right")]
-        found = [weigh(*bend(*(body[j] for j in limb), left)) for limb in limbs if all(j in body for j in limb)]
+        limbs = [[body.get(part + side) for part in (root, mid, end)] for side in ("Left", "Right")]
+        found = []
+        for r, m, e in (limb for limb in limbs if all(limb)):
+            off = off_line(m, r, e)
+            found.append(weigh(off, *hinge(off, r, m, e, left)))
         return sum(found) / len(found) if found else 0.0
+
+    def elbow(off, size, cosine):
+        return upright * dot(off, front) + (1 - upright) * size * cosine * abs(cosine)
 
     arms = all(part + side in body for part in ("Wrist", "Shoulder") for side in ("Left", "Right"))
     hands = minus(middle(body, "Wrist"), middle(body, "Shoulder")) if arms else [0, 0, 0]
     found = {
-        "knees": bends("Hip", "Knee", "Ankle", lambda off, cosine: off * cosine),
-        "elbows": bends("Shoulder", "Elbow", "Wrist", lambda off, cosine: off * cosine * abs(cosine)),
-        "wrists": upright * dot(hands, unit(cross(left, [0,1,0]))),
-        "lean": upright * dot(trunk, unit(cross(left, [0, 1, 0]))),
+        "knees": bends("Hip", "Knee", "Ankle", lambda off, size, cosine: size * cosine),
+        "elbows": bends("Shoulder", "Elbow", "Wrist", elbow),
+        "wrists": upright * dot(hands, front),
+        "lean": upright * dot(trunk, front),
     }
     return [max(-1.0, min(1.0, found[cue] / full)) for cue, full in CUES.items()]
 

@@ -42,12 +42,14 @@ TEST(Posture, ExchangedLabelsChangeNothingAndTheOtherDirectionTheSign) {
 }
 
 TEST(Posture, KneesAndElbowsShowTheLeftHoweverSomebodyLiesOrTurnsOver) {
-  const double upright = odds_of({.knees = 0.04, .elbows = -0.03});
+  const double odds = lying_odds_of(body_at({0, 0, 0}, 0, {.knees = 0.04, .elbows = -0.03}),
+                                    Eigen::Matrix3d::Identity());
+  EXPECT_GT(odds, 1.5);
   for (const Eigen::Vector3d axis :
        {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}) {
     for (double angle = deg(30); angle < deg(360); angle += deg(30)) {
       const auto body = body_at({0, 0, 0}, 0, {.knees = 0.04, .elbows = -0.03});
-      EXPECT_NEAR(lying_odds_of(body, Eigen::AngleAxisd(angle, axis).matrix()), upright, 1e-9)
+      EXPECT_NEAR(lying_odds_of(body, Eigen::AngleAxisd(angle, axis).matrix()), odds, 1e-9)
           << axis.transpose() << " " << to_deg(angle);
     }
   }
@@ -59,13 +61,13 @@ TEST(Posture, HandsAndLeanOfSomebodyWhoIsNotUprightTellNothing) {
   EXPECT_NEAR(lying_odds_of(body_at({0, 0, 0}, 0, {.shoulders = 0.15}), on_the_back), 0.0, 1e-9);
 }
 
-/// Arms that hang with the elbows turned outwards bend about an axis that is hardly the left one.
-TEST(Posture, ElbowsTurnedOutwardsHardlySpeakForTheRear) {
+/// Arms with the elbows turned outwards bend about an axis that is hardly the left one.
+TEST(Posture, ElbowsTurnedOutwardsOfSomebodyWhoLiesHardlySpeakForTheRear) {
   auto body = body_at({0, 0, 0}, 0);
   for (const auto& [elbow, side] :
        {std::pair{JointId::ElbowLeft, 1.0}, std::pair{JointId::ElbowRight, -1.0}})
     body[elbow].position = {0.32 * side, 1.15, 0.04};
-  const double odds = posture_log_odds({view_from(1, 0, body)}, kLeft, 1.0, {});
+  const double odds = lying_odds_of(body, Eigen::AngleAxisd(deg(90), kLeft).matrix());
   EXPECT_LT(odds, 0.0);
   EXPECT_GT(odds, -0.6);
 }
