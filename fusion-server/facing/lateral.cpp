@@ -37,6 +37,12 @@ Joined join(const std::vector<Spans>& views, const Spans& start) {
   return joined;
 }
 
+Eigen::Vector3d sum_of_trunk(const Spans& spans) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < kTrunkPairs; ++i) sum += spans[i];
+  return sum;
+}
+
 }  // namespace
 
 Spans no_spans() {
@@ -71,9 +77,14 @@ void exchange_sides(Skeleton<WorldSpace>& body) {
   for (Joint& joint : body.joints) joint.orientation.coeffs().setZero();
 }
 
+Eigen::Vector3d left_of(const Spans& spans) {
+  const Eigen::Vector3d left = sum_of_trunk(spans);
+  if (left.norm() < kMinSpan) return Eigen::Vector3d::Zero();
+  return left.normalized();
+}
+
 Eigen::Vector3d forward_of(const Spans& spans) {
-  Eigen::Vector3d left = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < kTrunkPairs; ++i) left += spans[i];
+  Eigen::Vector3d left = sum_of_trunk(spans);
   left.y() = 0;
   if (left.norm() < kMinSpan) return Eigen::Vector3d::Zero();
   return left.normalized().cross(Eigen::Vector3d::UnitY());

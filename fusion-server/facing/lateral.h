@@ -34,6 +34,9 @@ inline constexpr double kMinSpan = 0.05;  ///< [m]; shorter spans have no direct
 /// the sensor.
 void exchange_sides(Skeleton<WorldSpace>& body);
 
+/// Unit vector to the left of a body with these spans; zero when unknown.
+[[nodiscard]] Eigen::Vector3d left_of(const Spans& spans);
+
 /// Horizontal unit vector in the direction in which a body with these spans faces; zero when
 /// unknown.
 [[nodiscard]] Eigen::Vector3d forward_of(const Spans& spans);

@@ -56,11 +56,59 @@ constexpr std::array kLegs{Limb{JointId::HipLeft, JointId::KneeLeft, JointId::An
 constexpr std::array kArms{Limb{JointId::ShoulderLeft, JointId::ElbowLeft, JointId::WristLeft},
                            Limb{JointId::ShoulderRight, JointId::ElbowRight, JointId::WristRight}};
 
-void add_bends(Offset& offset, const Skeleton<WorldSpace>& body, const std::array<Limb, 2>& limbs) {
-  for (const Limb& limb : limbs) {
-    offset.add(
-        off_line(body[limb.middle].position, body[limb.root].position, body[limb.end].position),
-        weight_of(body, limb.root, limb.middle, limb.end));
+/// Where the left and the front are, if the held sides are right.
+struct Stance {
+  Eigen::Vector3d left;
+  Eigen::Vector3d forward;  ///< Horizontal.
+  double upright = 1.0;
+};
+
+/// Weighted mean of how far limbs are bent about an axis [m].
+struct Bend {
+  double sum = 0.0;
+  double weight = 0.0;
+
+  [[nodiscard]] double mean() const { return weight > 0 ? sum / weight : 0.0; }
+};
+
+/// How a limb is bent: how far its middle is off the line between its ends [m], and the cosine
+/// between `left` and the axis about which its end is bent; zero if it is straight.
+struct Hinge {
+  double off = 0.0;
+  double cosine = 0.0;
+};
+
+Hinge hinge_of(const Skeleton<WorldSpace>& body, const Limb& limb, const Eigen::Vector3d& left) {
+  const Eigen::Vector3d& root = body[limb.root].position;
+  const Eigen::Vector3d& middle = body[limb.middle].position;
+  const Eigen::Vector3d& end = body[limb.end].position;
+  const Eigen::Vector3d axis = (middle - root).cross(end - middle);
+  if (!(axis.norm() > 0)) return {};
+  return {off_line(middle, root, end).norm(), axis.normalized().dot(left)};
+}
+
+void add_knees(Bend& bend, const Skeleton<WorldSpace>& body, const Eigen::Vector3d& left) {
+  for (const Limb& limb : kLegs) {
+    const double weight = weight_of(body, limb.root, limb.middle, limb.end);
+    const Hinge hinge = hinge_of(body, limb, left);
+    bend.sum += weight * hinge.off * hinge.cosine;
+    bend.weight += weight;
+  }
+}
+
+/// Of upright people, the elbows are behind the line from shoulder to wrist.  Of others, elbows are
+/// hinges as knees are; but the upper arm rolls by more than a right angle and takes the axis of
+/// the elbow with it, so that only an axis well along the left or right shows a side.
+void add_elbows(Bend& bend, const Skeleton<WorldSpace>& body, const Stance& stance) {
+  for (const Limb& limb : kArms) {
+    const double weight = weight_of(body, limb.root, limb.middle, limb.end);
+    const Hinge hinge = hinge_of(body, limb, stance.left);
+    const double bent = hinge.off * hinge.cosine * std::abs(hinge.cosine);
+    const double ahead =
+        off_line(body[limb.middle].position, body[limb.root].position, body[limb.end].position)
+            .dot(stance.forward);
+    bend.sum += weight * (stance.upright * ahead + (1.0 - stance.upright) * bent);
+    bend.weight += weight;
   }
 }
 
@@ -120,22 +168,24 @@ double of(const Cue& cue, double ahead) {
 
 }  // namespace
 
-double posture_log_odds(const std::vector<SensorView>& views, const Eigen::Vector3d& forward,
-                        const PostureCues& cues) {
-  if (views.empty() || forward.isZero()) return 0.0;
-  Offset knees;
-  Offset elbows;
+double posture_log_odds(const std::vector<SensorView>& views, const Eigen::Vector3d& left,
+                        double upright, const PostureCues& cues) {
+  if (views.empty() || left.isZero()) return 0.0;
+  const Stance stance{left, left.cross(Eigen::Vector3d::UnitY()).normalized(), upright};
+  Bend knees;
+  Bend elbows;
   Offset wrists;
   Offset lean;
   for (const SensorView& view : views) {
-    add_bends(knees, view.skeleton, kLegs);
-    add_bends(elbows, view.skeleton, kArms);
+    add_knees(knees, view.skeleton, left);
+    add_elbows(elbows, view.skeleton, stance);
     add_wrists(wrists, view.skeleton);
     add_lean(lean, view.skeleton);
   }
-  return of(cues.knees, knees.along(forward)) + of(cues.elbows, elbows.along(forward)) +
-         of(cues.wrists, wrists.along(forward)) + of(cues.lean, lean.along(forward)) +
-         of(cues.hidden, seen_from(views, forward));
+  const double of_upright = of(cues.wrists, wrists.along(stance.forward)) +
+                            of(cues.lean, lean.along(stance.forward)) +
+                            of(cues.hidden, seen_from(views, stance.forward));
+  return of(cues.knees, knees.mean()) + of(cues.elbows, elbows.mean()) + upright * of_upright;
 }
 
 }  // namespace chorus::facing

@@ -1,18 +1,20 @@
 // Judges by the posture alone where the front of a body is; swapping left and right does not change
 // the result (docs/papers/sides.md, Posture).
 //
-// Knees bend forwards, elbows backwards; hands work in front of the shoulders; people bend
-// forwards. Feet and heads are not used, because a body tracker places them too close to the sensor
-// when it sees a person from behind.
+// Knees bend forwards: they are hinges whose axis shows where left is, however somebody stands,
+// lies or turns over.  Elbows bend backwards, hands work in front of the shoulders and people bend
+// forwards, while they are upright; the elbows of others are hinges, too.  Feet and heads are not
+// used, because a body tracker places them too close to the sensor when it sees a person from
+// behind.
 #pragma once
 
 #include <vector>
 
-#include "fusion-server/flow/person.h"
+#include "fusion-server/facing/trunk.h"
 
 namespace chorus::facing {
 
-/// Log odds for "this is the front": proportional to the offset up to `at` metres, constant beyond.
+/// Log odds for "this is the left": proportional to the offset up to `at` metres, constant beyond.
 struct Cue {
   double log_odds = 0.0;
   double at = 0.05;  ///< [m]
@@ -22,10 +24,14 @@ struct Cue {
 
 /// Learned by tests/learn/posture_weights.py from recordings of people who face a sensor.
 struct PostureCues {
-  Cue knees{1.39, 0.05};    ///< Knees in front of the line from hip to ankle.
-  Cue wrists{1.64, 0.10};   ///< Wrists in front of the shoulders.
-  Cue elbows{-1.49, 0.05};  ///< Elbows in front of the line from shoulder to wrist.
-  Cue lean{0.56, 0.15};     ///< Shoulders in front of the hips.
+  /// How far knees are off the line from hip to ankle, times the cosine between the axis about
+  /// which the leg is bent and the left of the person.
+  Cue knees{1.38, 0.05};
+  Cue wrists{1.66, 0.10};  ///< Wrists in front of the shoulders, of upright people.
+  /// Elbows in front of the line from shoulder to wrist; of people who are not upright as for
+  /// knees, times the size of the cosine once more.
+  Cue elbows{-1.49, 0.05};
+  Cue lean{0.53, 0.15};  ///< Shoulders in front of the hips, of upright people.
   /// Arm joints that sensors in front of the person see and sensors behind infer; here `at` is a
   /// fraction of these joints.
   Cue hidden{0.5, 0.25};
@@ -34,10 +40,11 @@ struct PostureCues {
   bool operator==(const PostureCues&) const = default;
 };
 
-/// Log odds that the front is where `forward` (unit, horizontal) points.  Uses all views together,
-/// because they see the same posture.  Swapping the labels of a view changes nothing; reversing
-/// `forward` reverses the sign.
+/// Log odds that the left of the person is where `left` (unit, world) points.  Uses all views
+/// together, because they see the same posture.  Swapping the labels of a view changes nothing;
+/// reversing `left` reverses the sign.  `upright`: see upright_share().
 [[nodiscard]] double posture_log_odds(const std::vector<SensorView>& views,
-                                      const Eigen::Vector3d& forward, const PostureCues& cues);
+                                      const Eigen::Vector3d& left, double upright,
+                                      const PostureCues& cues);
 
 }  // namespace chorus::facing

@@ -21,13 +21,15 @@ constexpr double kFrameTime = 0.033;    // [s]; the labels of one frame count as
 
 /// Everything that the model computes for one person at one instant.
 struct Instant {
-  Timestamp at;
+  Timestamp at = {};
   double elapsed = 0.0;  ///< Time since the person was last seen [s].
   bool first = true;
-  std::vector<Spans> views;
-  std::vector<double> agree;     ///< Log odds of each view, see agreement_log_odds().
-  std::vector<bool> exchanged;   ///< For each view, whether it opposes the held sides.
-  std::vector<LabelStep> steps;  ///< For each view; `exchanged` is 0.5 if unknown.
+  double upright = 1.0;  ///< See upright_share().
+  double posture = 0.0;  ///< See posture_log_odds().
+  std::vector<Spans> views = {};
+  std::vector<double> agree = {};     ///< Log odds of each view, see agreement_log_odds().
+  std::vector<bool> exchanged = {};   ///< For each view, whether it opposes the held sides.
+  std::vector<LabelStep> steps = {};  ///< For each view; `exchanged` is 0.5 if unknown.
 };
 
 std::vector<Spans> all_spans(const Person& person) {
@@ -141,6 +143,11 @@ double slipped_by_turning(const Instant& now, const Spans& spans, const Sides& s
   return share * misled(spans, sides.spans, config.turn_sigma);
 }
 
+/// What the posture, as log odds, tells again about sides that have slipped with this chance.  What
+/// it told before was about the sides that were held then, and is forgotten with them in the share
+/// of twice the chance: at a half, nothing is left of it.
+double seen_anew(double slipped, double posture) { return std::min(1.0, 2.0 * slipped) * posture; }
+
 /// Advances the labels of a view by one step.
 LabelStep step_of_view(const SensorView& view, double agree, double facing, const Sides& sides,
                        Timestamp at, const SidesMemory& memory, const SidesConfig& config) {
@@ -195,19 +202,18 @@ double sight_of_all(const Instant& now, const Person& person, const SidesMemory&
 /// as it is new.
 Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, const Spans& spans,
                      const SidesMemory& memory, const SidesConfig& config) {
-  const Eigen::Vector3d forward = forward_of(spans);
-  const double posture = posture_log_odds(person.views, forward, config.posture);
   Evidence evidence;
-  evidence.news =
-      now.first ? posture : new_evidence(posture, sides.posture, now.elapsed, config.posture.same);
+  evidence.news = now.first
+                      ? now.posture
+                      : new_evidence(now.posture, sides.posture, now.elapsed, config.posture.same);
   for (const LabelStep& step : now.steps) evidence.news += step.log_ratio;
   const double sight = sight_of_all(now, person, memory, config.telling);
   if (!now.first)
     evidence.news += new_evidence(sight, sides.sight, now.elapsed, config.telling.same);
   sides.sight = sight;
-  evidence.walking = sides.walk.log_odds(forward, config.walking);
+  evidence.walking = now.upright * sides.walk.log_odds(forward_of(spans), config.walking);
   evidence.share = now.first ? 1.0 : std::min(1.0, now.elapsed / config.walking.same);
-  sides.posture = posture;
+  sides.posture = now.posture;
   return evidence;
 }
 
@@ -227,10 +233,11 @@ bool must_turn(const PersonFilter& filter, bool first, const SidesConfig& config
   return std::log((1.0 - right) / right) > (first ? 0.0 : config.change_odds);
 }
 
-/// Learns habits, but only while the sides are certain, and from views that were seen before.
+/// Learns habits, but only while the sides are certain and the person is upright, because the angle
+/// to the sensor is one about the vertical, and from views that were seen before.
 void learn(const Instant& now, const Person& person, const Sides& sides, SidesMemory& memory,
            const SidesConfig& config) {
-  if (sides.filter.right() < config.learn_from) return;
+  if (sides.filter.right() < config.learn_from || now.upright < 1.0) return;
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     const Passage& passage = now.steps[v].passage;
     if (!(passage.elapsed > 0)) continue;
@@ -270,7 +277,8 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
     resolve_sides_by_shoulders(person, instant, memory.shoulders);
     return;
   }
-  Instant now{instant, 0.0, true, all_spans(person), {}, {}, {}};
+  Instant now{.at = instant, .views = all_spans(person)};
+  now.upright = upright_share(trunk_of(person.views), config.upright);
   auto before = recall(memory, person.id, instant, config);
   now.first = !before;
   Sides sides =
@@ -283,10 +291,14 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   spans = followed(sides.spans, spans, trust_in(spans, sides.spans));
   keep_lost(spans, sides.spans);
   step_views(now, person, spans, sides, memory, config);
+  now.posture = posture_log_odds(person.views, left_of(spans), now.upright, config.posture);
   sides.walk.follow(person.views, instant, config.walking);
   sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
-  sides.filter.slip(slipped_by_turning(now, spans, sides, config));
-  sides.filter.update(evidence_of(now, person, sides, spans, memory, config));
+  const double slipped = slipped_by_turning(now, spans, sides, config);
+  sides.filter.slip(slipped);
+  Evidence evidence = evidence_of(now, person, sides, spans, memory, config);
+  evidence.news += seen_anew(slipped, now.posture);
+  sides.filter.update(evidence);
   if (must_turn(sides.filter, now.first, config)) {
     turn_round(now, sides, spans);
   } else {

@@ -32,6 +32,7 @@ struct SidesConfig {
   SidesBy by = SidesBy::Evidence;
   PostureCues posture = {};
   WalkingCue walking = {};
+  UprightRange upright = {};
   PersonPrior person = {};
   HabitPrior habit = {};
   TellingPrior telling = {};

@@ -14,6 +14,10 @@ struct WalkingCue {
   double full = 1.0;       ///< Speed from which `log_odds` applies in full [m/s].
   double smoothing = 0.2;  ///< Time constant of the speed [s].
   double same = 0.5;       ///< Walking within this time is a single piece of evidence [s].
+  /// Vertical speed of the trunk, as a share of its horizontal speed, up to which a movement can be
+  /// walking; somebody who jumps, falls or turns over rises and sinks more.
+  double level = 0.2;
+  double steep = 0.4;  ///< Share from which it is no walking.
 
   bool operator==(const WalkingCue&) const = default;
 };
@@ -21,7 +25,7 @@ struct WalkingCue {
 class Walk {
  public:
   void follow(const std::vector<SensorView>& views, Timestamp instant, const WalkingCue& cue);
-  /// Log odds that `forward` (unit, horizontal) points to the person's front.
+  /// Log odds that `forward` (unit, horizontal) points to the front of somebody upright.
   [[nodiscard]] double log_odds(const Eigen::Vector3d& forward, const WalkingCue& cue) const;
 
  private:
@@ -32,7 +36,8 @@ class Walk {
 
   std::map<SensorId, Trunk> trunks_;
   Timestamp followed_;
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< Horizontal [m/s].
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< [m/s]
+  double climb_ = 0.0;  ///< Mean of the size of the vertical speed [m/s].
 };
 
 }  // namespace chorus::facing

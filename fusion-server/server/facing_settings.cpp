@@ -29,7 +29,16 @@ void read_walking(ConfigReader reader, facing::WalkingCue& out) {
   reader.read("full_m_s", out.full, 0.0, 10.0);
   reader.read("smoothing_s", out.smoothing, 0.0, 10.0);
   reader.read("same_s", out.same, 0.01, kMaxTime);
+  reader.read("level_share", out.level, 0.0, 10.0);
+  reader.read("steep_share", out.steep, 0.01, 10.0);
+  if (out.steep <= out.level) reader.complain("steep_share", "must be above level_share");
   if (out.full <= out.from) reader.complain("full_m_s", "must be above from_m_s");
+}
+
+void read_upright(ConfigReader reader, facing::UprightRange& out) {
+  reader.read_deg("full_deg", out.full, 0.0, 180.0);
+  reader.read_deg("none_deg", out.none, 1.0, 180.0);
+  if (out.none <= out.full) reader.complain("none_deg", "must be above full_deg");
 }
 
 void read_spell(ConfigReader reader, facing::Spell& out) {
@@ -72,6 +81,7 @@ void read_facing(ConfigReader reader, facing::SidesConfig& out) {
   out.by = by == 0 ? facing::SidesBy::Evidence : facing::SidesBy::Shoulders;
   read_posture(reader.child("posture"), out.posture);
   read_walking(reader.child("walking"), out.walking);
+  read_upright(reader.child("upright"), out.upright);
   read_spell(reader.child("backwards"), out.person.backwards);
   reader.read("slip_per_s", out.person.slip, 0.0, kMaxRate);
   reader.read("lost_per_s", out.person.lost, 0.0, kMaxRate);

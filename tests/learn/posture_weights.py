@@ -22,6 +22,7 @@ import sys
 CUES = {"knees": 0.05, "wrists": 0.10, "elbows": 0.05, "lean": 0.15}  # [m]; from this offset on, a cue counts fully
 SHARES = {"labanotation": 7, "keraal": 2, "azure": 1, "ui-prmd": 10}
 RIDGE = 0.02
+UPRIGHT, LYING = math.cos(math.radians(45)), math.cos(math.radians(75))  # tilt of the trunk, see upright_share()
 KINECT = (
     "SpineBase SpineMid Neck Head ShoulderLeft ElbowLeft WristLeft HandLeft ShoulderRight ElbowRight WristRight HandRight "
     "HipLeft KneeLeft AnkleLeft FootLeft HipRight KneeRight AnkleRight FootRight SpineShoulder HandTipLeft ThumbLeft "
@@ -119,33 +120,59 @@ def off_line(p, a, b):
     return [x - y - t * z for x, y, z in zip(p, a, line)]
 
 
-def front_of(body):
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    return [x / max(math.sqrt(dot(a, a)), 1e-9) for x in a]
+
+
+def left_of(body):
     left = [0.0, 0.0, 0.0]
     for part in ("Shoulder", "Hip"):
         if part + "Left" in body and part + "Right" in body:
             left = [x + y for x, y in zip(left, minus(body[part + "Left"], body[part + "Right"]))]
-    size = math.hypot(left[0], left[2])
-    return None if size < 0.05 else (-left[2] / size, 0.0, left[0] / size)
+    return None if math.sqrt(dot(left, left)) < 0.05 else unit(left)
+
+
+def hinge(off, root, middle_joint, end, left):
+    """How far a limb is bent off its line [m], and the cosine between its hinge and the left."""
+    axis = unit(cross(minus(middle_joint, root), minus(end, middle_joint)))
+    return math.sqrt(dot(off, off)), dot(axis, left)
 
 
 def offsets(body):
-    """Offsets of the cues along the front, as in posture.cpp, clamped to +-1."""
-    front = front_of(body)
-    if front is None:
+    """The cues for the left that the labels give, as in posture.cpp, clamped to +-1."""
+    left = left_of(body)
+    if left is None:
         return None
-    ahead = lambda v: v[0] * front[0] + v[2] * front[2]
+    front = unit(cross(left, [0, 1, 0]))
+    trunk = minus(body["SpineShoulder"], body["SpineBase"])
+    upright = min(1, max(0, (unit(trunk)[1] - LYING) / (UPRIGHT - LYING)))
 
-    def bend(root, mid, end):
-        limbs = [[part + side for part in (root, mid, end)] for side in ("Left", "Right")]
-        found = [ahead(off_line(body[m], body[r], body[e])) for r, m, e in limbs if all(j in body for j in (r, m, e))]
+    def bends(root, mid, end, weigh):
+        limbs = [[body.get(part + side) for part in (root, mid, end)] for side in ("Left", "Right")]
+        found = []
+        for r, m, e in (limb for limb in limbs if all(limb)):
+            off = off_line(m, r, e)
+            found.append(weigh(off, *hinge(off, r, m, e, left)))
         return sum(found) / len(found) if found else 0.0
 
+    def elbow(off, size, cosine):
+        return upright * dot(off, front) + (1 - upright) * size * cosine * abs(cosine)
+
     arms = all(part + side in body for part in ("Wrist", "Shoulder") for side in ("Left", "Right"))
+    hands = minus(middle(body, "Wrist"), middle(body, "Shoulder")) if arms else [0, 0, 0]
     found = {
-        "knees": bend("Hip", "Knee", "Ankle"),
-        "elbows": bend("Shoulder", "Elbow", "Wrist"),
-        "wrists": ahead(minus(middle(body, "Wrist"), middle(body, "Shoulder"))) if arms else 0.0,
-        "lean": ahead(minus(body["SpineShoulder"], body["SpineBase"])),
+        "knees": bends("Hip", "Knee", "Ankle", lambda off, size, cosine: size * cosine),
+        "elbows": bends("Shoulder", "Elbow", "Wrist", elbow),
+        "wrists": upright * dot(hands, front),
+        "lean": upright * dot(trunk, front),
     }
     return [max(-1.0, min(1.0, found[cue] / full)) for cue, full in CUES.items()]
 

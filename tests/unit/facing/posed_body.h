@@ -63,6 +63,14 @@ inline constexpr Posture kAtWork{0.02, 0.25, -0.02, 0.05};
   return body;
 }
 
+/// The body turned about a point in the height of the hips.
+[[nodiscard]] inline Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body,
+                                                 const Eigen::Matrix3d& turn) {
+  const Eigen::Vector3d centre = body[JointId::SpineBase].position;
+  for (Joint& joint : body.joints) joint.position = centre + turn * (joint.position - centre);
+  return body;
+}
+
 /// The body as seen by sensor `number`, 3 m from the origin in the direction of yaw `from`.
 [[nodiscard]] inline SensorView view_from(int number, double from,
                                           const Skeleton<WorldSpace>& body) {

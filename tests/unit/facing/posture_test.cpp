@@ -1,6 +1,6 @@
 #include "fusion-server/facing/posture.h"
 
-#include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,14 @@
 namespace chorus::facing {
 namespace {
 
-const Eigen::Vector3d kAhead = Eigen::Vector3d::UnitZ();  // front of body_at() with heading 0
+const Eigen::Vector3d kLeft = Eigen::Vector3d::UnitX();  // left of body_at() with heading 0
 
 double odds_of(const Posture& posture) {
-  return posture_log_odds({view_from(1, 0, body_at({0, 0, 0}, 0, posture))}, kAhead, {});
+  return posture_log_odds({view_from(1, 0, body_at({0, 0, 0}, 0, posture))}, kLeft, 1.0, {});
+}
+
+double lying_odds_of(const Skeleton<WorldSpace>& body, const Eigen::Matrix3d& turn) {
+  return posture_log_odds({view_from(1, 0, turned(body, turn))}, turn * kLeft, 0.0, {});
 }
 
 TEST(Posture, EveryCueSpeaksForTheFrontByItself) {
@@ -31,10 +35,41 @@ TEST(Posture, ExchangedLabelsChangeNothingAndTheOtherDirectionTheSign) {
   const auto body = body_at({1, 0, 2}, 0, kAtWork);
   const std::vector<SensorView> as_is{view_from(1, 0, body)};
   const std::vector<SensorView> other{view_from(1, 0, exchanged(body))};
-  const double odds = posture_log_odds(as_is, kAhead, {});
+  const double odds = posture_log_odds(as_is, kLeft, 1.0, {});
   EXPECT_GT(odds, 1.0);
-  EXPECT_NEAR(posture_log_odds(other, kAhead, {}), odds, 1e-12);
-  EXPECT_NEAR(posture_log_odds(as_is, -kAhead, {}), -odds, 1e-12);
+  EXPECT_NEAR(posture_log_odds(other, kLeft, 1.0, {}), odds, 1e-12);
+  EXPECT_NEAR(posture_log_odds(as_is, -kLeft, 1.0, {}), -odds, 1e-12);
+}
+
+TEST(Posture, KneesAndElbowsShowTheLeftHoweverSomebodyLiesOrTurnsOver) {
+  const double odds = lying_odds_of(body_at({0, 0, 0}, 0, {.knees = 0.04, .elbows = -0.03}),
+                                    Eigen::Matrix3d::Identity());
+  EXPECT_GT(odds, 1.5);
+  for (const Eigen::Vector3d axis :
+       {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}) {
+    for (double angle = deg(30); angle < deg(360); angle += deg(30)) {
+      const auto body = body_at({0, 0, 0}, 0, {.knees = 0.04, .elbows = -0.03});
+      EXPECT_NEAR(lying_odds_of(body, Eigen::AngleAxisd(angle, axis).matrix()), odds, 1e-9)
+          << axis.transpose() << " " << to_deg(angle);
+    }
+  }
+}
+
+TEST(Posture, HandsAndLeanOfSomebodyWhoIsNotUprightTellNothing) {
+  const Eigen::Matrix3d on_the_back = Eigen::AngleAxisd(deg(-90), kLeft).matrix();
+  EXPECT_NEAR(lying_odds_of(body_at({0, 0, 0}, 0, {.wrists = 0.1}), on_the_back), 0.0, 0.1);
+  EXPECT_NEAR(lying_odds_of(body_at({0, 0, 0}, 0, {.shoulders = 0.15}), on_the_back), 0.0, 1e-9);
+}
+
+/// Arms with the elbows turned outwards bend about an axis that is hardly the left one.
+TEST(Posture, ElbowsTurnedOutwardsOfSomebodyWhoLiesHardlySpeakForTheRear) {
+  auto body = body_at({0, 0, 0}, 0);
+  for (const auto& [elbow, side] :
+       {std::pair{JointId::ElbowLeft, 1.0}, std::pair{JointId::ElbowRight, -1.0}})
+    body[elbow].position = {0.32 * side, 1.15, 0.04};
+  const double odds = lying_odds_of(body, Eigen::AngleAxisd(deg(90), kLeft).matrix());
+  EXPECT_LT(odds, 0.0);
+  EXPECT_GT(odds, -0.6);
 }
 
 TEST(Posture, ArmsThatOnlyOneSideSeesAreOnThatSide) {
@@ -45,21 +80,21 @@ TEST(Posture, ArmsThatOnlyOneSideSeesAreOnThatSide) {
   }
   const std::vector<SensorView> views{view_from(1, 0, body_at({0, 0, 0}, 0)),
                                       view_from(2, deg(180), hidden)};
-  EXPECT_GT(posture_log_odds(views, kAhead, {}), 0.2);
+  EXPECT_GT(posture_log_odds(views, kLeft, 1.0, {}), 0.2);
 }
 
 TEST(Posture, ArmsThatAllSensorsSeeShowNoFrontHoweverManyStandOnOneSide) {
   const auto body = body_at({0, 0, 0}, 0);
   const std::vector<SensorView> views{view_from(1, deg(-20), body), view_from(2, deg(20), body),
                                       view_from(3, deg(180), body)};
-  EXPECT_NEAR(posture_log_odds(views, kAhead, {}), 0.0, 1e-9);
+  EXPECT_NEAR(posture_log_odds(views, kLeft, 1.0, {}), 0.0, 1e-9);
 }
 
 TEST(Posture, OfNobodyOrWithoutDirectionOrWithoutJointsTellsNothing) {
-  EXPECT_EQ(posture_log_odds({}, kAhead, {}), 0.0);
-  EXPECT_EQ(posture_log_odds({view_from(1, 0, {})}, kAhead, {}), 0.0);
+  EXPECT_EQ(posture_log_odds({}, kLeft, 1.0, {}), 0.0);
+  EXPECT_EQ(posture_log_odds({view_from(1, 0, {})}, kLeft, 1.0, {}), 0.0);
   const auto body = body_at({0, 0, 0}, 0, kAtWork);
-  EXPECT_EQ(posture_log_odds({view_from(1, 0, body)}, Eigen::Vector3d::Zero(), {}), 0.0);
+  EXPECT_EQ(posture_log_odds({view_from(1, 0, body)}, Eigen::Vector3d::Zero(), 1.0, {}), 0.0);
 }
 
 }  // namespace

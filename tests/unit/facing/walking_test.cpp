@@ -1,5 +1,8 @@
 #include "fusion-server/facing/walking.h"
 
+#include <cmath>
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/facing/posed_body.h"
@@ -44,6 +47,22 @@ TEST(Walk, IsSeenAlsoWhenSensorsAnswerInTurn) {
     walk.follow({view_from(i % 2, 0, body_at({0, 0, 0.0165 * i}, 0))},
                 kWalkStart + i * kWalkFrame / 2, {});
   EXPECT_GT(walk.log_odds(kWalkAhead, {}), 2.0);
+}
+
+/// Log odds at the end of two seconds of moving ahead at 1.2 m/s, while the trunk goes up and down.
+double odds_of_bobbing(double height, double hz) {
+  Walk walk;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.033 * i;
+    const double up = height * std::abs(std::sin(std::numbers::pi * hz * t));
+    walk.follow({view_from(1, 0, body_at({0, up, 1.2 * t}, 0))}, kWalkStart + i * kWalkFrame, {});
+  }
+  return walk.log_odds(kWalkAhead, {});
+}
+
+TEST(Walk, IsNoJumping) {
+  EXPECT_NEAR(odds_of_bobbing(0.05, 2.0), WalkingCue{}.log_odds, 0.01);
+  EXPECT_EQ(odds_of_bobbing(0.5, 1.6), 0.0);
 }
 
 TEST(Walk, OfNobodyIsNone) {
