@@ -5,13 +5,22 @@
 namespace chorus::service {
 namespace {
 
+/// What to do about a file that is not there, or that another user may read.
+std::string advice_on(ErrorCode code) {
+  if (code == ErrorCode::NotFound) return "; `chorus init` writes one (--out FILE)";
+  return code == ErrorCode::Io ? "; is it a file that this user may read? The services' user is "
+                                 "chorus (sudo runuser -u chorus -- COMMAND)"
+                               : "";
+}
+
 Result<std::string> text_of(const std::string& path) {
   constexpr std::uintmax_t kMaxBytes = 16u << 20;
   if (path.empty()) return std::string("{}");
   auto text = read_file(path, kMaxBytes);
   if (text) return text;
   return fail(ErrorCode::Io, path,
-              "the configuration file cannot be read: " + text.error().message);
+              "the configuration file cannot be read: " + text.error().message +
+                  advice_on(text.error().code));
 }
 
 /// What messages call the source: the file, the options of the command line, or both.

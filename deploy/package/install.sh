@@ -4,6 +4,13 @@
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 (( $# > 0 )) || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
+[[ -e "$folder/SYSTEM" && -e "$folder/Packages" ]] ||
+  { echo "install: $folder is not complete; copy again all that deploy/make-packages.sh made" >&2; exit 1; }
+for name in "$@"; do
+  [[ $name != -* ]] && compgen -G "$folder/${name%%=*}_*.deb" >/dev/null && continue
+  echo "install: there is no package $name here; there are:" "$(sed -n 's/^Package: \(chorus-\)/\1/p' "$folder/Packages" | sort -u | tr '\n' ' ')" >&2
+  exit 1
+done
 (( EUID == 0 )) || { echo "install: run this as root (sudo $0 $*)" >&2; exit 1; }
 . /etc/os-release
 built_for=$(cat "$folder/SYSTEM")
@@ -18,7 +25,7 @@ trap 'rm -rf "$scratch"' EXIT
 chmod 755 "$scratch"
 mkdir -p "$scratch/lists/partial" "$scratch/archives/partial"
 echo "deb [trusted=yes] copy:$folder ./" > "$scratch/sources.list"
-apt=(apt-get -q -o "Dir::Etc::SourceList=$scratch/sources.list" -o Dir::Etc::SourceParts=/dev/null
+apt=(apt-get -q -o DPkg::Lock::Timeout=120 -o "Dir::Etc::SourceList=$scratch/sources.list" -o Dir::Etc::SourceParts=/dev/null
   -o "Dir::State::Lists=$scratch/lists" -o "Dir::Cache::Archives=$scratch/archives"
   -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=root)
 "${apt[@]}" update

@@ -121,7 +121,9 @@ service::Concerns host_concerns(const FusionSettings& settings) {
   }
   look_at_files(settings, state, all);
   if (settings.live.sensors.empty())
-    all.emplace_back("no sensor is named in the section \"sensors\"");
+    all.emplace_back(
+        "no sensor is named in the section \"sensors\": chorus init sensor prints what to write "
+        "there, with the option for chorus init fusion");
   return all;
 }
 

@@ -1,5 +1,7 @@
 #include "services/ctl/findings.h"
 
+#include <pwd.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -69,11 +71,26 @@ Result<tls::CertificateFacts> facts_in(const std::string& file) {
   return tls::facts_of(*text);
 }
 
-Finding folder_finding(const std::string& what, const std::string& folder) {
+/// Whether a user may create files in a folder, by owner, group and mode.  A folder that does not
+/// exist yet is made by the unit, and a host without that user has no unit: both are no obstacle.
+bool may_write(const std::string& user, const std::string& folder) {
+  const passwd* who = ::getpwnam(user.c_str());
+  struct stat is {};
+  if (who == nullptr || ::stat(folder.c_str(), &is) != 0) return true;
+  if (is.st_uid == who->pw_uid) return (is.st_mode & S_IWUSR) != 0;
+  if (is.st_gid == who->pw_gid) return (is.st_mode & S_IWGRP) != 0;
+  return (is.st_mode & S_IWOTH) != 0;
+}
+
+Finding folder_finding(const std::string& what, const std::string& folder,
+                       const std::string& user) {
   const std::string subject = what + " " + folder;
   struct statvfs disk {};
   if (::statvfs(existing(folder).c_str(), &disk) != 0)
     return {false, subject, "cannot be looked at", "name another folder in the configuration"};
+  if (!may_write(user, folder))
+    return {false, subject, "cannot be written to by the user " + user,
+            "chown -R " + user + ": " + folder + ", or name another folder in the configuration"};
   const double free =
       static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize) / kBytesPerMb;
   if (free >= kLeastFree) return {true, subject, fmt::format("{:.0f} MB free", free)};
@@ -154,6 +171,9 @@ Finding unreached(const std::string& subject, const Error& error) {
 Finding sensor_finding(const nlohmann::json& sensor, const tls::Trust& trust) {
   const std::string subject = "sensor " + text_in(sensor, "id");
   const std::string url = text_in(sensor, "url");
+  if (const auto parsed = http::parse_url(url); !parsed)
+    return {false, subject, to_string(parsed.error()),
+            "mend \"url\" of this sensor in the configuration, then reload"};
   const std::string token = text_in(sensor, "token");
   const auto clock = ask(url, "clock", token, trust);
   if (!clock) return unreached(subject, clock.error());
@@ -162,7 +182,10 @@ Finding sensor_finding(const nlohmann::json& sensor, const tls::Trust& trust) {
             "copy one of its http.tokens (role read) to \"token\" of this sensor, and reload"};
   }
   if (clock->status != http::status::kOk)
-    return {false, subject, words_of(*clock), "ask chorus doctor on that host"};
+    return {false, subject, words_of(*clock),
+            "is " + url +
+                " where its chorus-sensor listens (http.port), and no other program? Then ask "
+                "chorus doctor on that host"};
   return of_answering(subject, url, token, *clock, trust);
 }
 
@@ -231,6 +254,12 @@ Finding health_finding(const ExaminedService& service) {
         fmt::format("systemctl start {0}; journalctl -u {0} says why it does not stay", subject)};
   }
   if (answer->status == http::status::kOk) return {true, subject, "answers at " + service.url()};
+  if (answer->status != http::status::kUnavailable)
+    return {
+        false, subject, fmt::format("{} answers otherwise: {}", service.url(), words_of(*answer)),
+        fmt::format("systemctl restart {}; if this stays, another program has the port (ss -ltnp "
+                    "sport = :{} names it): stop that, or set http.port",
+                    subject, service.port())};
   return {false, subject, words_of(*answer),
           service.kind == "sensor" ? "is the device there, or the program that pushes frames?"
                                    : "the sensors below say more; then: chorus register"};
@@ -272,12 +301,12 @@ Findings certificate_findings(const ExaminedService& service) {
       {true, subject, fmt::format("good until {}, for {}", until, fmt::join(facts->names, ", "))}};
 }
 
-Findings disk_findings(const ExaminedService& service) {
+Findings disk_findings(const ExaminedService& service, const std::string& user) {
   Findings all;
   const std::string recordings = text_in(client::part_at(service.config, "recording"), "folder");
-  if (!recordings.empty()) all.push_back(folder_finding("recordings", recordings));
+  if (!recordings.empty()) all.push_back(folder_finding("recordings", recordings, user));
   const std::string state = text_in(service.config, "state_dir");
-  if (!state.empty() && state != "auto") all.push_back(folder_finding("state", state));
+  if (!state.empty() && state != "auto") all.push_back(folder_finding("state", state, user));
   return all;
 }
 

@@ -48,8 +48,10 @@ struct ExaminedService {
 /// Whether the service's certificate, if it has one, can be read and is valid for at least another
 /// month.
 [[nodiscard]] Findings certificate_findings(const ExaminedService& service);
-/// Whether there is room on the disks of the service's folders.
-[[nodiscard]] Findings disk_findings(const ExaminedService& service);
+/// Whether there is room on the disks of the service's folders, and whether its user may write
+/// there.
+[[nodiscard]] Findings disk_findings(const ExaminedService& service,
+                                     const std::string& user = "chorus");
 /// One per sensor of a fusion server: reachable, token accepted, same version, clock within 20 ms.
 [[nodiscard]] Findings sensor_findings(const ExaminedService& service);
 

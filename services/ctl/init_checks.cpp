@@ -8,6 +8,7 @@
 #include "common/net/asio.h"
 #include "common/service/http_config.h"
 #include "common/tls/certificate.h"
+#include "fusion-server/client/service_client.h"
 
 namespace chorus::ctl {
 namespace {
@@ -46,6 +47,13 @@ Result<void> check_names(const std::vector<PolledWish>& sensors) {
                   "of its own");
   }
   return {};
+}
+
+std::string certificate_note(const std::string& tls_folder) {
+  if (tls_folder.empty() || client::host_has_tls(tls_folder)) return {};
+  return "but now, there is no " + tls_folder +
+         "/host.crt, without which it does not start: chorus init certificate --out " + tls_folder +
+         "\n";
 }
 
 std::string certified_name(const std::string& tls_folder, const std::string& own) {

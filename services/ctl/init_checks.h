@@ -20,4 +20,8 @@ namespace chorus::ctl {
 /// other hosts can use, too; if there is none, `own` after all.
 [[nodiscard]] std::string certified_name(const std::string& tls_folder, const std::string& own);
 
+/// A line that says how to make the certificate that this folder lacks on this host; empty if there
+/// is one, or none is wished for.
+[[nodiscard]] std::string certificate_note(const std::string& tls_folder);
+
 }  // namespace chorus::ctl

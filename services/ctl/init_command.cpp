@@ -155,6 +155,7 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
                            of_the_unit
                                ? "systemctl restart chorus-" + service
                                : fmt::format("chorus-{} --config {}", service, arguments.out));
+  std::cerr << certificate_note(wishes.tls);
   const std::string url =
       fmt::format("{}://{}:{}/", wishes.tls.empty() ? "http" : "https",
                   is_loopback(wishes.address) ? "127.0.0.1" : shown_host(wishes.tls), wishes.port);
@@ -235,7 +236,8 @@ Result<void> read_sensors(const std::string& file, std::vector<std::string>& out
   std::ifstream named;
   if (file != "-") named.open(file);
   std::istream& lines = file == "-" ? std::cin : named;
-  if (!lines) return fail(ErrorCode::Io, file, "cannot be read");
+  if (!lines)
+    return fail(ErrorCode::Io, file, "cannot be read; a line a sensor, ID=URL,TOKEN; -: our input");
   for (std::string line; std::getline(lines, line);) {
     if (!line.empty()) out.push_back(line);
   }

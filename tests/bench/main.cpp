@@ -1,10 +1,12 @@
 // chorus-bench: measures every number that the project claims, one subcommand per claim.
 #include <CLI/CLI.hpp>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
 #include "common/base/version.h"
+#include "tests/bench/project_folder.h"
 #include "tests/bench/report/report.h"
 
 namespace chorus::bench {
@@ -85,5 +87,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kFailed;  // --help is not an error
   }
+  // What the user wrote is relative to where the user is.
+  for (std::string* path : {&json_path, &options.plots}) {
+    if (!path->empty()) *path = std::filesystem::absolute(*path).string();
+  }
+  chorus::bench::enter_project_folder();
   return chosen == nullptr ? kFailed : run(*chosen, options, json_path);
 }

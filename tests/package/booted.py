@@ -1,5 +1,6 @@
-"""Boots a Debian root with the packages under systemd, in a container, and checks what only an init can show: the service starts at boot in its
-sandbox, tells when it is ready, is restarted when it is killed or stands still, and has its configuration and state after a reboot.
+"""Boots a Debian root with the packages under systemd, in a container, and checks what only an init can show: both services start at boot in
+their sandboxes and tell when they are ready; the sensor is restarted when it is killed or stands still; configuration, state and
+registration are there after a reboot.
 By hand, as root: tests/run.sh --workshop.  Left out where the kernel lets systemd-nspawn boot nothing.
 
 CHORUS_PACKAGES and CHORUS_ROOT as in installed_root.py.
@@ -14,6 +15,11 @@ import unittest
 from pathlib import Path
 
 import installed_root
+
+
+UNITS = ("chorus-sensor", "chorus-fusion")
+# Where the sensor stands, as a walk would have left it in the state of the fusion server.
+PLACE = '{"sensors": {"b1": {"x": 0.5, "y": 1.2, "z": -2, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}}'
 
 
 def wait_for(what, holds, patience=60.0):
@@ -51,14 +57,17 @@ class Machine:
                               env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL": "C.UTF-8"})
         return done.stdout + done.stderr
 
-    def show(self, name):
-        return self.do(f"systemctl show --value -p {name} chorus-sensor").strip()
+    def show(self, name, unit="chorus-sensor"):
+        return self.do(f"systemctl show --value -p {name} {unit}").strip()
 
-    def pid(self):
-        return int(self.show("MainPID"))
+    def pid(self, unit="chorus-sensor"):
+        return int(self.show("MainPID", unit))
 
-    def active(self):
-        return self.do("systemctl is-active chorus-sensor").strip() == "active" and self.pid() > 0
+    def active(self, unit="chorus-sensor"):
+        return self.do(f"systemctl is-active {unit}").strip() == "active" and self.pid(unit) > 0
+
+    def both_active(self):
+        return all(self.active(unit) for unit in UNITS)
 
     def off(self):
         if self.nspawn is None:
@@ -82,23 +91,33 @@ class Booted(unittest.TestCase):
         cls.maker = installed_root.Installed()
         cls.maker.setUp()
         cls.addClassCleanup(cls.maker.doCleanups)
-        cls.maker.install("chorus-sensor")
-        cls.maker.inside("chorus init sensor --id b1 --device simulated; rm -r /packages; rm -f /usr/sbin/policy-rc.d")
+        cls.maker.install(*UNITS)
+        cls.maker.inside("chorus init sensor --id b1 --device simulated && "
+                         "token=$(sed -n 's/.*\"token\": \"\\([0-9a-f]*\\)\", \"role\": \"read\".*/\\1/p' /etc/chorus/sensor.json) && "
+                         "chorus init fusion --sensor b1=http://127.0.0.1:8081/,$token && "
+                         "install -d -o chorus -g chorus -m 750 /var/lib/chorus/fusion && "
+                         f"echo '{PLACE}' | install -o chorus -g chorus -m 640 /dev/stdin /var/lib/chorus/fusion/registration.json && "
+                         "rm -r /packages && rm -f /usr/sbin/policy-rc.d")
         cls.machine = Machine(cls.maker.root)
         cls.addClassCleanup(cls.machine.off)  # before it boots, which can fail halfway
         cls.machine.boot()
-        wait_for("the service is up", cls.machine.active)
+        wait_for("the services are up", cls.machine.both_active)
 
-    def test_1_it_is_ready_and_shut_in(self):
-        self.assertIn("ok     chorus-sensor: answers at", self.machine.do("chorus doctor"))
-        self.assertEqual(self.machine.show("WatchdogUSec"), "20s")
-        self.assertEqual(self.machine.show("NRestarts"), "0")
-        status = self.machine.do(f"cat /proc/{self.machine.pid()}/status")
-        self.assertIn("CapEff:\t0000000000000000", status)
-        self.assertIn("NoNewPrivs:\t1", status)
-        self.assertIn("Seccomp:\t2", status)
-        self.assertRegex(self.machine.do("systemd-analyze --no-pager security chorus-sensor"), r"Overall exposure level .*: [01]\.\d OK")
-        self.assertEqual(self.machine.do("systemd-analyze verify chorus-sensor.service"), "")
+    def test_1_both_are_ready_and_shut_in(self):
+        said = self.machine.do("chorus doctor")
+        self.assertIn("ok     chorus-sensor: answers at", said)
+        self.assertIn("ok     token of chorus-fusion: is taken", said)
+        self.assertIn("ok     sensor b1: answers at", said)
+        for unit in UNITS:
+            with self.subTest(unit):
+                self.assertEqual(self.machine.show("WatchdogUSec", unit), "20s")
+                self.assertEqual(self.machine.show("NRestarts", unit), "0")
+                status = self.machine.do(f"cat /proc/{self.machine.pid(unit)}/status")
+                self.assertIn("CapEff:\t0000000000000000", status)
+                self.assertIn("NoNewPrivs:\t1", status)
+                self.assertIn("Seccomp:\t2", status)
+                self.assertRegex(self.machine.do(f"systemd-analyze --no-pager security {unit}"), r"Overall exposure level .*: [01]\.\d OK")
+                self.assertEqual(self.machine.do(f"systemd-analyze verify {unit}.service"), "")
 
     def test_2_it_is_restarted_when_killed(self):
         before, begun = self.machine.pid(), time.monotonic()
@@ -117,7 +136,10 @@ class Booted(unittest.TestCase):
         config = self.machine.do("cat /etc/chorus/sensor.json; touch /var/lib/chorus/sensor/kept")
         self.machine.off()
         self.machine.boot()
-        wait_for("the service is up by itself", self.machine.active)
+        wait_for("the services are up by themselves", self.machine.both_active)
+        kept = self.machine.do("CHORUS_TOKEN=$(grep -o '[0-9a-f]\\{32\\}' /etc/chorus/fusion.json | head -1) chorus status --json")
+        self.assertRegex(kept, '"b1"')
+        self.assertEqual(self.machine.do("cat /var/lib/chorus/fusion/registration.json | tr -d ' \\n' | grep -c b1").strip(), "1")
         self.assertEqual(self.machine.do("cat /etc/chorus/sensor.json"), config)
         self.assertEqual(self.machine.do("stat -c %U /var/lib/chorus/sensor; cd /var/lib/chorus/sensor; ls kept").split(), ["chorus", "kept"])
         self.assertIn("ok     token of chorus-sensor: is taken", self.machine.do("chorus doctor"))

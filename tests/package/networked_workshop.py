@@ -1,8 +1,9 @@
 """A workshop of separate hosts, from the packages: three sensor hosts, a fusion host and a client, each a fresh Debian root with a network
-and processes of its own, joined by a switch.  Follows the commands of docs/guide/workshop.md to a registered, fused tracker behind TLS,
+and processes of its own, joined by a switch that delays every frame by 20 ms and more, loses 2 % and reorders (bad_switch.py); two sensor
+hosts have wrong clocks.  Follows the commands of docs/guide/workshop.md to a registered, fused tracker behind TLS,
 then does things wrong once.  By hand, as root: tests/run.sh --workshop
 
-Stand-ins: `systemctl` starts what the unit's ExecStart says, since a root that is not booted has no systemd; ssh is nsenter; the time of
+Stand-ins: the wrong clocks are the key `clock` in /etc/default/chorus-sensor; `systemctl` starts what the unit's ExecStart says, since a root that is not booted has no systemd; ssh is nsenter; the time of
 these hosts is the machine's, so that chrony has nothing to do.  CHORUS_PACKAGES and CHORUS_ROOT as in installed_root.py.
 """
 
@@ -52,10 +53,16 @@ def commands_of_guide():
             if re.match(r"    (deploy/workshop\.sh|sudo sh -c)", line)]
 
 
+# What the switch does to each frame: delay and jitter [ms], loss [%].
+SWITCH = ("20", "5", "2")
+# Clocks that are wrong [ms], so that chorus doctor names them; frames are corrected by what their answers tell.
+WRONG_CLOCKS = {"sensor-2": 150, "sensor-3": -90}
+
+
 class Host:
     """A Debian root with its own processes, network and host name, until it is closed."""
 
-    def __init__(self, name, address, folder, switch, pristine=ROOT_TAR):
+    def __init__(self, name, address, folder, pristine=ROOT_TAR):
         self.name, self.address, self.root = name, address, folder / name
         self.root.mkdir()
         run("tar", "-C", self.root, "-xf", pristine, "--exclude=./dev/*")
@@ -70,9 +77,10 @@ class Host:
         while not (found := children.read_text().split()) or "sleep" not in Path(f"/proc/{found[0]}/cmdline").read_text():
             time.sleep(0.05)
         self.pid = found[0]
-        run("nsenter", "-t", switch, "-n", "ip", "link", "add", f"to-{name}", "type", "veth", "peer", "name", "eth0", "netns", self.pid)
-        run("nsenter", "-t", switch, "-n", "ip", "link", "set", f"to-{name}", "master", "br0", "up")
-        run("nsenter", "-t", self.pid, "-n", "ip", "address", "add", f"{address}/24", "dev", "eth0")
+
+    def plug_in(self):
+        """When the switch has given it eth0."""
+        run("nsenter", "-t", self.pid, "-n", "ip", "address", "add", f"{self.address}/24", "dev", "eth0")
         run("nsenter", "-t", self.pid, "-n", "ip", "link", "set", "eth0", "up")
 
     def write(self, path, text):
@@ -101,22 +109,30 @@ class Workshop(unittest.TestCase):
         installed_root.Installed.setUpClass()
         cls.folder = Path(tempfile.mkdtemp(prefix="chorus-workshop."))
         cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
-        cls.switch = subprocess.Popen(["unshare", "--net", "sleep", "infinity"])
-        cls.addClassCleanup(cls.switch.wait)
-        cls.addClassCleanup(cls.switch.kill)
-        time.sleep(0.2)
-        run("nsenter", "-t", cls.switch.pid, "-n", "ip", "link", "add", "br0", "type", "bridge")
-        run("nsenter", "-t", cls.switch.pid, "-n", "ip", "link", "set", "br0", "up")
         cls.hosts = {}
         for name, address in (("fusion", "10.0.0.10"), ("sensor-1", "10.0.0.11"), ("sensor-2", "10.0.0.12"), ("sensor-3", "10.0.0.13"),
                               ("client", "10.0.0.20")):
-            cls.hosts[name] = Host(name, address, cls.folder, str(cls.switch.pid))
+            cls.hosts[name] = Host(name, address, cls.folder)
             cls.addClassCleanup(cls.hosts[name].close)
+        cls.connect()
+        for name, wrong in WRONG_CLOCKS.items():
+            cls.hosts[name].write("etc/default/chorus-sensor", f"OPTIONS='--set clock.offset_ms={wrong}'\n")
         cls.write_inventory()
         cls.write_ssh()
         cls.begun = time.monotonic()
         cls.said = [cls.follow(line) for line in commands_of_guide()[:2]]
         cls.laid_out_after = time.monotonic() - cls.begun
+
+    @classmethod
+    def connect(cls):
+        switch = [sys.executable, "-B", Path(__file__).with_name("bad_switch.py"), *SWITCH, *(host.pid for host in cls.hosts.values())]
+        cls.switch = subprocess.Popen(switch, stdout=subprocess.PIPE, text=True)
+        cls.addClassCleanup(cls.switch.communicate)
+        cls.addClassCleanup(cls.switch.kill)
+        if cls.switch.stdout.readline() != "ready\n":
+            raise AssertionError("bad_switch.py makes no devices here")
+        for host in cls.hosts.values():
+            host.plug_in()
 
     @classmethod
     def write_inventory(cls):
@@ -165,10 +181,11 @@ class Workshop(unittest.TestCase):
         self.assertIn("laid out; next:", self.said[0], self.said[0][-3000:])
         wrong = [line for line in self.said[1].splitlines() if line.startswith("WRONG")]
         # Nothing synchronises the clock of this machine, and nobody has walked yet.
-        unexpected = [line for line in wrong if not re.match("WRONG  (clock:|chorus-fusion: )", line)]
+        unexpected = [line for line in wrong if not re.match("WRONG  (clock:|chorus-fusion: |sensor s[23]: its clock is)", line)]
         self.assertEqual(unexpected, [], self.said[1])
-        for sensor in ("s1", "s2", "s3"):
-            self.assertRegex(self.said[1], rf"ok     sensor {sensor}: answers at https://")
+        self.assertRegex(self.said[1], "ok     sensor s1: answers at https://")
+        self.assertRegex(self.said[1], r"WRONG  sensor s2: its clock is 1[2-7]\d ms ahead of ours")
+        self.assertRegex(self.said[1], r"WRONG  sensor s3: its clock is (6|7|8|9|10|11)\d ms behind ours")
         self.assertEqual(self.said[1].count("ok     certificate /etc/chorus/tls/host.crt: good until"), 4)
 
     def test_2_a_walk_registers_the_sensors(self):
@@ -187,6 +204,11 @@ class Workshop(unittest.TestCase):
                    "poses = VrpnClient(['Body0'], 3883, '10.0.0.10', udp=False).poses(); print([next(poses)[:2] for _ in range(25)])")
         self.assertIn("('Body0', 3)", self.client("python3", "-B", "-c", looking, ROOT / "tests/system/fusion"))
 
+    def test_3_the_wrong_clocks_are_corrected_for(self):
+        for sensor, wrong in (("s2", 150), ("s3", -90)):
+            offset = json.loads(self.curl(f"/sensors/{sensor}", "-H", "Accept: application/json"))["clockOffsetMilliseconds"]
+            self.assertAlmostEqual(-offset, wrong, delta=15)
+
     def test_4_what_the_network_sees_is_sealed(self):
         self.assertIn("https://", self.client("curl", "-sS", "http://10.0.0.10:8080/frame"))
         self.assertEqual(self.client("curl", "-sS", "-o", "/dev/null", "-w", "%{http_code}", "http://10.0.0.11:8081/frame"), "400")
@@ -204,6 +226,14 @@ class Workshop(unittest.TestCase):
         time.sleep(2)
         self.assertEqual(len(json.loads(self.curl("/frame.json"))["bodies"]), 1)
         self.assertEqual((self.hosts["fusion"].root / "run/chorus-fusion.pid").read_text(), pid)
+
+    def test_7_the_network_was_as_bad_as_it_should_be(self):
+        self.switch.terminate()
+        done = json.loads(self.switch.communicate()[0])
+        print(f"\nthe switch: {done}", file=sys.stderr)
+        self.assertGreater(done["carried"], 10_000)
+        self.assertTrue(0.01 < done["lost"] / done["carried"] < 0.03, done)
+        self.assertGreater(done["overtaken"], 100)
 
     def doctor(self):
         return self.hosts["fusion"].do("chorus doctor", check=False)

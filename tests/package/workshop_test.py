@@ -21,14 +21,17 @@ case $2 in
   "cat /etc/chorus/ca/ca.crt") echo "AUTHORITY" ;;
   *"chorus init certificate"*) echo "CERTIFICATE ${2#*certificate }" ;;
   *"tar -C /etc/chorus --no-same-owner"*) cat > "$NOTES/certificate.$1" ;;
+  "cat /etc/chorus/fusion.json") cat "$NOTES/kept" 2>/dev/null || echo '"s1" "s2" "s3"' ;;
+  *"init sensor"*) [[ "$1" != *full* ]] || { echo "/etc/chorus/sensor.json: No space left on device" >&2; exit 1; } ;;
   *"sensors-from"*|*"conf.d/chorus.conf &&"*) cat >> "$NOTES/input.$1" ;;
-  true) [[ "$1" != *away* ]] ;;
-  "chorus doctor") [[ "$1" != *ill* ]] ;;
+  "id -u") [[ "$1" != *away* ]] || exit 255; [[ "$1" == *guest* ]] && echo 1000 || echo 0 ;;
+  "chorus doctor") [[ "$1" != *ill* ]] || exit 1; [[ "$1" != *bare* ]] || exit 127; [[ "$1" != *away* ]] || exit 255 ;;
+  *"apt-get"*) [[ "$1" != *away* ]] || exit 255 ;;
 esac
 """
 INVENTORY = {"fusion": {"address": "10.0.0.10", "outputs": ["vrpn=10.0.0.20"]},
              "sensors": [{"id": "s1", "address": "10.0.0.11"},
-                         {"id": "s2", "address": "10.0.0.12", "ssh": "admin@host-2", "device": "replay"}]}
+                         {"id": "s2", "address": "10.0.0.12", "ssh": "admin@host-2", "device": "simulated"}]}
 
 
 class Workshop(unittest.TestCase):
@@ -68,7 +71,7 @@ class Workshop(unittest.TestCase):
         self.assertIn("install.sh", self.noted("sent.admin@host-2"))
         commands = self.noted("commands")
         self.assertIn("install.sh chorus-sensor chrony", commands)
-        self.assertIn("chorus init sensor --id s2 --device replay", commands)
+        self.assertIn("chorus init sensor --id s2 --device simulated", commands)
         self.assertIn("test -e /etc/chorus/sensor.json ||", commands, "what is there is kept")
         self.assertIn("--output vrpn=10.0.0.20", commands)
 
@@ -116,7 +119,7 @@ class Workshop(unittest.TestCase):
         made = [line for line in self.noted("commands").splitlines() if "init certificate" in line]
         self.assertEqual([line.split(" | ")[0] for line in made], ["root@10.0.0.10"] * 3)
         self.assertIn("CERTIFICATE name-of-host-2 name-of-host-2.local 10.0.0.12 ", self.noted("certificate.admin@host-2"))
-        self.assertIn("|| chorus init ca", self.noted("commands"), "an authority that is there is kept")
+        self.assertRegex(self.noted("commands"), r"test -e /etc/chorus/ca/ca.crt \|\| .*chorus init ca", "an authority that is there is kept")
 
     def test_a_certificate_that_is_there_is_kept_until_it_is_renewed(self):
         has = {**INVENTORY, "sensors": [{"id": "s1", "address": "10.0.0.11", "ssh": "root@has-one"}]}
@@ -130,10 +133,74 @@ class Workshop(unittest.TestCase):
         self.assertEqual(self.run_it("purge").returncode, 0)
         self.assertEqual(self.noted("commands").count("apt-get -q -y purge 'chorus-*'"), 3)
 
+    def with_sensor(self, ssh, **more):
+        return {**INVENTORY, "sensors": [{"id": "s1", "address": "10.0.0.11", "ssh": ssh, **more}, INVENTORY["sensors"][1]]}
+
+    def test_a_host_that_is_away_keeps_nobody_else_from_being_removed(self):
+        done = self.run_it("remove", self.with_sensor("root@away"))
+        self.assertEqual(self.noted("commands").count("apt-get -q -y remove"), 3)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("root@away cannot be reached by ssh", done.stdout)
+        self.assertIn("1 of 3 hosts still have something", done.stderr)
+
+    def test_check_tells_hosts_that_are_away_or_bare_from_those_that_are_ill(self):
+        self.assertIn("try ssh root@away true", self.run_it("check", self.with_sensor("root@away")).stdout)
+        said = self.run_it("check", self.with_sensor("root@bare"))
+        self.assertIn("Chorus is not installed on root@bare", said.stdout)
+        self.assertIn("lay-out", said.stdout)
+
+    def test_who_does_not_enter_as_root_is_told_before_anything_is_changed(self):
+        for task in ("lay-out", "renew"):
+            done = self.run_it(task, self.with_sensor("guest@10.0.0.11"))
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("does not let us in as root", done.stderr)
+        self.assertNotIn("install.sh", self.noted("commands"))
+
+    def test_a_step_that_fails_says_where_why_and_what_to_do(self):
+        done = self.run_it("lay-out", self.with_sensor("root@full"))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("No space left", done.stderr)
+        self.assertIn("stopped at root@full, writing and starting the sensor; why stands above", done.stderr)
+        self.assertEqual(done.stderr.count("workshop: "), 1)
+
+    def test_a_sensor_that_the_fusion_host_does_not_read_yet_is_named_with_its_line(self):
+        (self.folder / "kept").write_text('{"sensors": [{"id": "s1"}]}')
+        done = self.run_it("lay-out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("sensor s2 is not in /etc/chorus/fusion.json", done.stdout)
+        self.assertIn('{ "id": "s2", "url": "https://10.0.0.12:8081/", "token": "' + TOKEN + '" }', done.stdout)
+        self.assertNotIn("sensor s1 is not", done.stdout)
+
+    def test_cameras_get_the_package_that_they_need(self):
+        self.run_it("lay-out", self.with_sensor("root@10.0.0.11", device="camera"))
+        self.assertIn("root@10.0.0.11 | /var/tmp/chorus-packages/install.sh chorus-camera chrony", self.noted("commands"))
+
+    def test_a_sensor_on_the_fusion_host_leaves_its_time_alone(self):
+        done = self.run_it("lay-out", self.with_sensor("root@10.0.0.10"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("server 10.0.0.10", self.noted("input.root@10.0.0.10"))
+
+    def test_a_missing_inventory_or_task_says_what_to_do(self):
+        for words, said in ((["none.json", "check"], "write one as in docs/guide/workshop.md"), ([__file__, "lay_out"], "unknown task"),
+                            ([__file__, "check"], "is no JSON")):
+            done = subprocess.run([ROOT / "deploy/workshop.sh", *words], capture_output=True, text=True, check=False)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(said, done.stderr)
+
     def test_an_inventory_that_is_wrong_does_nothing_and_says_why(self):
         for wrong, word in (({"fusion": {}, "sensors": []}, "sensors"),
+                            ({"fusion": {"address": "1"}, "sensors": []}, 'a list "sensors"'),
                             ({**INVENTORY, "sensors": [{"address": "1"}]}, '"id"'),
                             ({**INVENTORY, "sensors": [{"id": "a; rm -rf /", "address": "1"}]}, "letters"),
+                            ({**INVENTORY, "sensors": [{"id": "s.1", "address": "1"}]}, "letters, digits, _ or -"),
+                            ({**INVENTORY, "sensors": [{"id": "s1", "address": "1"}, {"id": "s1", "address": "2"}]}, "of its own"),
+                            ({**INVENTORY, "sensors": [{"id": "s1", "address": "1"}, {"id": "s2", "address": "1"}]}, "the same host as"),
+                            ({**INVENTORY, "sensors": [{"id": "s1"}]}, 'sensors[0] has no "address"'),
+                            ({**INVENTORY, "sensors": ["s1"]}, "sensors[0] is no object"),
+                            ({**INVENTORY, "sensors": [{"id": "s1", "address": "1", "device": "kinect"}]}, "one of bridge, camera"),
+                            ({**INVENTORY, "outputs": ["vrpn=1"]}, "the file has the unknown key"),
+                            ({**INVENTORY, "fusion": "10.0.0.10"}, "fusion is no object"),
+                            ({**INVENTORY, "fusion": {"address": "1", "outputs": "vrpn=1"}}, "is no list"),
                             ({**INVENTORY, "fusion": {"address": "-oProxyCommand=x"}}, "letters"),
                             ({**INVENTORY, "fusion": {"address": "1", "adress": "2"}}, "unknown key"),
                             ({**INVENTORY, "fusion": {"address": "1", "outputs": ["vrpn=$(x)"]}}, "of the form")):

@@ -25,6 +25,14 @@ std::vector<std::string> words_of(const std::string& config, const Settings& set
   return words;
 }
 
+Result<void> unanswered(const ChildProcess& program, const std::string& name) {
+  if (program.alive()) return fail(ErrorCode::Timeout, name, "it does not answer");
+  return fail(
+      ErrorCode::Io, name,
+      "it ended as soon as it was started; this says why, in the project's folder: " + name +
+          " --check --config deploy/config/" + name.substr(name.find('-') + 1) + ".json");
+}
+
 nlohmann::json place_json(const Eigen::Isometry3d& world_from_sensor) {
   const Eigen::Vector3d p = world_from_sensor.translation();
   const Eigen::Quaterniond q(world_from_sensor.linear());
@@ -159,8 +167,10 @@ Result<void> Cell::start_sensor(int index) {
   if (!started) return pass(started);
   sensors_.at(static_cast<std::size_t>(index)).emplace(std::move(*started));
   const auto answers = [&] { return ask_port(sensor_port(index), {"GET", "/frame"}).status != 0; };
-  if (wait_until(kStartPatience, answers)) return {};
-  return fail(ErrorCode::Timeout, "chorus-sensor", "it does not answer");
+  if (wait_until(kStartPatience, [&] { return answers() || !sensor(index).alive(); }) &&
+      sensor(index).alive())
+    return {};
+  return unanswered(sensor(index), "chorus-sensor");
 }
 
 Result<void> Cell::start_fusion() {
@@ -187,7 +197,7 @@ Result<void> Cell::start_fusion() {
   if (wait_until(kStartPatience, [&] { return answers() || !fusion_->alive(); }) &&
       fusion_->alive())
     return {};
-  return fail(ErrorCode::Timeout, "chorus-fusion", "it does not answer");
+  return unanswered(*fusion_, "chorus-fusion");
 }
 
 Result<void> Cell::settle() const {

@@ -1,5 +1,5 @@
-// Certificates that expire and are renewed, a token that is wrong, and a second tracker that reads
-// the same sensors.
+// Certificates that expire and are renewed, a token that is wrong, a second tracker that reads the
+// same sensors, and a sensor of another version.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/tls/authority.h"
+#include "tests/bench/faults/guest.h"
 #include "tests/bench/faults/trial.h"
 #include "tests/support/free_port.h"
 
@@ -162,6 +163,26 @@ Result<void> two_servers(Trial& trial) {
   return {};
 }
 
+/// A sensor of another version beside ours: it has none of the resources that came later (/clock,
+/// /floor), and says more than we know.
+Result<void> other_version(Trial& trial) {
+  const auto place = place_of(kTrusting, kTrusting + 1);
+  Guest guest("other", [place](Timestamp when) {
+    auto said = honest(place, when);
+    said.behind = "<urn:later:1> <urn:later:mood> \"calm\" ; a <urn:later:Thing> .\n";
+    return said;
+  });
+  auto cell =
+      Cell::start({.sensors = kTrusting, .neighbours = {{"other", guest.port(), kTrusting}}});
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  wait_for(4.0);
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), cell->placed());
+  return {};
+}
+
 }  // namespace
 
 FaultCases trust_cases() {
@@ -173,6 +194,8 @@ FaultCases trust_cases() {
       {"wrong-token", "one of three comes back and wants a token that the server has not",
        wrong_token},
       {"two-servers", "a second server reads the same sensors", two_servers},
+      {"other-version", "a fourth sensor of another version says less and more than ours",
+       other_version},
   };
 }
 

@@ -1,5 +1,9 @@
 #include "services/ctl/findings.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
+#include <filesystem>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -153,6 +157,38 @@ TEST(Doctor, LooksAtTheClockAndTheDisk) {
       "sensor", "s", {{"recording", {{"folder", (folder / "not/yet").string()}}}}};
   EXPECT_THAT(only(disk_findings(service)).words, HasSubstr("MB free"));
   EXPECT_TRUE(disk_findings({"sensor", "s", nlohmann::json::object()}).empty());
+}
+
+TEST(Doctor, SeesAFolderThatTheServiceMayNotWriteTo) {
+  const testing::TemporaryFolder folder;
+  const auto there = folder.path() / "state";
+  std::filesystem::create_directory(there);
+  const ExaminedService service{"fusion", "f", {{"state_dir", there.string()}}};
+  const auto own = only(disk_findings(service, ::getpwuid(::getuid())->pw_name));
+  EXPECT_TRUE(own.good) << own.words;
+  std::filesystem::permissions(there, std::filesystem::perms::owner_all);
+  const auto closed = only(disk_findings(service, "nobody"));
+  EXPECT_FALSE(closed.good);
+  EXPECT_THAT(closed.advice, HasSubstr("chown -R nobody: " + there.string()));
+  std::filesystem::permissions(there, std::filesystem::perms::all);
+  EXPECT_TRUE(only(disk_findings(service, "nobody")).good);
+  EXPECT_TRUE(only(disk_findings(service, "nobody-of-this-name")).good);
+}
+
+TEST(Doctor, TellsAnotherProgramAtThePortFromAnIllService) {
+  http::Server other(http::ServerConfig{}, std::make_shared<http::Router>());
+  ASSERT_TRUE(other.start());
+  const ExaminedService service{"sensor", "s", {{"http", {{"port", other.port()}}}}};
+  EXPECT_THAT(health_finding(service).advice, HasSubstr("another program has the port"));
+  const std::string url = "http://127.0.0.1:" + std::to_string(other.port()) + "/";
+  const ExaminedService fusion{"fusion", "f", {{"sensors", {{{"id", "s1"}, {"url", url}}}}}};
+  EXPECT_THAT(only(sensor_findings(fusion)).advice, HasSubstr("no other program"));
+}
+
+TEST(Doctor, SaysThatAnAddressIsNone) {
+  const ExaminedService fusion{
+      "fusion", "f", {{"sensors", {{{"id", "s1"}, {"url", "10.0.0.11:8081"}}}}}};
+  EXPECT_THAT(only(sensor_findings(fusion)).advice, HasSubstr("mend \"url\""));
 }
 
 TEST(Doctor, ReadsConfigurationsWithComments) {

@@ -268,6 +268,10 @@ TEST_F(InitTls, TheAddressThatIsPrintedIsOneOfTheCertificates) {
 }
 
 TEST_F(InitTls, MistakesSayWhatToDo) {
+  EXPECT_THAT(run({"sensor", "--id", "s1", "--tls", at("none"), "--out", at("n.json")}).error,
+              HasSubstr("chorus init certificate --out " + at("none")));
+  EXPECT_THAT(run({"fusion", "--sensors-from", at("none"), "--out", at("n2.json")}).error,
+              HasSubstr("ID=URL,TOKEN"));
   EXPECT_THAT(run({"certificate", "a", "--authority", at("no"), "--out", at("t")}).error,
               HasSubstr("--authority"));
   ASSERT_EQ(run({"ca", "--out", at("ca")}).code, kExitOk);

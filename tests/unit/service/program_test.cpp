@@ -142,8 +142,11 @@ TEST(ProgramShell, CheckSaysWhatWouldNotWorkNow) {
 
 TEST(ProgramShell, NamesItselfAndTheMistake) {
   NotingProgram program;
-  EXPECT_THAT(complaint_of(program, {"--config", "/no/such.json"}),
-              HasSubstr("chorus-noting: /no/such.json: the configuration file cannot be read"));
+  EXPECT_THAT(
+      complaint_of(program, {"--config", "/no/such.json"}),
+      AllOf(HasSubstr("chorus-noting: /no/such.json: the configuration file cannot be read"),
+            HasSubstr("chorus init")));
+  EXPECT_THAT(complaint_of(program, {"--config", "/"}), HasSubstr("this user may read"));
   program.starts = false;
   EXPECT_THAT(complaint_of(program, {}), HasSubstr("chorus-noting: 127.0.0.1:1: address in use"));
 }
