@@ -40,6 +40,9 @@ Registration example() {
   r.clocks[sensor_id("s1")].stated = std::chrono::milliseconds(12);
   r.clocks[sensor_id("s1")].least_age = std::chrono::milliseconds(-204);
   r.clocks[sensor_id("s2")] = {};
+  r.latencies[sensor_id("s2")] = {std::chrono::milliseconds(42), std::chrono::milliseconds(2),
+                                  true};
+  r.latencies[sensor_id("s3")] = {std::chrono::milliseconds(-1), std::chrono::milliseconds(3)};
   r.edges.back().apart = 0.012;
   r.sensors.at(sensor_id("s3")).next_chain = {sensor_id("s2"), sensor_id("s1"), sensor_id("s3")};
   r.sensors.at(sensor_id("s3")).next_error = 0.034;
@@ -69,6 +72,7 @@ TEST(RegistrationFile, ReadsWhatItWrites) {
   EXPECT_EQ(read->clocks.at(sensor_id("s1")).least_age, std::chrono::milliseconds(-204));
   EXPECT_FALSE(exchanges_time(seconds(read->clocks.at(sensor_id("s2")).stated)));
   EXPECT_FALSE(read->clocks.at(sensor_id("s2")).least_age);
+  EXPECT_EQ(read->latencies, written.latencies);
   EXPECT_EQ(read->edges.at(0).apart, 0.012);
   EXPECT_FALSE(read->edges.at(0).loop);
   EXPECT_EQ(read->sensors.at(sensor_id("s3")).next_chain.size(), 3u);
@@ -98,6 +102,7 @@ TEST(RegistrationFile, ReadsASavedAnswerOfTheService) {
   const auto text = write(registration_node(example(), {}), resource::Format::Json);
   const auto read = read_registration(text);
   ASSERT_TRUE(read) << to_string(read.error()) << text;
+  EXPECT_EQ(read->latencies, example().latencies);
   for (const auto& [id, place] : example().sensors) {
     EXPECT_TRUE(read->sensors.at(id).world_from_sensor.isApprox(place.world_from_sensor, 1e-4));
     EXPECT_TRUE(read->sensors.at(id).covariance.isApprox(place.covariance, 1e-4))
