@@ -23,6 +23,7 @@ constexpr double kWorthIt = 0.005;    // [s]
 struct Measured {
   std::size_t target;
   std::size_t source;
+  Eigen::Isometry3d target_from_source;
   std::optional<PairLatency> found;
 };
 
@@ -47,11 +48,20 @@ bool knows_its_clock(const WalkTrack& track) {
   return !stated.empty() && median(std::move(stated)) < kKnownClock;
 }
 
+/// Where both sensors have a place, by that, else as the pair alone has it.
+Eigen::Isometry3d place_of(const PairwiseRegistration& edge, const Registration& found) {
+  const auto target = found.sensors.find(edge.target);
+  const auto source = found.sensors.find(edge.source);
+  if (target == found.sensors.end() || source == found.sensors.end())
+    return edge.target_from_source;
+  return target->second.world_from_sensor.inverse() * source->second.world_from_sensor;
+}
+
 Network network_of(const std::vector<WalkTrack>& walk, const Registration& found) {
   Network network;
   std::map<SensorId, std::size_t> numbers;
   for (const WalkTrack& track : walk) {
-    if (!found.sensors.contains(track.sensor) || !knows_its_clock(track)) continue;
+    if (!knows_its_clock(track)) continue;
     if (numbers.try_emplace(track.sensor, network.tracks.size()).second)
       network.tracks.push_back(&track);
   }
@@ -59,25 +69,21 @@ Network network_of(const std::vector<WalkTrack>& walk, const Registration& found
     const auto target = numbers.find(edge.target);
     const auto source = numbers.find(edge.source);
     if (target == numbers.end() || source == numbers.end()) continue;
-    network.pairs.push_back({target->second, source->second, std::nullopt});
+    network.pairs.push_back({target->second, source->second, place_of(edge, found), std::nullopt});
   }
   return network;
 }
 
-void measure(Network& network, const Registration& found, const RegistrationConfig& config,
-             const PairSearch& search) {
+void measure(Network& network, const RegistrationConfig& config, const PairSearch& search) {
   std::vector<Walker> walkers(network.tracks.size());
   search.for_each(walkers.size(), [&](std::size_t i) {
     if (!search.stopped()) walkers[i] = offset_walker(*network.tracks[i], config);
   });
-  const auto place = [&](std::size_t i) {
-    return found.sensors.at(network.tracks[i]->sensor).world_from_sensor;
-  };
   search.for_each(network.pairs.size(), [&](std::size_t i) {
     if (search.stopped()) return;
     Measured& pair = network.pairs[i];
-    pair.found = pair_latency(walkers[pair.target], walkers[pair.source],
-                              place(pair.target).inverse() * place(pair.source), config);
+    pair.found =
+        pair_latency(walkers[pair.target], walkers[pair.source], pair.target_from_source, config);
   });
 }
 
@@ -127,6 +133,11 @@ void move_by(std::vector<WalkTrack>& walk, const Latencies& latencies, int times
   }
 }
 
+Latencies of_placed(Latencies latencies, const Registration& found) {
+  std::erase_if(latencies, [&](const auto& each) { return !found.sensors.contains(each.first); });
+  return latencies;
+}
+
 }  // namespace
 
 Latencies latencies_of(const std::vector<WalkTrack>& walk, const Registration& found,
@@ -135,7 +146,7 @@ Latencies latencies_of(const std::vector<WalkTrack>& walk, const Registration& f
   if (config.latency_sigma <= Duration{0} || config.method == PairMethod::IcpOnly) return latencies;
   Network network = network_of(walk, found);
   if (network.pairs.empty()) return latencies;
-  measure(network, found, config, search);
+  measure(network, config, search);
   for (int i = 0; i < kIterations; ++i) solve(network, seconds(config.latency_sigma));
   const std::size_t middle = middle_of(network);
   for (std::size_t i = 0; i < network.tracks.size(); ++i) {
@@ -153,15 +164,19 @@ Registration without_latencies(std::vector<WalkTrack>& walk,
   Registration first = solve();
   first.latencies = latencies_of(walk, first, config, search);
   const auto applied = [](const auto& each) { return each.second.applied; };
-  if (std::ranges::none_of(first.latencies, applied) || search.stopped()) return first;
+  if (std::ranges::none_of(first.latencies, applied) || search.stopped()) {
+    first.latencies = of_placed(first.latencies, first);
+    return first;
+  }
   move_by(walk, first.latencies, 1);
   Registration second = solve();
   if (second.sensors.size() >= first.sensors.size()) {
-    second.latencies = std::move(first.latencies);
+    second.latencies = of_placed(first.latencies, second);
     return second;
   }
   move_by(walk, first.latencies, -1);
   for (auto& [sensor, latency] : first.latencies) latency.applied = false;
+  first.latencies = of_placed(first.latencies, first);
   return first;
 }
 

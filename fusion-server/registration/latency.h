@@ -13,8 +13,8 @@
 
 namespace chorus::registration {
 
-/// One for each placed sensor whose clock is known, and which shares an edge with another such one;
-/// empty if config.latency_sigma is 0.  `found`: the registration of this walk.
+/// One for each sensor whose clock is known; empty if config.latency_sigma is 0, or if no two such
+/// sensors share an edge.  `found`: the registration of this walk.
 [[nodiscard]] Latencies latencies_of(const std::vector<WalkTrack>& walk, const Registration& found,
                                      const RegistrationConfig& config,
                                      const PairSearch& search = {});

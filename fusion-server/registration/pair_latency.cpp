@@ -30,6 +30,7 @@ constexpr double kTurnSigma = deg(10);  // how far the pair's place may be wrong
 constexpr double kShiftSigma = 0.3;     // [m]
 constexpr double kMostLatency = 0.3;    // [s]
 constexpr double kOptimism = 1.3;
+constexpr double kLeastSignal = 0.02;  // with less, velocities are noise
 constexpr int kRounds = 3;
 constexpr int kIterations = 8;
 
@@ -49,6 +50,9 @@ struct Part {
   Unknowns right = Unknowns::Zero();
   double squares = 0.0;
   double values = 0.0;  ///< Number of residuals.
+  /// Of the information about the latency, what is only the noise of velocities: that of the mean
+  /// of both views less the product of the two, whose noises are independent.
+  double noise = 0.0;
 };
 
 std::vector<Sight> sights_of(const Walker& target, const Walker& source,
@@ -114,10 +118,15 @@ class Regression {
     for (int i = 0; i < kIterations; ++i) {
       Normal normal = prior.asDiagonal();
       Unknowns right = Unknowns::Zero();
+      double noise = 0.0;
       for (std::size_t k = 0; k < parts_.size(); ++k) {
         normal += weights[k] / variance * parts_[k].normal;
+        noise += weights[k] / variance * parts_[k].noise;
         right += weights[k] / variance * parts_[k].right;
       }
+      const double signal = normal(kLatency, kLatency) - noise;
+      if (signal < kLeastSignal * normal(kLatency, kLatency)) return std::nullopt;
+      normal(kLatency, kLatency) = signal;
       inverse = normal.ldlt().solve(Normal::Identity());
       found = inverse * right;
       reweigh(found, weights, variance);
@@ -139,24 +148,25 @@ class Regression {
   struct Row {
     Eigen::Vector3d residual;
     Design design;
+    Eigen::Vector3d target_velocity;
+    Eigen::Vector3d source_velocity;
   };
 
-  [[nodiscard]] std::optional<Row> row(const std::vector<Sight>& sights, std::size_t i,
-                                       std::size_t slot) const {
+  [[nodiscard]] static std::optional<Row> row(const std::vector<Sight>& sights, std::size_t i,
+                                              std::size_t slot) {
     const Sight& before = sights[i - kReach];
     const Sight& after = sights[i + kReach];
     const Sight& here = sights[i];
     const double apart = after.time - before.time;
     if (!before.has(slot) || !here.has(slot) || !after.has(slot) || apart > kMostReach)
       return std::nullopt;
-    const Eigen::Vector3d velocity =
-        (after.target[slot] + after.source[slot] - before.target[slot] - before.source[slot]) /
-        (2.0 * apart);
     Row row;
+    row.target_velocity = (after.target[slot] - before.target[slot]) / apart;
+    row.source_velocity = (after.source[slot] - before.source[slot]) / apart;
     row.residual = here.source[slot] - here.target[slot];
     row.design.leftCols<3>() = -skew(here.source[slot]);
     row.design.middleCols<3>(3).setIdentity();
-    row.design.col(kLatency) = -velocity;
+    row.design.col(kLatency) = -0.5 * (row.target_velocity + row.source_velocity);
     return row;
   }
 
@@ -171,11 +181,15 @@ class Regression {
       if (!then) continue;
       now->residual -= kept * then->residual;
       now->design -= kept * then->design;
+      now->target_velocity -= kept * then->target_velocity;
+      now->source_velocity -= kept * then->source_velocity;
       const Eigen::Vector3d ray = (sights[here].source[slot] - source_eye_).normalized();
       const Eigen::Matrix3d weight =
           weight_of(sights[here].target[slot], ray, slots[slot].sigma, along_ratio_);
       const Eigen::Matrix<double, kUnknowns, 3> weighted = now->design.transpose() * weight;
       part.normal += weighted * now->design;
+      part.noise += now->design.col(kLatency).dot(weight * now->design.col(kLatency)) -
+                    now->target_velocity.dot(weight * now->source_velocity);
       part.right += weighted * now->residual;
       part.squares += now->residual.dot(weight * now->residual);
       part.values += 3.0;

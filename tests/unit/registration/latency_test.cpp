@@ -37,8 +37,9 @@ TEST(Latencies, AreToldAndTakenOff) {
   ASSERT_EQ(told.size(), 5u);
   for (const auto& [number, late] : {std::pair{1, 0}, {2, 20}, {3, 0}, {4, 50}, {5, 0}}) {
     const Latency& latency = told.at(sensor(number));
-    EXPECT_NEAR(milliseconds_of(latency.found), late, 3.0) << number;
-    EXPECT_LT(milliseconds_of(latency.sigma), 3.0) << number;
+    EXPECT_LT(milliseconds_of(latency.sigma), 4.0) << number;
+    EXPECT_NEAR(milliseconds_of(latency.found), late, 3.0 * milliseconds_of(latency.sigma) + 0.5)
+        << number;
     EXPECT_EQ(latency.applied, late > 0) << number;
     EXPECT_EQ(latency.added(), late > 0 ? -latency.found : Duration{0});
   }
@@ -79,11 +80,20 @@ TEST(Latencies, OfACircleAreLeftAtZero) {
   spec.path = circle;
   spec.noise = 0.02;
   auto walk = ring({0, 50}, spec);
-  for (WalkTrack& track : walk) {
-    for (SensorFrame& frame : track.frames) {
-      for (Joint& joint : frame.bodies[0].skeleton.joints) joint.state = JointState::NotTracked;
-      for (const JointId id : {JointId::Neck, JointId::SpineShoulder, JointId::Head})
-        frame.bodies[0].skeleton[id].state = JointState::Tracked;
+  for (std::size_t i = 0; i < walk.size(); ++i) {
+    const Eigen::Isometry3d sensor_from_world =
+        ring_place(deg(70.0 * static_cast<double>(i + 1))).inverse();
+    for (SensorFrame& frame : walk[i].frames) {
+      const double t = seconds(frame.captured - kWalkStart - milliseconds(i == 0 ? 0 : 50));
+      const Eigen::Vector3d bob(0, 0.02 * std::sin(8.0 * t), 0);
+      Skeleton<SensorSpace>& body = frame.bodies[0].skeleton;
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        body.joints[j].position -= sensor_from_world.linear() * bob;
+        const auto id = static_cast<JointId>(j);
+        const bool on_axis = id == JointId::Neck || id == JointId::SpineShoulder ||
+                             id == JointId::Head || id == JointId::SpineMid;
+        if (!on_axis) body.joints[j].state = JointState::NotTracked;
+      }
     }
   }
   const Latencies told = of(walk);
@@ -95,7 +105,7 @@ TEST(Latencies, BelongToClocksThatAreKnown) {
   for (SensorFrame& frame : walk[1].frames) frame.clock_sigma = 0.1;
   const Registration found = solve(walk, kWalkStart, {});
   EXPECT_FALSE(found.latencies.contains(sensor(2)));
-  EXPECT_NEAR(milliseconds_of(found.clocks.at(sensor(2)).added), -30, 5);
+  EXPECT_NEAR(milliseconds_of(found.clocks.at(sensor(2)).added), -30, 12);
 }
 
 TEST(Latencies, AreNotAskedForWithASigmaOfZero) {
