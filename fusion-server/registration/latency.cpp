@@ -17,6 +17,9 @@ constexpr double kKnownClock = 0.002;  // [s] as in time_offset.cpp
 constexpr double kLeastSigma = 0.001;  // [s] of a pair: views differ not only in time
 constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less and less
 constexpr int kIterations = 10;
+// An edge between two sensors that have this many counts for nothing: with 64 sensors, all edges
+// would take seconds.
+constexpr std::size_t kEnoughEdges = 5;
 constexpr double kSignificant = 3.0;  // sigmas
 constexpr double kWorthIt = 0.005;    // [s]
 
@@ -65,10 +68,14 @@ Network network_of(const std::vector<WalkTrack>& walk, const Registration& found
     if (numbers.try_emplace(track.sensor, network.tracks.size()).second)
       network.tracks.push_back(&track);
   }
+  std::vector<std::size_t> edges(network.tracks.size(), 0);
   for (const PairwiseRegistration& edge : found.edges) {
     const auto target = numbers.find(edge.target);
     const auto source = numbers.find(edge.source);
     if (target == numbers.end() || source == numbers.end()) continue;
+    if (std::min(edges[target->second], edges[source->second]) >= kEnoughEdges) continue;
+    ++edges[target->second];
+    ++edges[source->second];
     network.pairs.push_back({target->second, source->second, place_of(edge, found), std::nullopt});
   }
   return network;

@@ -31,6 +31,7 @@ constexpr double kShiftSigma = 0.3;     // [m]
 constexpr double kMostLatency = 0.3;    // [s]
 constexpr double kOptimism = 1.3;
 constexpr double kLeastSignal = 0.02;  // with less, velocities are noise
+constexpr double kSettled = 0.25;      // sigmas by which another round would change little
 constexpr int kRounds = 3;
 constexpr int kIterations = 8;
 
@@ -231,6 +232,7 @@ std::optional<PairLatency> pair_latency(const Walker& target, const Walker& sour
     if (!more) return std::nullopt;
     sum.latency = std::clamp(sum.latency + more->latency, -kMostLatency, kMostLatency);
     sum.sigma = more->sigma;
+    if (std::abs(more->latency) < kSettled * more->sigma) break;
   }
   return sum;
 }

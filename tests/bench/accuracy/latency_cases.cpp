@@ -73,21 +73,27 @@ double fused_mm(const Workshop& workshop, std::vector<WalkTrack> tracks, const L
   return to_mm(fused_error(workshop, fused->snapshots, places.master).mean());
 }
 
+/// How late the sensor's stamps are in the middle of the walk, with what its host's clock is off.
+Duration lateness(const Workshop& workshop, std::size_t sensor, bool is_late) {
+  const Timestamp middle = workshop.begin + workshop.setting.length / 2;
+  return workshop.clocks[sensor].host_time(middle) - middle +
+         (is_late ? planted(sensor, workshop.setting.seed) : Duration{0});
+}
+
 void score_latencies(Draw& draw, const Workshop& workshop, const Latencies& told, bool is_late) {
-  const auto truth = [&](std::size_t i) {
-    return is_late ? planted(i, workshop.setting.seed) : Duration{0};
-  };
   Duration common{0};
   for (std::size_t i = 0; i < workshop.tracks.size(); ++i) {
     const auto own = told.find(workshop.tracks[i].sensor);
-    if (own != told.end() && own->second.sigma == Duration{0}) common = truth(i);
+    if (own != told.end() && own->second.sigma == Duration{0})
+      common = lateness(workshop, i, is_late);
   }
   for (std::size_t i = 0; i < workshop.tracks.size(); ++i) {
     const auto own = told.find(workshop.tracks[i].sensor);
     if (own == told.end()) continue;
     draw.applied += own->second.applied ? 1.0 / static_cast<double>(workshop.tracks.size()) : 0.0;
     if (own->second.sigma == Duration{0}) continue;
-    draw.off.push_back(kMillisecond * std::abs(seconds(own->second.found - (truth(i) - common))));
+    const Duration off = own->second.found - (lateness(workshop, i, is_late) - common);
+    draw.off.push_back(kMillisecond * std::abs(seconds(off)));
     draw.stated.push_back(kMillisecond * seconds(own->second.sigma));
   }
 }
@@ -191,7 +197,8 @@ void measure_latencies(Report& report) {
     }
   }
   report.note(
-      "latency: sensors stamp 0, 20 and 50 ms late in turns (none: all in time), clocks known.  "
+      "latency: sensors stamp 0, 20 and 50 ms late in turns (none: all in time), clocks taken for "
+      "known; what those of a profile are off (B: 5 ms) counts as latency.  "
       "unasked: latency_sigma_ms 0; in_time: the same walks without latency.  Fused with true "
       "places; what all sensors are late by is not judged.");
 }
