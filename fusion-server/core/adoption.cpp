@@ -156,6 +156,31 @@ void take_clocks(Registration& wider, const Registration& candidate,
   }
 }
 
+/// Takes over the newcomers' latencies from the candidate's walk, relative to the held sensors as
+/// these are corrected now.
+void take_latencies(Registration& wider, const Registration& candidate,
+                    const std::set<SensorId>& added) {
+  const Latency* theirs = nullptr;
+  Duration between{0};
+  for (const auto& [sensor, walked] : candidate.latencies) {
+    if (added.contains(sensor) || !wider.sensors.contains(sensor)) continue;
+    if (theirs != nullptr && theirs->sigma <= walked.sigma) continue;
+    theirs = &walked;
+    const auto own = wider.latencies.find(sensor);
+    const Duration ours = own == wider.latencies.end() ? Duration{0} : own->second.added();
+    between = ours - walked.added();
+  }
+  for (const SensorId& sensor : added) {
+    wider.latencies.erase(sensor);
+    const auto found = candidate.latencies.find(sensor);
+    if (found == candidate.latencies.end()) continue;
+    Latency latency = found->second;
+    latency.found -= between;
+    latency.applied = latency.applied || between != Duration{0};
+    wider.latencies[sensor] = latency;
+  }
+}
+
 void add_once(std::vector<std::string>& reasons, const std::vector<std::string>& more) {
   for (const std::string& reason : more) {
     if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end())
@@ -244,6 +269,7 @@ Result<Registration> extended(const Registration& current, const Registration& c
     take_verdict(wider, sensor, sentence_of(candidate, sensor));
   }
   take_clocks(wider, candidate, added);
+  take_latencies(wider, candidate, added);
   const auto touches = [&](const PairwiseRegistration& edge) {
     return added.contains(edge.source) || added.contains(edge.target);
   };
@@ -279,6 +305,7 @@ Registration without(Registration current, const SensorId& sensor, const std::st
   current.sensors.erase(sensor);
   current.anchors.erase(sensor);
   current.clocks.erase(sensor);
+  current.latencies.erase(sensor);
   std::erase_if(current.edges, [&](const PairwiseRegistration& edge) {
     return edge.source == sensor || edge.target == sensor;
   });
@@ -296,6 +323,7 @@ void keep_configured(Registration& registration, const std::set<SensorId>& senso
   std::erase_if(registration.anchors, gone);
   std::erase_if(registration.verdicts, gone);
   std::erase_if(registration.clocks, gone);
+  std::erase_if(registration.latencies, gone);
   std::erase_if(registration.edges, [&](const PairwiseRegistration& edge) {
     return !sensors.contains(edge.source) || !sensors.contains(edge.target);
   });

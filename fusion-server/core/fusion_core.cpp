@@ -74,7 +74,7 @@ void FusionCore::take(SensorFrame frame) {
 SensorFrame FusionCore::in_step(SensorFrame frame) {
   const Duration change = clocks_.take(frame, registration());
   histories_[frame.sensor].move_in_time(change);
-  if (const auto clock = clocks_.of(frame.sensor)) move_in_time(frame, clock->added);
+  move_in_time(frame, clocks_.added_to(frame.sensor));
   return frame;
 }
 

@@ -79,26 +79,39 @@ bool WalkedClocks::holds(State& state, const ClockOffset& clock, const SensorFra
   return false;
 }
 
+void WalkedClocks::follow_clock(State& state, const SensorFrame& frame,
+                                const Registration& registration) {
+  const auto found = registration.clocks.find(frame.sensor);
+  if (found == registration.clocks.end() || !holds(state, found->second, frame, registration)) {
+    state.applied.reset();
+    return;
+  }
+  const ClockOffset& clock = found->second;
+  const Duration before = state.applied ? state.applied->added : Duration{0};
+  const Duration wanted = followed(clock, state.least.value());
+  const bool same = state.applied && std::chrono::abs(wanted - before) < kWorthIt;
+  state.applied = WalkedClock{same ? before : wanted, clock.sigma};
+}
+
 Duration WalkedClocks::take(const SensorFrame& frame, const Registration& registration) {
   State& state = states_[frame.sensor];
   if (frame.received != Timestamp{})
     state.least.add(frame.received, frame.received - frame.captured);
-  const Duration before = state.applied ? state.applied->added : Duration{0};
-  const auto found = registration.clocks.find(frame.sensor);
-  if (found == registration.clocks.end() || !holds(state, found->second, frame, registration)) {
-    state.applied.reset();
-    return -before;
-  }
-  const ClockOffset& clock = found->second;
-  const Duration wanted = followed(clock, state.least.value());
-  const bool same = state.applied && std::chrono::abs(wanted - before) < kWorthIt;
-  state.applied = WalkedClock{same ? before : wanted, clock.sigma};
-  return state.applied->added - before;
+  const Duration before = state.added();
+  follow_clock(state, frame, registration);
+  const auto latency = registration.latencies.find(frame.sensor);
+  state.latency = latency == registration.latencies.end() ? Duration{0} : latency->second.added();
+  return state.added() - before;
 }
 
 std::optional<WalkedClock> WalkedClocks::of(const SensorId& sensor) const {
   const auto state = states_.find(sensor);
   return state == states_.end() ? std::nullopt : state->second.applied;
+}
+
+Duration WalkedClocks::added_to(const SensorId& sensor) const {
+  const auto state = states_.find(sensor);
+  return state == states_.end() ? Duration{0} : state->second.added();
 }
 
 }  // namespace chorus::core

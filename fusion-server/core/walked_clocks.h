@@ -1,4 +1,5 @@
-// Corrects the capture times of frames by the clock offsets that a walk has determined.
+// Corrects the capture times of frames by the clock offsets and latencies that a walk has
+// determined.
 //
 // A walk shows by how much each clock was off during the walk. A host that does not answer with its
 // time may drift by tens of milliseconds an hour, or its clock may be set: then every frame arrives
@@ -64,8 +65,10 @@ class WalkedClocks {
   /// difference.
   Duration take(const SensorFrame& frame, const Registration& registration);
 
-  /// None: nothing is added to this sensor's capture times.
+  /// None: no clock offset is added to this sensor's capture times.
   [[nodiscard]] std::optional<WalkedClock> of(const SensorId& sensor) const;
+  /// What is added to them: the clock offset, and what takes off the sensor's latency.
+  [[nodiscard]] Duration added_to(const SensorId& sensor) const;
   /// Forgets sensors that are no longer configured.
   template <class Sensors>
   void keep(const Sensors& sensors) {
@@ -76,11 +79,18 @@ class WalkedClocks {
   struct State {
     LeastAge least;
     std::optional<WalkedClock> applied;
+    Duration latency{0};  ///< Added because of the sensor's latency.
     /// Version of the registration whose offset is no longer added because the host's own estimate
     /// has become better.
     std::optional<std::uint64_t> outdone_by;
+
+    [[nodiscard]] Duration added() const {
+      return latency + (applied ? applied->added : Duration{0});
+    }
   };
 
+  static void follow_clock(State& state, const SensorFrame& frame,
+                           const Registration& registration);
   [[nodiscard]] static bool holds(State& state, const ClockOffset& clock, const SensorFrame& frame,
                                   const Registration& registration);
 

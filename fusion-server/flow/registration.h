@@ -12,6 +12,7 @@
 #include "common/base/strong_id.h"
 #include "common/time/timestamp.h"
 #include "fusion-server/flow/clock_offset.h"
+#include "fusion-server/flow/latency.h"
 #include "fusion-server/flow/pairwise_registration.h"
 
 namespace chorus {
@@ -68,9 +69,24 @@ struct Registration {
   /// What later registrations are moved to, so that their errors do not add up (core/world.h).  A
   /// sensor that is not in it is anchored where it stands.
   Anchors anchors = {};
+  /// Of the sensors whose clocks are known, as far as the walk tells.
+  Latencies latencies = {};
   /// Only when the walk was asked for it (registration.depth_bias_sigma_m), or shows a large one;
   /// not stored.
   std::optional<WalkedDepthBias> depth_bias = {};
 };
+
+/// What is added to the capture times of this sensor, whose frames state this clock_sigma, because
+/// of what the walk told of its clock and its latency.
+[[nodiscard]] inline Duration walked_correction(const Registration& registration,
+                                                const SensorId& sensor, double clock_sigma) {
+  Duration added{0};
+  const auto clock = registration.clocks.find(sensor);
+  if (clock != registration.clocks.end() && holds_for(clock->second, clock_sigma))
+    added += clock->second.added;
+  const auto latency = registration.latencies.find(sensor);
+  if (latency != registration.latencies.end()) added += latency->second.added();
+  return added;
+}
 
 }  // namespace chorus

@@ -98,7 +98,7 @@ bool covered(const Snapshot& snapshot) {
 class Replay {
  public:
   Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
-      : frames_(std::move(input.lanes), input.sensors, registration.clocks),
+      : frames_(std::move(input.lanes), input.sensors, registration),
         registration_(registration),
         config_(config.pipeline),
         grid_(config.rate_hz) {

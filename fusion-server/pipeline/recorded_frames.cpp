@@ -22,8 +22,8 @@ constexpr std::size_t kNoLane = std::numeric_limits<std::size_t>::max();
 }  // namespace
 
 RecordedFrames::RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors,
-                               std::map<SensorId, ClockOffset> clocks)
-    : clocks_(std::move(clocks)) {
+                               Registration registration)
+    : registration_(std::move(registration)) {
   for (FrameLane& lane : lanes) lanes_.push_back({std::move(lane)});
   for (const SensorId& sensor : sensors) streams_[sensor].lane = kNoLane;
 }
@@ -36,9 +36,7 @@ Result<void> RecordedFrames::read_one(std::size_t number) {
     lane.ended = true;
     return {};
   }
-  const auto clock = clocks_.find((*frame)->sensor);
-  if (clock != clocks_.end() && holds_for(clock->second, (*frame)->clock_sigma))
-    move_in_time(**frame, clock->second.added);
+  move_in_time(**frame, walked_correction(registration_, (*frame)->sensor, (*frame)->clock_sigma));
   lane.newest = std::max(lane.newest, (*frame)->captured);
   newest_ = std::max(newest_, lane.newest);
   const auto [entry, fresh] = streams_.try_emplace((*frame)->sensor);

@@ -24,10 +24,10 @@ struct FrameLane {
 /// whole recordings.
 class RecordedFrames {
  public:
-  /// `sensors`: the sensors known in advance; others are added with their first frame.  `clocks`:
-  /// the clock offsets of sensors, which are added to their capture times.
+  /// `sensors`: the sensors known in advance; others are added with their first frame.  What
+  /// `registration` knows of clocks and latencies is added to their capture times.
   RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors,
-                 std::map<SensorId, ClockOffset> clocks = {});
+                 Registration registration = {});
 
   /// Reads until every lane has passed `instant` by five seconds, or has ended.  Refuses a sensor
   /// that is in two lanes, and sensors whose clocks differ too much to be merged.
@@ -62,7 +62,7 @@ class RecordedFrames {
   [[nodiscard]] std::optional<Timestamp> waiting_after(Timestamp instant) const;
 
   std::vector<Lane> lanes_;
-  std::map<SensorId, ClockOffset> clocks_;
+  Registration registration_;
   std::map<SensorId, Stream> streams_;
   std::size_t waiting_ = 0;  ///< Number of waiting frames and of bodies in them.
   Timestamp newest_ = Timestamp::min();

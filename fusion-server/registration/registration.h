@@ -82,6 +82,8 @@ struct RegistrationConfig {
   /// are known, the stature is not used.
   std::vector<KnownDistance> known_distances = {};
   std::optional<double> stature = {};  ///< Of the person who walks [m].
+  /// Standard deviation of the latencies of sensors whose clocks are known; 0: not estimated.
+  Duration latency_sigma = std::chrono::milliseconds(30);
   std::optional<SensorId> master;  ///< Default: the sensor with the best connection to all others.
 
   bool operator==(const RegistrationConfig&) const = default;

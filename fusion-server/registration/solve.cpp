@@ -15,6 +15,7 @@
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/impossible_place.h"
 #include "fusion-server/registration/known_places.h"
+#include "fusion-server/registration/latency.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
@@ -383,15 +384,15 @@ Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTra
 Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
                    const RegistrationConfig& wanted) {
   const RegistrationConfig config = suited_to(walk, wanted);
-  const PairEstimator estimate = [&](const Walker& target, const Walker& source) {
-    return register_walkers(target, source, config);
-  };
   const WalkClocks clocks = clocks_of(walk, config);
-  if (clocks.offsets.empty())
-    return with_scale(solve_with(estimate, walk, now, config), walk, config);
+  const PairEstimator estimate =
+      unless_open([&](const Walker& target,
+                      const Walker& source) { return register_walkers(target, source, config); },
+                  clocks);
   std::vector<WalkTrack> in_step = walk;
   bring_in_step(in_step, clocks);
-  Registration found = solve_with(unless_open(estimate, clocks), in_step, now, config);
+  Registration found = without_latencies(
+      in_step, [&] { return solve_with(estimate, in_step, now, config); }, config);
   found.clocks = offsets_of_placed(clocks, found);
   return with_scale(std::move(found), in_step, config);
 }

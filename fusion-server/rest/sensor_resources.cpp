@@ -45,6 +45,11 @@ void add_clock(resource::Node& node, const SensorStatus& sensor) {
   }
   if (sensor.clock_uncertainty || sensor.walked_offset)
     out.emplace_back("clockCorrected", sensor.clock_corrected || sensor.walked_offset);
+  if (sensor.latency) {
+    put("latencyMilliseconds", sensor.latency->found);
+    put("latencyUncertaintyMilliseconds", sensor.latency->sigma);
+    out.emplace_back("latencyCorrected", sensor.latency->applied);
+  }
   if (!sensor.host) return;
   out.emplace_back("hostSynchronised", sensor.host->synchronised);
   put("hostEstimatedErrorMilliseconds", sensor.host->est_error);

@@ -204,6 +204,7 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read("depth_bias_m", out.depth_bias, 0.0, 0.2);
   reader.read("depth_bias_sigma_m", out.depth_bias_sigma, 0.0, 0.2);
   reader.read("adjust_together", out.adjust_together);
+  reader.read_ms("latency_sigma_ms", out.latency_sigma, milliseconds(0), milliseconds(200));
   reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), std::chrono::seconds(1));
   reader.read("min_distance_m", out.min_distance, 0.0, 20.0);
   reader.read("max_distance_m", out.max_distance, 0.1, 50.0);

@@ -261,7 +261,8 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   status.id = report.sensor.id;
   status.url = report.sensor.url;
   const auto walked = core_.walked_clocks().of(report.sensor.id);
-  if (report.newest) status.age = now - *report.newest - (walked ? walked->added : Duration{0});
+  if (report.newest)
+    status.age = now - *report.newest - core_.walked_clocks().added_to(report.sensor.id);
   const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
@@ -290,6 +291,8 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
     status.walked_sigma = walked->sigma;
     status.guessed_from_age = core_.registration().clocks.size() == 1;
   }
+  const auto latency = core_.registration().latencies.find(report.sensor.id);
+  if (latency != core_.registration().latencies.end()) status.latency = latency->second;
   status.host = report.host;
   const auto& reports = core_.reports();
   const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {

@@ -16,6 +16,7 @@
 
 #include "fusion-server/registration/common_scale.h"
 #include "fusion-server/registration/guessed_depth.h"
+#include "fusion-server/registration/latency.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
@@ -81,18 +82,21 @@ std::map<SensorId, Walker> walkers_of(const std::vector<WalkTrack>& walk,
   return walkers;
 }
 
-Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
-  std::vector<WalkTrack> walk = core::assembled(job.walk);
-  const registration::RegistrationConfig config = registration::suited_to(walk, job.config);
-  const registration::Stopped stopped = [&] { return job.stop.stop_requested(); };
-  const registration::PairSearch search{
-      stopped, [](std::size_t count, const auto& work) { on_all_cores(count, work); }};
-  const registration::WalkClocks clocks = registration::clocks_of(walk, config, search);
-  registration::bring_in_step(walk, clocks);
+/// What a walk is solved with.
+struct Moment {
+  const registration::RegistrationConfig& config;
+  const registration::WalkClocks& clocks;
+  const registration::PairSearch& search;
+  Timestamp now;
+};
+
+/// Searches all pairs on all cores, and then solves the walk with what they gave.
+Registration solve_pairs_first(const std::vector<WalkTrack>& walk, const Moment& moment) {
+  const registration::RegistrationConfig& config = moment.config;
   const auto walkers = walkers_of(walk, config);
   std::vector<Pair> pairs = pairs_of(walkers);
-  on_all_cores(pairs.size(), [&](std::size_t i) {
-    if (job.stop.stop_requested()) return;
+  moment.search.for_each(pairs.size(), [&](std::size_t i) {
+    if (moment.search.stopped()) return;
     pairs[i].edge = registration::register_walkers(*pairs[i].target, *pairs[i].source, config);
   });
   std::map<std::pair<SensorId, SensorId>, const Pair*> solved;
@@ -101,12 +105,25 @@ Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
   const registration::PairEstimator look_up = [&](const Walker& target, const Walker& source) {
     const auto found = solved.find({target.trail.sensor, source.trail.sensor});
     if (found != solved.end() && found->second->edge) return *found->second->edge;
-    if (found == solved.end() && !stopped())
+    if (found == solved.end() && !moment.search.stopped())
       return registration::register_walkers(target, source, config);
     return Result<PairwiseRegistration>(fail(ErrorCode::Unavailable, "registration", "given up"));
   };
-  Registration found = registration::solve_with(registration::unless_open(look_up, clocks), walk,
-                                                now, config, stopped);
+  return registration::solve_with(registration::unless_open(look_up, moment.clocks), walk,
+                                  moment.now, config, moment.search.stopped);
+}
+
+Registration solve_walk(const core::SolveJob& job, Timestamp now) {
+  std::vector<WalkTrack> walk = core::assembled(job.walk);
+  const registration::RegistrationConfig config = registration::suited_to(walk, job.config);
+  const registration::PairSearch search{
+      [&] { return job.stop.stop_requested(); },
+      [](std::size_t count, const auto& work) { on_all_cores(count, work); }};
+  const registration::WalkClocks clocks = registration::clocks_of(walk, config, search);
+  registration::bring_in_step(walk, clocks);
+  const Moment moment{config, clocks, search, now};
+  Registration found = registration::without_latencies(
+      walk, [&] { return solve_pairs_first(walk, moment); }, config, search);
   found.clocks = clocks.offsets;
   return registration::with_scale(std::move(found), walk, config);
 }
@@ -117,7 +134,7 @@ core::Solution solve(const core::SolveJob& job, Timestamp now) {
   core::Solution solution{job.session, job.kind, {}, Duration{0}, false};
   const auto begun = std::chrono::steady_clock::now();
   try {
-    solution.registration = solve_pairs_first(job, now);
+    solution.registration = solve_walk(job, now);
   } catch (const std::exception& thrown) {
     solution.registration.verdict = Verdict::Refused;
     solution.registration.reasons = {std::string("the walk could not be solved: ") + thrown.what()};

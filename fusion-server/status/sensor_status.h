@@ -10,6 +10,7 @@
 #include "common/base/duration.h"
 #include "common/base/strong_id.h"
 #include "common/time/ntp_status.h"
+#include "fusion-server/flow/latency.h"
 
 namespace chorus {
 
@@ -59,11 +60,12 @@ struct SensorStatus {
   /// True if that offset is only a guess from how old its frames arrive: the sensor walked alone,
   /// so no other one told the time.
   bool guessed_from_age = false;
-  std::optional<NtpStatus> host;  ///< What the sensor's host says of its own clock.
-  std::uint64_t frames = 0;       ///< Frames received from it since the start.
-  std::uint64_t missed = 0;       ///< Frames missing from the sensor's numbering: neither delivered
-                                  ///< nor filled in later.
-  std::uint64_t refused = 0;      ///< Frames left out because of their time, see refused() above.
+  std::optional<Latency> latency;  ///< As the last walk told it.
+  std::optional<NtpStatus> host;   ///< What the sensor's host says of its own clock.
+  std::uint64_t frames = 0;        ///< Frames received from it since the start.
+  std::uint64_t missed = 0;   ///< Frames missing from the sensor's numbering: neither delivered
+                              ///< nor filled in later.
+  std::uint64_t refused = 0;  ///< Frames left out because of their time, see refused() above.
   /// What happened to frames with a wrong time; the early, backwards and stale ones are also in
   /// `refused`.
   FrameFates fates;

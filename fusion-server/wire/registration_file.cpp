@@ -31,7 +31,11 @@ constexpr const char* kClockStated = "clockStatedMilliseconds";
 constexpr const char* kClockLeastAge = "clockLeastAgeMilliseconds";
 constexpr double kMillisecond = 1e3;
 constexpr double kMaxClockOffset = 60e3;  // [ms]
-constexpr double kMaxClockAge = 60e3;     // [ms]
+constexpr double kMaxLatency = 1e3;       // [ms]
+constexpr const char* kLatency = "latencyMilliseconds";
+constexpr const char* kLatencyUncertainty = "latencyUncertaintyMilliseconds";
+constexpr const char* kLatencyApplied = "latencyCorrected";
+constexpr double kMaxClockAge = 60e3;  // [ms]
 
 json verdict_json(const SensorVerdict& own) {
   return {{"verdict", name_of(own.verdict)}, {"reasons", own.reasons}};
@@ -159,6 +163,27 @@ Result<void> read_clock(const json& object, const std::string& where, const Sens
   return {};
 }
 
+/// Reads the sensor's latency, which is there if a walk told it.
+Result<void> read_latency(const json& object, const std::string& where, const SensorId& sensor,
+                          Registration& out) {
+  if (!object.contains(kLatency)) return {};
+  const auto found = number(object, where, kLatency, kMaxLatency);
+  const auto sigma = number(object, where, kLatencyUncertainty, kMaxLatency, 0.0);
+  if (!found) return pass(found);
+  if (!sigma) return pass(sigma);
+  const auto applied = object.find(kLatencyApplied);
+  out.latencies[sensor] = {from_seconds(*found / kMillisecond),
+                           from_seconds(std::abs(*sigma) / kMillisecond),
+                           applied != object.end() && *applied == true};
+  return {};
+}
+
+void add_latency(json& object, const Latency& latency) {
+  object[kLatency] = kMillisecond * seconds(latency.found);
+  object[kLatencyUncertainty] = kMillisecond * seconds(latency.sigma);
+  object[kLatencyApplied] = latency.applied;
+}
+
 void add_clock(json& object, const ClockOffset& clock) {
   object[kClockOffset] = kMillisecond * seconds(clock.added);
   object[kClockUncertainty] = kMillisecond * seconds(clock.sigma);
@@ -228,6 +253,7 @@ Result<void> read_sensors(const json& root, Registration& out) {
     if (!place) return pass(place);
     if (place->chain.empty()) place->chain = {*id};
     if (auto ok = read_clock(object, "sensors." + name, *id, out); !ok) return ok;
+    if (auto ok = read_latency(object, "sensors." + name, *id, out); !ok) return ok;
     out.sensors.emplace(std::move(*id), std::move(*place));
   }
   return {};
@@ -341,6 +367,9 @@ std::string write_registration(const Registration& registration) {
   }
   for (const auto& [id, clock] : registration.clocks) {
     if (sensors.contains(id.str())) add_clock(sensors[id.str()], clock);
+  }
+  for (const auto& [id, latency] : registration.latencies) {
+    if (sensors.contains(id.str())) add_latency(sensors[id.str()], latency);
   }
   json anchors = json::object();
   for (const auto& [id, pose] : registration.anchors) anchors[id.str()] = pose_json(pose);

@@ -79,6 +79,20 @@ void add_clock(Node& node, const Registration& registration, const SensorId& id)
   put("clockUncertaintyMilliseconds", clock->second.sigma);
 }
 
+/// Adds the sensor's latency relative to the others, if the walk told it.
+void add_latency(Node& node, const Registration& registration, const SensorId& id) {
+  const auto latency = registration.latencies.find(id);
+  if (latency == registration.latencies.end()) return;
+  constexpr int kDigits = 3;
+  constexpr double kPerSecond = 1e3;
+  const auto put = [&](const char* key, Duration value) {
+    node.properties.emplace_back(key, Decimal{kPerSecond * seconds(value), kDigits});
+  };
+  put("latencyMilliseconds", latency->second.found);
+  put("latencyUncertaintyMilliseconds", latency->second.sigma);
+  node.properties.emplace_back("latencyCorrected", latency->second.applied);
+}
+
 Node edge_node(const PairwiseRegistration& edge) {
   constexpr int kDigits = 4;
   Node node{"_",
@@ -323,6 +337,7 @@ Node registration_node(const Registration& registration, const RegistrationProgr
     if (std::ranges::find(progress.unpolled, id) != progress.unpolled.end())
       sensors.back().properties.emplace_back("polled", false);
     add_clock(sensors.back(), registration, id);
+    add_latency(sensors.back(), registration, id);
     const auto own = registration.verdicts.find(id);
     add_verdict(sensors.back(), own != registration.verdicts.end()
                                     ? own->second

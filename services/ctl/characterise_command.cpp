@@ -111,11 +111,8 @@ Tracks in_step(const Tracks& tracks, const Registration& registration) {
   for (const auto& [sensor, frames] : tracks) {
     if (!registration.sensors.contains(sensor)) continue;
     auto& own = placed[sensor] = frames;
-    const auto clock = registration.clocks.find(sensor);
-    if (clock == registration.clocks.end()) continue;
-    for (SensorFrame& frame : own) {
-      if (holds_for(clock->second, frame.clock_sigma)) move_in_time(frame, clock->second.added);
-    }
+    for (SensorFrame& frame : own)
+      move_in_time(frame, walked_correction(registration, sensor, frame.clock_sigma));
   }
   return placed;
 }

@@ -85,6 +85,26 @@ std::string clocks_shown(const nlohmann::json& registration) {
   return text;
 }
 
+/// A line such as "s3: latency 42 ms +- 4 relative to the others, taken off" for each sensor whose
+/// latency is corrected, and one about those of which the walk told next to nothing.
+std::string latencies_shown(const nlohmann::json& registration) {
+  constexpr double kOpen = 20.0;  // [ms] 1 sigma
+  std::string text;
+  std::vector<std::string> open;
+  for (const auto& [name, sensor] : client::part_at(registration, "sensors").items()) {
+    const double latency = client::number_at(sensor, "latencyMilliseconds");
+    const double sigma = client::number_at(sensor, "latencyUncertaintyMilliseconds");
+    const auto corrected = sensor.find("latencyCorrected");
+    if (corrected != sensor.end() && *corrected == true)
+      text += fmt::format("  {}: latency {:.0f} ms +- {:.0f} relative to the others, taken off\n",
+                          printable(name), latency, std::ceil(kSigmas95 * sigma));
+    if (sigma > kOpen) open.push_back(printable(name));
+  }
+  if (open.empty()) return text;
+  return text + fmt::format("  the walk does not tell the latency of {}: left at zero\n",
+                            fmt::join(open, ", "));
+}
+
 }  // namespace
 
 std::string registration_report(const nlohmann::json& registration) {
@@ -97,7 +117,8 @@ std::string registration_report(const nlohmann::json& registration) {
     text += "  ALARM: " + alarm + "\n";
   for (const std::string& reason : lines_at(registration, "reasons")) text += "  " + reason + "\n";
   for (const std::string& next : lines_at(registration, "awaits")) text += "  next: " + next + "\n";
-  text += clocks_shown(registration) + worst_loop_shown(registration);
+  text +=
+      clocks_shown(registration) + latencies_shown(registration) + worst_loop_shown(registration);
   const std::string problem = client::text_at(registration, "storeProblem", "");
   const auto stored = registration.find("stored");
   const bool kept = stored != registration.end() && *stored == true;

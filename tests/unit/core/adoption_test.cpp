@@ -101,6 +101,23 @@ TEST(Extending, TakesTheNewcomersClockByOurCommonClock) {
   EXPECT_FALSE(known->clocks.contains(named("s2")));
 }
 
+/// s2, which has a place, is corrected by 40 ms now and by 10 in the candidate: what the candidate
+/// calls zero is 30 ms later than what we do.
+TEST(Extending, TakesTheNewcomersLatencyAsTheOthersAreCorrectedNow) {
+  using std::chrono::milliseconds;
+  Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
+  current.latencies[named("s2")] = {milliseconds(40), milliseconds(2), true};
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3, 4});
+  candidate.latencies[named("s2")] = {milliseconds(10), milliseconds(2), true};
+  candidate.latencies[named("s4")] = {milliseconds(20), milliseconds(3), true};
+  const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
+  ASSERT_TRUE(wider) << wider.error().message;
+  EXPECT_EQ(wider->latencies.at(named("s2")).found, milliseconds(40)) << "held";
+  EXPECT_EQ(wider->latencies.at(named("s4")).found, milliseconds(50));
+  EXPECT_TRUE(wider->latencies.at(named("s4")).applied);
+  EXPECT_FALSE(without(*wider, named("s4"), "gone").latencies.contains(named("s4")));
+}
+
 TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
   const Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
   const Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3, 4}, elsewhere());

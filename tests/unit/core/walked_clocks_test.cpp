@@ -65,6 +65,21 @@ TEST(WalkedClocks, WithoutTheRegistrationEverythingIsAsBefore) {
   EXPECT_FALSE(clocks.of(sensor_id("s2")));
 }
 
+TEST(WalkedClocks, LatenciesAreTakenOffWhateverTheClock) {
+  Registration registration = walked();
+  registration.latencies[sensor_id("s2")] = {milliseconds(40), milliseconds(2), true};
+  WalkedClocks clocks;
+  EXPECT_EQ(clocks.take(frame_at(Duration{0}, kOff), registration), kOff - milliseconds(40));
+  EXPECT_EQ(clocks.added_to(sensor_id("s2")), kOff - milliseconds(40));
+  EXPECT_EQ(added(clocks), kOff) << "the clock's own part";
+  SensorFrame exact = frame_at(kFrame, Duration{0});
+  exact.clock_sigma = 1e-4;
+  EXPECT_EQ(clocks.take(exact, registration), -kOff) << "the clock is known now";
+  registration.latencies.at(sensor_id("s2")).applied = false;
+  EXPECT_EQ(clocks.take(exact, registration), milliseconds(40)) << "only told";
+  EXPECT_EQ(clocks.added_to(sensor_id("s2")), Duration{0});
+}
+
 TEST(WalkedClocks, AHostThatBeginsToAnswerWithItsTimeIsBelievedInstead) {
   WalkedClocks clocks;
   (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);

@@ -193,6 +193,24 @@ TEST(RegistrationReport, TellsClocksThatDifferByMoreThanIsOpen) {
       << "nobody to compare with";
 }
 
+TEST(RegistrationReport, TellsLatenciesThatAreTakenOffAndThoseThatTheWalkLeavesOpen) {
+  const auto latency = [](double found, double sigma, bool corrected) {
+    return Json{{"latencyMilliseconds", found},
+                {"latencyUncertaintyMilliseconds", sigma},
+                {"latencyCorrected", corrected}};
+  };
+  const Json sensors{{"s1", latency(0.0, 0.0, false)},
+                     {"s2", latency(42.1, 2.0, true)},
+                     {"s3", latency(3.0, 2.0, false)},
+                     {"s4", latency(30.0, 25.0, false)},
+                     {"s5", Json::object()}};
+  const std::string text = registration_report({{"sensors", sensors}});
+  EXPECT_THAT(text, HasSubstr("  s2: latency 42 ms +- 4 relative to the others, taken off\n"));
+  EXPECT_THAT(text, HasSubstr("  the walk does not tell the latency of s4: left at zero\n"));
+  for (const char* sensor : {"s1", "s3", "s5"})
+    EXPECT_THAT(text, Not(HasSubstr(std::string(sensor) + ": latency")));
+}
+
 TEST(RegistrationReport, SaysWhetherItIsKept) {
   const auto told = [](bool stored) {
     return registration_report({{"stored", stored}, {"storeProblem", "the disk is full"}});

@@ -145,6 +145,25 @@ TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
   EXPECT_LT(error(*fused), error(*right) + mm(10));
 }
 
+TEST(FuseOffline, LatenciesThatTheWalkToldAreTakenOff) {
+  auto tracks = walk({.noise = 0.005});
+  const auto right = fuse_offline(tracks, std::nullopt, {});
+  for (SensorFrame& frame : tracks[1].frames) move_in_time(frame, std::chrono::milliseconds(60));
+  OfflineConfig off;
+  off.registration.latency_sigma = Duration{0};
+  const auto late = fuse_offline(tracks, std::nullopt, off);
+  const auto fused = fuse_offline(tracks, std::nullopt, {});
+  ASSERT_TRUE(right && late && fused);
+  const auto error = [](const OfflineResult& result) {
+    const int master = std::stoi(result.registration.master.str().substr(1));
+    const auto& place = result.registration.sensors.at(result.registration.master);
+    return mean_error(result.snapshots, true_place(master) * place.world_from_sensor.inverse());
+  };
+  EXPECT_TRUE(fused->registration.latencies.at(tracks[1].sensor).applied);
+  EXPECT_LT(error(*fused), error(*right) + mm(2));
+  EXPECT_GT(error(*late), error(*right) + mm(4)) << "else there was nothing to take off";
+}
+
 /// Frames without bodies need memory, too, so a recording whose capture times stand still is given
 /// up.
 TEST(FuseOffline, ARecordingOfEmptyFramesThatStandsStillIsRefused) {

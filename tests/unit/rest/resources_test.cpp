@@ -75,6 +75,13 @@ TEST(SensorResources, TellsOfTheClockByWhomAndWhatBecameOfUntimelyFrames) {
         "\"framesEarly\": 3", "\"framesBackwards\": 4", "\"framesStale\": 5",
         "\"clockRestarts\": 6"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  EXPECT_EQ(text.find("latency"), std::string::npos) << "no walk told it";
+  s.latency = Latency{std::chrono::milliseconds(42), std::chrono::milliseconds(2), true};
+  sensors.publish({s});
+  const auto late = body(ask(router, "/sensors/s1"), "application/json");
+  for (const char* part : {"\"latencyMilliseconds\": 42", "\"latencyUncertaintyMilliseconds\": 2",
+                           "\"latencyCorrected\": true"})
+    EXPECT_NE(late.find(part), std::string::npos) << part << "\n" << late;
   s.guessed_from_age = true;
   EXPECT_EQ(resource::undeclared_terms(sensor_node(s, "s1")), std::vector<std::string>{});
   sensors.publish({s});

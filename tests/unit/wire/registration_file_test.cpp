@@ -42,6 +42,9 @@ Registration example() {
   r.clocks[sensor_id("s2")] = {};
   r.anchors = {
       {sensor_id("gone"), Eigen::Isometry3d(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()))}};
+  r.latencies[sensor_id("s2")] = {std::chrono::milliseconds(42), std::chrono::milliseconds(2),
+                                  true};
+  r.latencies[sensor_id("s3")] = {std::chrono::milliseconds(-1), std::chrono::milliseconds(3)};
   r.edges.back().apart = 0.012;
   r.edges.back().loop_turn = 0.003;
   r.sensors.at(sensor_id("s3")).next_chain = {sensor_id("s2"), sensor_id("s1"), sensor_id("s3")};
@@ -74,6 +77,7 @@ TEST(RegistrationFile, ReadsWhatItWrites) {
   EXPECT_FALSE(read->clocks.at(sensor_id("s2")).least_age);
   EXPECT_EQ(read->anchors.at(sensor_id("gone")).matrix(),
             written.anchors.at(sensor_id("gone")).matrix());
+  EXPECT_EQ(read->latencies, written.latencies);
   EXPECT_EQ(read->edges.at(0).apart, 0.012);
   EXPECT_NEAR(*read->edges.at(0).loop_turn, 0.003, 1e-12);
   EXPECT_FALSE(read->edges.at(0).loop);
@@ -104,6 +108,7 @@ TEST(RegistrationFile, ReadsASavedAnswerOfTheService) {
   const auto text = write(registration_node(example(), {}), resource::Format::Json);
   const auto read = read_registration(text);
   ASSERT_TRUE(read) << to_string(read.error()) << text;
+  EXPECT_EQ(read->latencies, example().latencies);
   for (const auto& [id, place] : example().sensors) {
     EXPECT_TRUE(read->sensors.at(id).world_from_sensor.isApprox(place.world_from_sensor, 1e-4));
     EXPECT_TRUE(read->sensors.at(id).covariance.isApprox(place.covariance, 1e-4))
