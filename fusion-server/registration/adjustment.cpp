@@ -296,11 +296,10 @@ bool near(const Places& start, const Places& end, double along_ratio) {
   });
 }
 
-/// Trusts sights from the side less; aims the depth bias at the fused points.  Along the measured
-/// lines it would take part of the noise across them for its own, which a smaller bias scales down.
+/// Directs the depth bias along the lines to the fused points.  Along the measured lines it would
+/// take part of the noise across them for its own: a smaller bias scales this noise down.
 void aim(Adjustment& adjustment) {
   const std::vector<FusedPoint> all = adjustment.fuse_all(true);
-  widen_sides(adjustment.points, all, adjustment.stations);
   for (std::size_t k = 0; k < all.size(); ++k) {
     WalkPoint& point = adjustment.points[k];
     for (PointMeasurement& measured : point.seen) {

@@ -17,10 +17,6 @@ constexpr Duration kFrame = std::chrono::milliseconds(33);
 constexpr double kAside = 0.3;
 // A point that moves less than this has no direction [m].
 constexpr double kLeastWay = 0.06;
-// Joints of a body seen from the side are hidden more often, and its yaw is misjudged: its sights
-// have 1 + this times the variance of those from the front; see docs/decisions/0116.
-constexpr double kSide = 3.0;
-constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 // Two points of a slot that are farther apart than this are not successive [s].
 constexpr double kSuccessive = 0.5;
 // The largest correlation of successive errors.
@@ -31,7 +27,7 @@ void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
                  const std::vector<Station>& stations, std::span<const Slot> slots, double time,
                  std::vector<WalkPoint>& points) {
   for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    WalkPoint point{time, slot, {}, {}, slots[slot].sigma};
+    WalkPoint point{time, slot, {}, {}};
     for (std::size_t i = 0; i < stations.size(); ++i) {
       if (!moments[i] || !moments[i]->frame.has(slot)) continue;
       const Eigen::Vector3d& x = moments[i]->frame.points[slot];
@@ -73,15 +69,6 @@ std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::si
   std::vector<Timestamp> instants;
   for (std::size_t i = 0; i < all.size(); i += step) instants.push_back(all[i]);
   return instants;
-}
-
-/// sin^2 of the angle on the floor between the view and the way; the mean where either has no
-/// direction.
-double side_on(const Eigen::Vector3d& view, const std::optional<Eigen::Vector3d>& way) {
-  const double length = std::hypot(view.x(), view.z());
-  if (!way || length < kLevelView) return 0.5;
-  const double across = (view.z() * way->x() - view.x() * way->z()) / (length * way->norm());
-  return across * across;
 }
 
 /// For each point the one of the same slot before it, if it was seen shortly before; else itself.
@@ -126,20 +113,6 @@ std::vector<WalkPoint> points_of(const std::vector<Station>& stations,
     add_instant(moments, stations, slots, seconds(instant - instants.front()), points);
   }
   return points;
-}
-
-void widen_sides(std::vector<WalkPoint>& points, const std::vector<FusedPoint>& fused,
-                 const std::vector<Station>& stations) {
-  std::vector<Eigen::Vector3d> places;
-  for (const FusedPoint& each : fused) places.push_back(each.x);
-  const auto ways = ways_of(points, places);
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    for (PointMeasurement& measured : points[k].seen) {
-      const Eigen::Matrix3d turn = stations[measured.sensor].world_from_level.linear();
-      const double side = side_on(turn * measured.ray, ways[k]);
-      measured.sigma = points[k].sigma * std::sqrt(1.0 + kSide * side);
-    }
-  }
 }
 
 double memory_of(const std::vector<WalkPoint>& points, const std::vector<FusedPoint>& fused,

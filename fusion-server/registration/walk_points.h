@@ -30,20 +30,12 @@ struct WalkPoint {
   std::size_t slot = 0;  ///< Index into slots_of().
   PointMeasurements seen;
   PointMeasurements counted;  ///< What the adjustment counts: as seen, or whitened.
-  double sigma = 0.0;         ///< Of a sight of a body that faces the sensor, or away from it [m].
 };
 
 /// The points in order of time.  They are thinned out, but less so with many sensors, so that no
 /// overlap is missed.
 [[nodiscard]] std::vector<WalkPoint> points_of(const std::vector<Station>& stations,
                                                const RegistrationConfig& config);
-
-/// Trusts sights from the side less: sigma^2 becomes (1 + 3 sin^2 phi) times what it is from the
-/// front and from behind, where phi is the angle between the way in which the point moves and the
-/// line of sight, on the floor; the mean where it hardly moves.  `fused`: the points as seen.  Sets
-/// the sigma of `seen` alone.  docs/papers/registration.md, Section 8.
-void widen_sides(std::vector<WalkPoint>& points, const std::vector<FusedPoint>& fused,
-                 const std::vector<Station>& stations);
 
 /// How long the errors of the sights last: tau of the correlation exp(-lag / tau) of the residuals
 /// of successive points of a slot [s]; zero if they are independent.  `fused`: the points as seen;

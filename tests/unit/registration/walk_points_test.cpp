@@ -1,6 +1,5 @@
 #include "fusion-server/registration/walk_points.h"
 
-#include <array>
 #include <cmath>
 #include <random>
 
@@ -103,46 +102,6 @@ TEST(Whiten, WithoutMemoryChangesNothing) {
   std::vector<WalkPoint> points = points_with(0.0);
   whiten(points, 0.0);
   EXPECT_EQ(points[1].counted[0].lever, 1.0);
-}
-
-/// A point that goes along `way`, one step at each instant, 3 m in front of one sensor and to the
-/// side of another, which looks along x.
-std::vector<WalkPoint> passing(const Eigen::Vector3d& way) {
-  std::vector<WalkPoint> points;
-  for (int k = 0; k < 40; ++k) {
-    WalkPoint point{kLag * k, 0, {}, {}, mm(10)};
-    const Eigen::Vector3d x = 0.05 * (k - 20) * way;
-    for (std::size_t i = 0; i < 2; ++i)
-      point.seen.push_back({i, x + Eigen::Vector3d(0, 0, 3), Eigen::Vector3d::UnitZ(), mm(10)});
-    points.push_back(std::move(point));
-  }
-  return points;
-}
-
-/// Of both sensors, in the middle of the way, in units of that from the front.
-std::array<double, 2> widened(const Eigen::Vector3d& way) {
-  std::vector<WalkPoint> points = passing(way);
-  std::vector<Station> stations(2);
-  stations[1].world_from_level.linear() =
-      Eigen::AngleAxisd(deg(90), Eigen::Vector3d::UnitY()).toRotationMatrix();
-  std::vector<FusedPoint> fused(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) fused[k].x = points[k].seen[0].x;
-  for (int twice = 0; twice < 2; ++twice) widen_sides(points, fused, stations);
-  return {points[20].seen[0].sigma / mm(10), points[20].seen[1].sigma / mm(10)};
-}
-
-TEST(WidenSides, ASightFromTheSideHasTwiceTheError) {
-  EXPECT_NEAR(widened(Eigen::Vector3d::UnitZ())[0], 1.0, 1e-9);   // walks away from the first
-  EXPECT_NEAR(widened(Eigen::Vector3d::UnitZ())[1], 2.0, 1e-9);   // passes the second
-  EXPECT_NEAR(widened(-Eigen::Vector3d::UnitZ())[0], 1.0, 1e-9);  // comes
-  EXPECT_NEAR(widened(Eigen::Vector3d::UnitX())[0], 2.0, 1e-9);
-  EXPECT_NEAR(widened(Eigen::Vector3d::UnitX())[1], 1.0, 1e-9);
-  EXPECT_NEAR(widened(Eigen::Vector3d(1, 0, 1))[0], std::sqrt(2.5), 1e-9);
-}
-
-TEST(WidenSides, ABodyThatStandsHasTheMeanOfAllSides) {
-  for (const double sigma : widened(Eigen::Vector3d::Zero()))
-    EXPECT_NEAR(sigma, std::sqrt(2.5), 1e-9);
 }
 
 }  // namespace
