@@ -52,7 +52,8 @@ std::vector<Step> Smoother::take(Perception now, const PipelineConfig& config) {
   if (instant <= newest_) *this = Smoother();  // the clock was set back
   newest_ = instant;
   waiting_.push_back(std::move(now));
-  while (instant - waiting_.front().in.instant >= config.smoothing.sides) fuse_oldest(config);
+  while (!waiting_.empty() && instant - waiting_.front().in.instant >= config.smoothing.sides)
+    fuse_oldest(config);
   std::vector<Step> done;
   while (!fused_.empty() && fused_.back().snapshot.instant - fused_.front().snapshot.instant >=
                                 config.smoothing.bodies)
