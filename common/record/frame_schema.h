@@ -29,6 +29,7 @@ inline constexpr std::string_view kFrameSchema = R"({
         "bodyId": {"description": "integer; beyond 2^53 its digits as a string"},
         "sidesConfidence": {"type": "number", "minimum": 0, "maximum": 1, "description": "probability that left and right are not exchanged"},
         "carriedFor": {"type": "number", "minimum": 0, "description": "for how long no sensor has seen the person, who is where they are expected [s]; absent: seen"},
+        "smoothedOver": {"type": "number", "minimum": 0, "description": "for how long after the instant what sensors saw was taken into account [s]; absent: what was known at the instant"},
         "slot": {"type": "integer", "minimum": 0, "description": "the person's number in every output of the tracker"},
         "captured": {"type": "string"},
         "capturedNanoseconds": {"type": "string"},

@@ -83,6 +83,10 @@ class ArvidaFrame {
       pen_.put(" ;\n  ch:carriedFor ");
       pen_.put_decimal<kTimeDecimals>(writable_time(*body.carried_for));
     }
+    if (body.smoothed_over) {
+      pen_.put(" ;\n  ch:smoothedOver ");
+      pen_.put_decimal<kTimeDecimals>(writable_time(*body.smoothed_over));
+    }
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);

@@ -161,6 +161,11 @@ Result<JointResource> read_joint(const SubjectFacts& facts, const Sensors& senso
   return joint;
 }
 
+/// True if the number is given and is no time that a body may state.
+bool no_time(const std::optional<double>& value) {
+  return value && !(*value >= 0.0 && *value <= kLongestCarry);
+}
+
 Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
                                const Sensors& sensors) {
   BodyResource body;
@@ -175,9 +180,11 @@ Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
     return refuse(subject, "sidesConfidence", "is not between 0 and 1");
   }
   body.carried_for = number(subject, Number::CarriedFor);
-  if (body.carried_for && !(*body.carried_for >= 0.0 && *body.carried_for <= kLongestCarry)) {
+  if (no_time(body.carried_for))
     return refuse(subject, "carriedFor", "is not between 0 and 3600 s");
-  }
+  body.smoothed_over = number(subject, Number::SmoothedOver);
+  if (no_time(body.smoothed_over))
+    return refuse(subject, "smoothedOver", "is not between 0 and 3600 s");
   const auto captured = time_of(subject);
   if (!captured) return pass(captured);
   body.captured = *captured;

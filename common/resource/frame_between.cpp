@@ -66,6 +66,7 @@ FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp 
     mixed.slot = body.slot;
     mixed.sides_confidence = body.sides_confidence;
     mixed.carried_for = body.carried_for;
+    if (later->smoothed_over) mixed.smoothed_over = body.smoothed_over;
     for (std::size_t j = 0; j < kJointCount; ++j) {
       mixed.joints[j] = joint_between(body.joints[j], later->joints[j], {after, span - after});
     }

@@ -37,11 +37,30 @@ enum class Number : std::uint8_t {
   Czz,
   Age,
   SidesConfidence,
-  CarriedFor
+  CarriedFor,
+  SmoothedOver
 };
-inline constexpr std::array<std::string_view, 20> kNumberNames{
-    "x",   "y",   "z",   "qx",  "qy",  "qz",  "qw",  "variance",        "rayX",      "rayY", "rayZ",
-    "cxx", "cxy", "cxz", "cyy", "cyz", "czz", "age", "sidesConfidence", "carriedFor"};
+inline constexpr std::array<std::string_view, 21> kNumberNames{"x",
+                                                               "y",
+                                                               "z",
+                                                               "qx",
+                                                               "qy",
+                                                               "qz",
+                                                               "qw",
+                                                               "variance",
+                                                               "rayX",
+                                                               "rayY",
+                                                               "rayZ",
+                                                               "cxx",
+                                                               "cxy",
+                                                               "cxz",
+                                                               "cyy",
+                                                               "cyz",
+                                                               "czz",
+                                                               "age",
+                                                               "sidesConfidence",
+                                                               "carriedFor",
+                                                               "smoothedOver"};
 
 /// How far the length of a quaternion may be from 1; all zero is allowed too and means "not given".
 inline constexpr double kUnitTolerance = 0.1;

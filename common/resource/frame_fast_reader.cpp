@@ -96,6 +96,7 @@ class Template : TemplateText {
     if (text(" ;\n  ch:slot ") && !slot(frame_.bodies, body.slot)) return false;
     if (text(" ;\n  ch:sidesConfidence ") && !confidence(body.sides_confidence)) return false;
     if (text(" ;\n  ch:carriedFor ") && !duration(body.carried_for)) return false;
+    if (text(" ;\n  ch:smoothedOver ") && !duration(body.smoothed_over)) return false;
     if (!captured(body.captured) || !text(" ;\n  ch:joint ")) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
       if (!text(i == 0 ? "<" : ", <") || !text(iri) || !text(kTurtleLinks[i])) return false;

@@ -102,6 +102,10 @@ class JsonFrame {
       pen_.put(",\"carriedFor\":");
       put_value<kTimeDecimals>(writable_time(*body.carried_for));
     }
+    if (body.smoothed_over) {
+      pen_.put(",\"smoothedOver\":");
+      put_value<kTimeDecimals>(writable_time(*body.smoothed_over));
+    }
     put_times(body.captured);
   }
 

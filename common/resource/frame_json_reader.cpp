@@ -71,7 +71,8 @@ class Reading {
       const std::size_t body = add_subject(object, "a body");
       facts_[frame].bodies.push_back(body);
       read_common(body, object);
-      for (const Number each : {Number::SidesConfidence, Number::CarriedFor}) {
+      for (const Number each :
+           {Number::SidesConfidence, Number::CarriedFor, Number::SmoothedOver}) {
         const auto i = static_cast<std::size_t>(each);
         number(body, object, kNumberNames[i], facts_[body].numbers[i]);
       }

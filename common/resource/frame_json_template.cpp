@@ -71,6 +71,7 @@ class JsonTemplate : TemplateText {
     if (text(",\"slot\":") && !slot(frame_.bodies, body.slot)) return false;
     if (text(",\"sidesConfidence\":") && !confidence(body.sides_confidence)) return false;
     if (text(",\"carriedFor\":") && !duration(body.carried_for)) return false;
+    if (text(",\"smoothedOver\":") && !duration(body.smoothed_over)) return false;
     const auto twin = std::ranges::find(frame_.bodies, id, &BodyResource::id);
     if (&*twin != &body || !captured(body.captured)) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {

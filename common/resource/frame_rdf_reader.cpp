@@ -76,6 +76,7 @@ constexpr std::array kRows{
     Row{"shares", Property::Shares},
     Row{"sidesConfidence", Property::Number, Number::SidesConfidence},
     Row{"slot", Property::Slot},
+    Row{"smoothedOver", Property::Number, Number::SmoothedOver},
     Row{"source", Property::Source},
     Row{"space", Property::Space},
     Row{"state", Property::State},

@@ -40,6 +40,9 @@ struct BodyResource {
   /// Fused: for how long no sensor has seen the person [s]; meanwhile the joints are where they are
   /// expected.  None while the person is seen.
   std::optional<double> carried_for;
+  /// Fused: for how long after the instant what sensors saw was taken into account [s].  None: the
+  /// body is what was known at the instant.
+  std::optional<double> smoothed_over;
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };

@@ -105,6 +105,10 @@ class TurtleFrame {
       pen_.put(" ;\n  ch:carriedFor ");
       pen_.put_decimal<kTimeDecimals>(writable_time(*body.carried_for));
     }
+    if (body.smoothed_over) {
+      pen_.put(" ;\n  ch:smoothedOver ");
+      pen_.put_decimal<kTimeDecimals>(writable_time(*body.smoothed_over));
+    }
     put_times(body.captured);
   }
 

@@ -122,7 +122,11 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
 /// gradually from the old to the new positions.
 pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   const pipeline::Inputs in{tick.instant, now, tick.sequence};
-  pipeline::Step step = pipeline::step(in, histories_, registration(), memory_, config_.pipeline);
+  auto seen = pipeline::perceive(in, histories_, registration(), memory_, config_.pipeline);
+  smooth(in, seen);
+  pipeline::Step step =
+      pipeline::fuse(std::move(seen), in, pipeline::taking_part(registration(), config_.pipeline),
+                     config_.pipeline);
   if (before_) {
     auto was = pipeline::step(in, histories_, *before_, memory_, config_.pipeline).snapshot;
     fade_.apply(was.bodies, tick.instant);
@@ -131,6 +135,16 @@ pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   }
   fade_.apply(step.snapshot.bodies, tick.instant);
   return step;
+}
+
+void FusionCore::smooth(const pipeline::Inputs& in, const pipeline::Perceived& seen) {
+  const pipeline::PipelineConfig& config = config_.pipeline;
+  if (!config.smoothing.live) return;
+  auto now = pipeline::perception_of(in, pipeline::taking_part(registration(), config), seen);
+  for (pipeline::Step& step : smoother_.take(std::move(now), config)) {
+    fade_.apply(step.snapshot.bodies, step.snapshot.instant);
+    smoothed_.push_back(std::move(step.snapshot));
+  }
 }
 
 /// A sensor that was moved has no place from the next instant on, until it is registered again.  If
@@ -149,6 +163,7 @@ void FusionCore::displace_moved(Timestamp instant) {
   displaced_at_[*moved] = instant;
   before_ = std::move(before);
   hindsight_.forget();
+  smoother_ = {};
   awaited_by_ = 0;
   ++displaced_;
 }
@@ -161,8 +176,12 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
     return std::nullopt;
   }
   const Tick& tick = answered->tick;
-  pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
-                                       registration(), answered->before, config_.pipeline);
+  const pipeline::Inputs in{tick.instant, now, tick.sequence};
+  const pipeline::PipelineConfig& config = config_.pipeline;
+  auto seen = pipeline::perceive(in, histories_, registration(), answered->before, config);
+  const auto sensors = pipeline::taking_part(registration(), config);
+  if (config.smoothing.live) smoother_.amend(pipeline::perception_of(in, sensors, seen));
+  pipeline::Step step = pipeline::fuse(std::move(seen), in, sensors, config);
   shares_.settled(parts_of(step.snapshot));
   fade_.apply(step.snapshot.bodies, tick.instant);
   return std::move(step.snapshot);
@@ -221,6 +240,7 @@ Result<void> FusionCore::undo() {
     return done;
   }
   hindsight_.forget();
+  smoother_ = {};
   if (!before.sensors.empty()) before_ = std::move(before);
   return done;
 }
@@ -241,6 +261,7 @@ void FusionCore::note_places(const Registration& before) {
 /// After a change of places in the same world.
 void FusionCore::take_over(Registration before) {
   hindsight_.forget();  // all earlier answers were given by other places
+  smoother_ = {};
   note_places(before);
   if (!before.sensors.empty()) before_ = std::move(before);
 }
@@ -251,6 +272,7 @@ void FusionCore::leave_world() {
   memory_.sides.people.clear();   // what was learned about each sensor stays
   memory_.seating = {};           // nobody left: whoever is here gets the low slots again
   hindsight_.forget();
+  smoother_ = {};
   before_.reset();
   fade_.stop();
 }

@@ -22,6 +22,7 @@
 #include "fusion-server/flow/registration.h"
 #include "fusion-server/flow/snapshot.h"
 #include "fusion-server/pipeline/pipeline.h"
+#include "fusion-server/pipeline/smoother.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/sensor_status.h"
 #include "fusion-server/status/session_status.h"
@@ -40,6 +41,9 @@ class FusionCore {
   /// An earlier snapshot fused again with frames that came too late for it; people keep their ids.
   /// Call it after each tick; usually there is none.
   [[nodiscard]] std::optional<Snapshot> amended(Timestamp now);
+  /// Snapshots of seconds ago, fused again with what has been seen since (pipeline/smoother.h),
+  /// each once; none unless SmoothingConfig::live.  Call it after each tick.
+  [[nodiscard]] std::vector<Snapshot> smoothed() { return std::exchange(smoothed_, {}); }
   /// For how long nothing will be due unless a frame arrives.
   [[nodiscard]] Duration idle(Timestamp now);
 
@@ -99,6 +103,7 @@ class FusionCore {
   [[nodiscard]] bool is_stray(const SensorId& sensor) const;
   void take_over(Registration before);
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
+  void smooth(const pipeline::Inputs& in, const pipeline::Perceived& seen);
   void displace_moved(Timestamp instant);
   [[nodiscard]] SensorFrame in_step(SensorFrame frame);
   void sift(SensorFrame& frame);
@@ -108,6 +113,8 @@ class FusionCore {
   TickSchedule schedule_;
   pipeline::Histories histories_;
   pipeline::Memory memory_;
+  pipeline::Smoother smoother_;
+  std::vector<Snapshot> smoothed_;
   Registrar registrar_;
   WalkedClocks clocks_;
   Fates fates_;

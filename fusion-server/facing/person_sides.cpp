@@ -43,10 +43,19 @@ void PersonFilter::mix(std::size_t bit, double set, double cleared) {
 }
 
 void PersonFilter::predict(double elapsed, bool blind, const PersonPrior& prior) {
-  const double slipped = 0.5 * (1.0 - std::exp(-2.0 * (blind ? prior.lost : prior.slip) * elapsed));
-  mix(kWrong, slipped, slipped);
+  step_ = SidesStep{};
+  step_.first = !begun_;
+  begun_ = true;
+  slip(0.5 * (1.0 - std::exp(-2.0 * (blind ? prior.lost : prior.slip) * elapsed)));
   const double way = changed(elapsed, prior.backwards);
-  mix(kBackwards, way * prior.backwards.share, way * (1.0 - prior.backwards.share));
+  step_.begins = way * prior.backwards.share;
+  step_.ends = way * (1.0 - prior.backwards.share);
+  mix(kBackwards, step_.begins, step_.ends);
+}
+
+void PersonFilter::slip(double probability) {
+  mix(kWrong, probability, probability);
+  step_.slipped += probability - 2.0 * step_.slipped * probability;
 }
 
 void PersonFilter::update(const Evidence& evidence) {
@@ -54,8 +63,9 @@ void PersonFilter::update(const Evidence& evidence) {
   for (std::size_t state = 0; state < weight_.size(); ++state) {
     const double sign = (state & kWrong) != 0 ? -1.0 : 1.0;
     const double way = (state & kBackwards) != 0 ? -sign : sign;
-    weight_[state] *=
+    step_.likelihood[state] =
         std::pow(likelihood(way * evidence.walking), evidence.share) * std::exp(0.5 * sign * news);
+    weight_[state] *= step_.likelihood[state];
   }
   normalise();
 }
@@ -63,6 +73,13 @@ void PersonFilter::update(const Evidence& evidence) {
 void PersonFilter::turn_round() {
   for (std::size_t state = 0; state < weight_.size(); state += 2)
     std::swap(weight_[state], weight_[state + 1]);
+  step_.turned_round = !step_.turned_round;
+}
+
+SidesStep PersonFilter::step() const {
+  SidesStep step = step_;
+  step.weights = weight_;
+  return step;
 }
 
 void PersonFilter::normalise() {

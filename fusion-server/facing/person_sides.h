@@ -45,6 +45,20 @@ struct PersonPrior {
   bool operator==(const PersonPrior&) const = default;
 };
 
+/// What one instant did to the filter, for later_sides.h.  Bit 0 of a state is "the held sides are
+/// wrong", bit 1 is "walks backwards".
+struct SidesStep {
+  using Weights = std::array<double, 4>;
+
+  Weights weights{};     ///< Of the states afterwards.
+  bool first = true;     ///< Nothing was known of the person before.
+  double slipped = 0.0;  ///< Chance that the held sides became wrong, or right again.
+  double begins = 0.0;   ///< Chance that who walked forwards walks backwards now.
+  double ends = 0.0;     ///< Chance that who walked backwards walks forwards now.
+  Weights likelihood{1.0, 1.0, 1.0, 1.0};  ///< Of the evidence, given each state; any scale.
+  bool turned_round = false;  ///< Then the held sides were turned round, after the evidence.
+};
+
 class PersonFilter {
  public:
   explicit PersonFilter(const PersonPrior& prior);
@@ -52,13 +66,16 @@ class PersonFilter {
   /// Advances the time; `blind`: no view shows left and right.
   void predict(double elapsed, bool blind, const PersonPrior& prior);
   /// The held sides may have become wrong, with this probability.
-  void slip(double probability) { mix(kWrong, probability, probability); }
+  void slip(double probability);
   void update(const Evidence& evidence);
   /// Swaps the hypotheses, because from now on the opposite sides are held.
   void turn_round();
 
   /// Probability that the held sides are right.
   [[nodiscard]] double right() const;
+
+  /// The newest instant: everything since the last predict().
+  [[nodiscard]] SidesStep step() const;
 
  private:
   static constexpr std::size_t kWrong = 1;
@@ -68,6 +85,8 @@ class PersonFilter {
   void normalise();
 
   std::array<double, 4> weight_{};
+  bool begun_ = false;
+  SidesStep step_;  ///< Without the weights.
 };
 
 }  // namespace chorus::facing

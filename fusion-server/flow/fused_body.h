@@ -23,6 +23,9 @@ struct JointMotion {
   /// Spectral density of the white-noise acceleration, now and in the long run [m^2/s^3].
   double density = 0.0;
   double usual_density = 0.0;
+  /// Variance of the filter's position, per axis [m^2]: what later measurements can still reduce.
+  double place_variance = 0.0;
+  bool measured = false;  ///< A sensor determined the joint at this instant.
 };
 
 struct FusedBody {
@@ -40,6 +43,9 @@ struct FusedBody {
   /// For how long no sensor has seen the person [s]; meanwhile they are where they are expected.
   /// None while they are seen.
   std::optional<double> carried_for = {};
+  /// For how long after the instant what sensors saw was taken into account [s]; none: the body is
+  /// what was known at the instant.
+  std::optional<double> smoothed_over = {};
   /// For predictions (fusion/prediction.h); none: the method has no velocities.
   std::optional<std::array<JointMotion, kJointCount>> motion = {};
 };

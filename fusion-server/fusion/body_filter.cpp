@@ -164,7 +164,11 @@ class BodyFilter final : public Estimator {
   [[nodiscard]] std::array<JointMotion, kJointCount> motion_at(Timestamp instant) const {
     std::array<JointMotion, kJointCount> all;
     for (std::size_t j = 0; j < kJointCount; ++j) {
-      if (const auto point = filters_[j].at(instant)) all[j] = point->motion;
+      const auto point = filters_[j].at(instant);
+      if (!point) continue;
+      all[j] = point->motion;
+      all[j].place_variance = point->variance;
+      all[j].measured = model().resting > 0 && filters_[j].updated() == instant;
     }
     return all;
   }

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "fusion-server/pipeline/recorded_walk.h"
+#include "fusion-server/pipeline/smoother.h"
 
 namespace chorus::pipeline {
 namespace {
@@ -86,12 +87,11 @@ Result<Registration> judged(Registration found) {
 }
 
 /// True if a registered sensor covers the instant.
-bool covered(const Snapshot& snapshot) {
-  return std::any_of(
-      snapshot.reports.begin(), snapshot.reports.end(), [&](const SensorReport& report) {
-        return (report.basis == Basis::Exact || report.basis == Basis::Interpolated) &&
-               std::binary_search(snapshot.sensors.begin(), snapshot.sensors.end(), report.sensor);
-      });
+bool covered(const std::vector<SensorReport>& reports, const std::vector<SensorId>& sensors) {
+  return std::any_of(reports.begin(), reports.end(), [&](const SensorReport& report) {
+    return (report.basis == Basis::Exact || report.basis == Basis::Interpolated) &&
+           std::binary_search(sensors.begin(), sensors.end(), report.sensor);
+  });
 }
 
 /// Runs through all instants of all recordings in order.
@@ -102,6 +102,7 @@ class Replay {
         registration_(registration),
         config_(config.pipeline),
         grid_(config.rate_hz) {
+    if (config.smooth) smoother_.emplace();
     if (!input.sensors.empty()) config_.polled.emplace(input.sensors.begin(), input.sensors.end());
   }
 
@@ -121,25 +122,54 @@ class Replay {
         index = *next;
         continue;
       }
-      if (auto ok = take(std::move(*answered)); !ok) return ok;
+      if (auto ok = give(std::move(*answered), take); !ok) return ok;
       ++*index;
+    }
+    return smoother_ ? give(smoother_->finish(config_), take) : Result<void>{};
+  }
+
+ private:
+  using Steps = std::vector<Step>;
+
+  static Result<void> give(Steps steps, const std::function<Result<void>(Step)>& take) {
+    for (Step& step : steps) {
+      if (auto ok = take(std::move(step)); !ok) return ok;
     }
     return {};
   }
 
- private:
-  /// What step() makes of it; none if no registered sensor covers the instant.
-  std::optional<Step> answer(Timestamp instant) {
+  /// What is known once this instant is; none if no registered sensor covers it.
+  std::optional<Steps> answer(Timestamp instant) {
     frames_.advance(instant, histories_);
     for (const auto& [sensor, history] : histories_) {
       if (config_.polled) config_.polled->insert(sensor);
     }
     const Timestamp late = instant + config_.align.patience + Duration(1);
-    Step next = step({instant, late, answered_ + 1}, histories_, registration_, memory_, config_);
-    memory_ = std::move(next.memory);
-    if (!covered(next.snapshot)) return std::nullopt;
-    ++answered_;
-    return next;
+    const Inputs in{instant, late, answered_ + 1};
+    Perceived seen = perceive(in, histories_, registration_, memory_, config_);
+    std::vector<SensorId> sensors = taking_part(registration_, config_);
+    const bool counts = covered(seen.reports, sensors);
+    if (counts) ++answered_;
+    return smoother_ ? smooth(in, std::move(sensors), std::move(seen), counts)
+                     : fuse_now(in, std::move(sensors), std::move(seen), counts);
+  }
+
+  std::optional<Steps> fuse_now(const Inputs& in, std::vector<SensorId> sensors, Perceived seen,
+                                bool counts) {
+    Step step = fuse(std::move(seen), in, std::move(sensors), config_);
+    memory_ = std::move(step.memory);
+    if (!counts) return std::nullopt;
+    Steps steps;
+    steps.push_back(std::move(step));
+    return steps;
+  }
+
+  std::optional<Steps> smooth(const Inputs& in, std::vector<SensorId> sensors, Perceived seen,
+                              bool counts) {
+    Perception now = perception_of(in, std::move(sensors), seen);
+    memory_ = std::move(seen.memory);
+    if (!counts) return std::nullopt;
+    return smoother_->take(std::move(now), config_);
   }
 
   /// The index of the first instant after `index` that a frame could cover; none at the end.
@@ -156,6 +186,7 @@ class Replay {
   Grid grid_;
   Histories histories_;
   Memory memory_;
+  std::optional<Smoother> smoother_;
   std::uint64_t answered_ = 0;
 };
 

@@ -15,6 +15,7 @@ namespace chorus::pipeline {
 struct OfflineConfig {
   PipelineConfig pipeline;
   registration::RegistrationConfig registration;
+  bool smooth = false;  ///< Every instant is fused with what later ones say about it (smoother.h).
   double rate_hz = 30.0;  ///< Output instants are multiples of 1/rate since the epoch [Hz].
 };
 

@@ -12,16 +12,6 @@
 namespace chorus::pipeline {
 namespace {
 
-/// The sensors with a place that can deliver.
-std::vector<SensorId> taking_part(const Registration& registration, const PipelineConfig& config) {
-  std::vector<SensorId> sensors;
-  for (const auto& [sensor, extrinsics] : registration.sensors) {
-    const bool polled = !config.polled || config.polled->contains(sensor);
-    if (polled && sensors.size() < kMaxSensors) sensors.push_back(sensor);
-  }
-  return sensors;
-}
-
 /// The patience with the sensors for which instants wait, which are those with a place.
 align::Patience patience_of(const Histories& histories, const Registration& registration,
                             const PipelineConfig& config) {
@@ -136,15 +126,6 @@ void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memor
   }
 }
 
-/// 5.2.5, Eqs. (1)-(3): sets the weight of every view.
-void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
-  for (Person& person : people) {
-    for (SensorView& view : person.views) {
-      view.weight = fusion::view_weight(view.distance, view.facing, view.bearing, limits).value();
-    }
-  }
-}
-
 /// Forgets people who are no longer tracked.
 void forget_the_gone(Memory& memory) {
   const std::set<PersonId> tracked = ids_of(memory.tracks);
@@ -187,6 +168,23 @@ void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Pe
 }
 
 }  // namespace
+
+std::vector<SensorId> taking_part(const Registration& registration, const PipelineConfig& config) {
+  std::vector<SensorId> sensors;
+  for (const auto& [sensor, extrinsics] : registration.sensors) {
+    const bool polled = !config.polled || config.polled->contains(sensor);
+    if (polled && sensors.size() < kMaxSensors) sensors.push_back(sensor);
+  }
+  return sensors;
+}
+
+void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
+  for (Person& person : people) {
+    for (SensorView& view : person.views) {
+      view.weight = fusion::view_weight(view.distance, view.facing, view.bearing, limits).value();
+    }
+  }
+}
 
 bool uses_weights(fusion::Method method) {
   return method == fusion::Method::Otto || method == fusion::Method::OttoKalman ||
@@ -232,16 +230,21 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   return perceived;
 }
 
-Step step(const Inputs& in, const Histories& histories, const Registration& registration,
-          const Memory& memory, const PipelineConfig& config) {
-  Perceived seen = perceive(in, histories, registration, memory, config);  // Figure 10
-  Snapshot snapshot{in.sequence, in.instant, taking_part(registration, config), {}, {}};
+Step fuse(Perceived seen, const Inputs& in, std::vector<SensorId> sensors,
+          const PipelineConfig& config) {
+  Snapshot snapshot{in.sequence, in.instant, std::move(sensors), {}, {}};
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
   leave_out_the_unplaced(snapshot.bodies, seen.people);
   seen.memory.seating.seat(snapshot.bodies, in.instant, config.association.coast, config.seating);
   snapshot.reports = std::move(seen.reports);
   return {std::move(snapshot), std::move(seen.memory), std::move(seen.people)};
+}
+
+Step step(const Inputs& in, const Histories& histories, const Registration& registration,
+          const Memory& memory, const PipelineConfig& config) {
+  return fuse(perceive(in, histories, registration, memory, config), in,
+              taking_part(registration, config), config);  // Figure 10
 }
 
 }  // namespace chorus::pipeline

@@ -19,6 +19,17 @@
 
 namespace chorus::pipeline {
 
+/// How long an instant waits for later ones (smoother.h).
+struct SmoothingConfig {
+  bool live = false;  ///< The server smooths, too, for /frame?at=.
+  /// For evidence about which side of a person is which.
+  Duration sides = std::chrono::seconds(2);
+  /// After that, for bodies.
+  Duration bodies = std::chrono::milliseconds(300);
+
+  bool operator==(const SmoothingConfig&) const = default;
+};
+
 struct PipelineConfig {
   align::AlignConfig align;
   fusion::QualityLimits quality;
@@ -26,6 +37,7 @@ struct PipelineConfig {
   facing::SidesConfig sides;
   fusion::FusionConfig fusion;
   SeatingConfig seating;
+  SmoothingConfig smoothing;
   /// The sensors that are polled.  Of the sensors with a place, only these are in
   /// Snapshot::sensors.  Not set: all with a place are.
   std::optional<std::set<SensorId>> polled = {};
@@ -95,6 +107,19 @@ void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histori
                                  const Registration& registration, const Memory& memory,
                                  const PipelineConfig& config);
 
+/// Sets the weights of all views, Eqs. (1)-(3).
+void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits);
+
+/// The sensors with a place that can deliver: Snapshot::sensors.
+[[nodiscard]] std::vector<SensorId> taking_part(const Registration& registration,
+                                                const PipelineConfig& config);
+
+/// The rest of step(): makes a body of each person, and seats them.  Of the memory it needs only
+/// that of fusion and seating.
+[[nodiscard]] Step fuse(Perceived seen, const Inputs& in, std::vector<SensorId> sensors,
+                        const PipelineConfig& config);
+
+/// perceive(), then fuse().
 [[nodiscard]] Step step(const Inputs& in, const Histories& histories,
                         const Registration& registration, const Memory& memory,
                         const PipelineConfig& config);

@@ -190,6 +190,12 @@ void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   read_noise(noise, out.noise);
 }
 
+void read_smoothing(ConfigReader reader, pipeline::SmoothingConfig& out) {
+  reader.read("live", out.live);
+  reader.read_ms("sides_ms", out.sides, milliseconds(0), std::chrono::seconds(60));
+  reader.read_ms("bodies_ms", out.bodies, milliseconds(0), std::chrono::seconds(10));
+}
+
 void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   using registration::JointChoice;
   using registration::PairMethod;
@@ -304,7 +310,9 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   read_quality(root.child("quality"), live.pipeline.quality);
   read_association(root.child("association"), live.pipeline.association);
   read_facing(root.child("facing"), live.pipeline.sides);
-  read_fusion(root.child("fusion"), live.pipeline.fusion);
+  ConfigReader fusion = root.child("fusion");
+  read_smoothing(fusion.child("smoothing"), live.pipeline.smoothing);
+  read_fusion(std::move(fusion), live.pipeline.fusion);
   read_sensors(root, live);
   const tls::Trust trust = read_trust(root.child("poll"));
   for (poll::PolledSensor& sensor : live.sensors) sensor.trust = trust;

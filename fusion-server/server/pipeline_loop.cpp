@@ -111,6 +111,7 @@ void PipelineLoop::turn() {
     note_displaced();
   }
   if (const auto amended = core_.amended(now)) options_.on_amended(*amended);
+  for (const Snapshot& smoothed : core_.smoothed()) options_.on_amended(smoothed);
   if (auto job = core_.due_job(now)) solve(std::move(*job));
   if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
 }

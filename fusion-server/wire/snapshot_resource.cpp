@@ -15,6 +15,7 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
   out.slot = body.slot;
   out.sides_confidence = body.sides_confidence;
   out.carried_for = body.carried_for;
+  out.smoothed_over = body.smoothed_over;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Joint& joint = body.skeleton.joints[j];
     out.joints[j].position = joint.position;

@@ -30,6 +30,7 @@ struct FuseArguments {
   PlaceOptions places;
   std::string save_registration;
   OfflineOptions options;
+  bool smooth = false;
   bool json = false;
 };
 
@@ -62,6 +63,7 @@ struct Fused {
   Registration registration;
   std::string method;
   double rate_hz = 0.0;
+  bool smoothed = false;
   std::size_t frames = 0;
   std::size_t with_bodies = 0;
   RecordedCell::Told told;
@@ -73,6 +75,7 @@ Result<Fused> fuse_into(const std::string& out, RecordedCell& cell, Registration
   fused.registration = std::move(registration);
   fused.method = fusion::name_of(config.pipeline.fusion.method);
   fused.rate_hz = config.rate_hz;
+  fused.smoothed = config.smooth;
   const auto file = create_fused_file(out, fused.registration);
   if (!file) return pass(file);
   const auto done = pipeline::fuse_recordings(cell.input(), fused.registration, config,
@@ -93,6 +96,7 @@ nlohmann::json summary_of(const Fused& fused) {
           {"framesWithBodies", fused.with_bodies},
           {"method", fused.method},
           {"rateHz", fused.rate_hz},
+          {"smoothed", fused.smoothed},
           {"notes", fused.told.notes},
           {"registration", nlohmann::json::parse(wire::write_registration(fused.registration))}};
 }
@@ -109,8 +113,10 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
   for (const auto& note : summary["notes"])
     std::cerr << "note: " << note.get<std::string>() << '\n';
   std::cerr << registration_report(summary["registration"])
-            << fmt::format("method {}, {:.6g} instants a second\n",
-                           summary["method"].get<std::string>(), summary["rateHz"].get<double>())
+            << fmt::format("method {}{}, {:.6g} instants a second\n",
+                           summary["method"].get<std::string>(),
+                           summary["smoothed"].get<bool>() ? ", smoothed" : "",
+                           summary["rateHz"].get<double>())
             << fmt::format("{}, {}, {} with somebody in them\n",
                            counted(summary["sensors"].get<std::size_t>(), "sensor"),
                            counted(summary["frames"].get<std::size_t>(), "fused frame"),
@@ -118,8 +124,9 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
 }
 
 Result<int> run_fuse(const FuseArguments& arguments) {
-  const auto config = offline_config(arguments.options);
+  auto config = offline_config(arguments.options);
   if (!config) return pass(config);
+  config->smooth = arguments.smooth;
   const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
@@ -157,6 +164,8 @@ Run add_fuse(CLI::App& options) {
   options.add_option("--save-registration", arguments->save_registration,
                      "Write the extrinsics used to this file");
   add_offline_options(options, arguments->options);
+  options.add_flag("--smooth", arguments->smooth,
+                   "Fuse each instant knowing the seconds after it (fusion.smoothing)");
   options.add_flag("--json", arguments->json, "Summary as JSON");
   return [arguments] { return run_fuse(*arguments); };
 }

@@ -5,17 +5,13 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <tuple>
 #include <utility>
 
-#include "common/base/units.h"
 #include "common/body/bones.h"
 #include "tests/bench/methods/averaging.h"
 #include "tests/bench/methods/kalman.h"
 #include "tests/judge/labelled_error.h"
 #include "tests/judge/measures.h"
-#include "tests/judge/plausibility.h"
-#include "tests/judge/stated_error.h"
 
 namespace chorus::bench {
 namespace {
@@ -26,83 +22,6 @@ constexpr Duration kStart = std::chrono::milliseconds(500);  // tracks are confi
 constexpr Duration kTail = std::chrono::milliseconds(200);   // frames still under way at the end
 constexpr double kReach = 0.6;  // [m] horizontally: a body farther away belongs to another person
 constexpr Duration kFresh = std::chrono::milliseconds(100);  // largest age of a reported body
-constexpr double kPercent = 100.0;
-constexpr double kToMs = 1000.0;
-
-template <class Of>
-Metric in_mm(std::string name, Of of) {
-  return {std::move(name), "mm", [of](const Answers& a) { return to_mm(of(a)); }};
-}
-template <class Of>
-Metric in_percent(std::string name, Of of) {
-  return {std::move(name), "%", [of](const Answers& a) { return kPercent * of(a); }};
-}
-
-template <JointGroup kGroup, double (*kOf)(const Answers&, JointGroup)>
-double of_group(const Answers& answers) {
-  return kOf(answers, kGroup);
-}
-
-std::vector<Metric> error_metrics() {
-  using enum JointGroup;
-  return {in_mm("mpjpe_mm", of_group<All, mpjpe>),
-          in_mm("centre_mm", of_group<Centre, mpjpe>),
-          in_mm("extremities_mm", of_group<Extremities, mpjpe>),
-          in_mm("bias_free_mm", of_group<All, bias_free_mpjpe>),
-          in_mm("jitter_core_mm", of_group<Centre, jitter_at_rest>),
-          in_mm("jitter_extremity_mm", of_group<Extremities, jitter_at_rest>),
-          in_percent("bone_cv_percent", bone_variation),
-          in_percent("bone_length_error_percent", bone_length_error),
-          in_mm("foot_slide_mm", foot_slide),
-          {"jumps_per_minute", "1/min", jumps_per_minute},
-          in_percent("flip_percent", label_error_share),
-          in_percent("limb_flip_percent", limb_label_error_share),
-          {"latency_ms", "ms", [](const Answers& a) { return kToMs * latency(a); }},
-          in_mm("hold50_mm", held_error),
-          in_percent("missing_percent", [](const Answers& a) { return 1.0 - coverage(a); })};
-}
-
-struct NamedSighted {
-  std::string suffix;
-  Sighted which;
-};
-
-/// The groups of joints: all of them, and then by how many views saw them, combined with whether
-/// they are at rest.
-std::vector<NamedSighted> sighted_apart() {
-  using enum Sighted::Motion;
-  std::vector<NamedSighted> all{{"", {}}};
-  for (const auto& [views, least, most] :
-       {std::tuple{"_1_view", 1, 1}, std::tuple{"_2_views", 2, 2},
-        std::tuple{"_more_views", 3, 1000}}) {
-    for (const auto& [motion, which] : {std::pair{"_rest", Rest}, std::pair{"_moving", Moving}}) {
-      all.push_back({std::string(views) + motion,
-                     {static_cast<std::size_t>(least), static_cast<std::size_t>(most), which}});
-    }
-  }
-  return all;
-}
-
-std::vector<Metric> stated_metrics() {
-  std::vector<Metric> all;
-  for (const auto& [suffix, which] : sighted_apart()) {
-    const auto add = [&, asked = which](const char* name, const char* unit, double scale,
-                                        double (*of)(const Answers&, const Sighted&)) {
-      all.push_back({name + suffix, unit, [=](const Answers& a) { return scale * of(a, asked); },
-                     Kind::Stated});
-    };
-    add("nees", "", 1.0, nees);
-    add("ball95_percent", "%", kPercent, ball95_share);
-    add("sharpness", "", 1.0, sharpness);
-  }
-  return all;
-}
-
-std::vector<Metric> all_metrics() {
-  std::vector<Metric> all = error_metrics();
-  for (Metric& each : stated_metrics()) all.push_back(std::move(each));
-  return all;
-}
 
 /// Mean of the seen core joints of all views; not finite without any.
 Eigen::Vector3d core_of(std::span<const Body* const> bodies) {
@@ -160,6 +79,7 @@ struct Stage {
   std::vector<Body> exact;       ///< The true body of the only person, at each moment.
   std::vector<Moment> confided;  ///< The same moments; joints carry their true mean squares.
   baselines::SharedErrors shared;
+  std::vector<Snapshot> smoothed;  ///< Of the same moments, if asked for.
 
   [[nodiscard]] Body truth_at(Timestamp instant) const {
     return true_body(workshop, 0, instant, registration.master);
@@ -185,8 +105,14 @@ Workshop workshop_of(const Contest& contest) {
   return workshop;
 }
 
-Stage stage_of(const Contest& contest, bool with_bound) {
-  Stage stage{workshop_of(contest), {}, {}, {}, {}, {}};
+/// What is made only for contenders that need it.
+struct Wanted {
+  bool bound = false;
+  bool smoothed = false;
+};
+
+Stage stage_of(const Contest& contest, const Wanted& wanted) {
+  Stage stage{workshop_of(contest), {}, {}, {}, {}, {}, {}};
   const Workshop& workshop = stage.workshop;
   stage.registration = contest.own_registration
                            ? solve(workshop.tracks, workshop.begin, {})
@@ -194,7 +120,10 @@ Stage stage_of(const Contest& contest, bool with_bound) {
   if (stage.registration.sensors.empty()) return stage;
   const Period period{workshop.begin + kStart, workshop.begin + contest.setting.length - kTail};
   stage.moments = moments_of(workshop.tracks, stage.registration, period, contest.pipeline);
-  if (with_bound) confide(stage, period, contest.pipeline);
+  if (wanted.bound) confide(stage, period, contest.pipeline);
+  if (wanted.smoothed)
+    stage.smoothed =
+        smoothed_moments(workshop.tracks, stage.registration, period, contest.pipeline);
   for (const Moment& moment : stage.moments) stage.exact.push_back(stage.truth_at(moment.instant));
   return stage;
 }
@@ -221,6 +150,16 @@ std::array<std::size_t, kJointCount> views_of(const Person& person) {
   return views;
 }
 
+/// The smoothed body at that moment.
+Body smoothed_at(const Stage& stage, std::size_t at) {
+  const auto& bodies = stage.smoothed[at].bodies;
+  const auto body = nearest(bodies, stage.exact[at], [](const FusedBody& each) {
+    const Body* const only = &each.skeleton;
+    return core_of(std::span(&only, 1));
+  });
+  return body == bodies.end() ? Body{} : body->skeleton;
+}
+
 Answers answers_of(const Stage& stage, const Contender& contender) {
   std::map<PersonId, baselines::Method> methods;
   Answers answers;
@@ -228,7 +167,9 @@ Answers answers_of(const Stage& stage, const Contender& contender) {
     Answer answer{stage.moments[i].instant, {}, stage.exact[i], {}};
     if (const auto given = given_at(stage, i, contender)) {
       answer.views = views_of(*given);
-      if (contender.bound) {
+      if (contender.smoothed) {
+        answer.body = smoothed_at(stage, i);
+      } else if (contender.bound) {
         answer.body = baselines::linear_bound(*given, stage.shared);
       } else if (contender.told != nullptr) {
         answer.body = contender.told(*given, stage.exact[i]);
@@ -329,13 +270,14 @@ void score_common(std::vector<Scored>& scores, std::vector<Answers>& all) {
 
 }  // namespace
 
-std::span<const Metric> metrics() {
-  static const std::vector<Metric> kMetrics = all_metrics();
-  return kMetrics;
-}
-
 Contender ours(const fusion::FusionConfig& config, std::string name) {
   return {std::move(name), [config] { return baselines::product(config); }};
+}
+
+Contender ours_smoothed() {
+  Contender contender{"ours-smoothed", {}};
+  contender.smoothed = true;
+  return contender;
 }
 
 Contender labelled(Contender contender) {
@@ -347,7 +289,7 @@ Contender labelled(Contender contender) {
 std::vector<Contender> all_contenders() {
   fusion::FusionConfig instant;
   instant.method = fusion::Method::InverseVariance;
-  std::vector<Contender> contenders{ours(), ours(instant, "inverse-variance")};
+  std::vector<Contender> contenders{ours(), ours_smoothed(), ours(instant, "inverse-variance")};
   for (const baselines::Baseline& each : baselines::all()) {
     contenders.push_back({std::string(each.name), each.begin});
   }
@@ -363,8 +305,8 @@ std::vector<Contender> all_contenders() {
 }
 
 std::vector<Scored> hold(const Contest& contest, const std::vector<Contender>& contenders) {
-  const bool with_bound = std::ranges::any_of(contenders, &Contender::bound);
-  const Stage stage = stage_of(contest, with_bound);
+  const Stage stage = stage_of(contest, {std::ranges::any_of(contenders, &Contender::bound),
+                                         std::ranges::any_of(contenders, &Contender::smoothed)});
   std::vector<Answers> answers;
   std::vector<Scored> scores;
   for (const Contender& contender : contenders) {
@@ -380,7 +322,7 @@ std::vector<Scored> hold(const Contest& contest, const std::vector<Contender>& c
 }
 
 Course course_of(const Contest& contest) {
-  const auto stage = std::make_shared<const Stage>(stage_of(contest, false));
+  const auto stage = std::make_shared<const Stage>(stage_of(contest, {}));
   Course course;
   for (std::size_t i = 0; i < stage->moments.size(); ++i) {
     course.instants.push_back(stage->moments[i].instant);

@@ -40,7 +40,8 @@ struct Contender {
   bool true_labels = false;  ///< Gets every view with correct labels: left and right are swapped
                              ///< back where they are wrong.
   baselines::Told told = nullptr;  ///< Used instead of `begin`: knows the truth.
-  bool bound = false;  ///< Used instead of `begin`: baselines::linear_bound() with true errors.
+  bool bound = false;     ///< Used instead of `begin`: baselines::linear_bound() with true errors.
+  bool smoothed = false;  ///< Used instead of `begin`: the product, told what came later.
 };
 
 /// The product's default method; the first column of the tables.
@@ -49,6 +50,9 @@ struct Contender {
 /// The contender with views whose left and right are corrected by the truth; named
 /// "NAME-true-labels".
 [[nodiscard]] Contender labelled(Contender contender);
+
+/// The product when each instant waits for later ones (pipeline/smoother.h); "ours-smoothed".
+[[nodiscard]] Contender ours_smoothed();
 
 /// Ours and all methods that it is compared with.
 [[nodiscard]] std::vector<Contender> all_contenders();

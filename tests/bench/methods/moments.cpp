@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "fusion-server/pipeline/smoother.h"
+
 namespace chorus::bench {
 
 const pipeline::Histories& Arriving::until(Timestamp instant) {
@@ -65,6 +67,27 @@ std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& track
       tracks, registration, period, [&](Moment moment) { moments.push_back(std::move(moment)); },
       config);
   return moments;
+}
+
+std::vector<Snapshot> smoothed_moments(const std::vector<registration::WalkTrack>& tracks,
+                                       const Registration& registration, const Period& period,
+                                       const pipeline::PipelineConfig& config) {
+  pipeline::Smoother smoother;
+  pipeline::Memory memory;
+  std::vector<Snapshot> snapshots;
+  const auto keep = [&](std::vector<pipeline::Step> steps) {
+    for (pipeline::Step& step : steps) snapshots.push_back(std::move(step.snapshot));
+  };
+  each_instant(tracks, period, config.align,
+               [&](const pipeline::Inputs& in, const pipeline::Histories& histories) {
+                 auto seen = pipeline::perceive(in, histories, registration, memory, config);
+                 auto now =
+                     pipeline::perception_of(in, pipeline::taking_part(registration, config), seen);
+                 memory = std::move(seen.memory);
+                 keep(smoother.take(std::move(now), config));
+               });
+  keep(smoother.finish(config));
+  return snapshots;
 }
 
 }  // namespace chorus::bench

@@ -53,4 +53,9 @@ void visit_scenes(const std::vector<registration::WalkTrack>& tracks,
                                              const Registration& registration, const Period& period,
                                              const pipeline::PipelineConfig& config = {});
 
+/// What the product makes of every moment of the time span when each waits for later ones.
+[[nodiscard]] std::vector<Snapshot> smoothed_moments(
+    const std::vector<registration::WalkTrack>& tracks, const Registration& registration,
+    const Period& period, const pipeline::PipelineConfig& config = {});
+
 }  // namespace chorus::bench

@@ -30,6 +30,17 @@ def median_error(fused, truth):
     return statistics.median(errors), len(errors)
 
 
+def unsteadiness(frames):
+    """Mean size of the second difference of the joints from frame to frame [m]."""
+    sizes = []
+    for three in zip(frames, frames[1:], frames[2:]):
+        for name, joint in three[1]["bodies"][0]["joints"].items():
+            a, c = (frame["bodies"][0]["joints"][name] for frame in three[::2])
+            if all("x" in each for each in (a, joint, c)):
+                sizes.append(sum((a[axis] - 2 * joint[axis] + c[axis]) ** 2 for axis in "xyz") ** 0.5)
+    return statistics.mean(sizes)
+
+
 class Offline(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -106,6 +117,25 @@ class Offline(unittest.TestCase):
         self.assertIn("2026-11-21T07:30:00.000000000Z", out)
         self.assertIn("not UTC", out)
         self.assertTrue((self.at / "kinect" / "s1.mcap").is_file())
+
+    def test_smoothing_answers_the_same_instants_more_calmly_and_says_so(self):
+        source = "tests/data/kinect2_labanotation/Ges04_comehere.csv"
+        self.assertEqual(chorus("import", "labanotation", source, "--out", self.at / "gesture", "--floor", "0,1,0,0.9",
+                                "--start", "2026-11-21T07:30:00Z", "--sensor", "s1")[0], 0)
+        places = self.at / "places.json"
+        places.write_text(json.dumps({"sensors": {"s1": {"x": 0, "y": 0.9, "z": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}}))
+        frames = {}
+        for out, options in (("causal", []), ("smooth", ["--smooth"]), ("again", ["--smooth"])):
+            code, _, error = chorus("fuse", self.at / "gesture", "--registration", places, "--out", self.at / f"{out}.ndjson", *options)
+            self.assertEqual(code, 0, error)
+            frames[out] = [frame for frame in frames_of(self.at / f"{out}.ndjson") if frame["bodies"]]
+        self.assertIn("body-filter, smoothed", error)
+        self.assertEqual((self.at / "smooth.ndjson").read_bytes(), (self.at / "again.ndjson").read_bytes())
+        self.assertEqual([frame["capturedNanoseconds"] for frame in frames["smooth"]],
+                         [frame["capturedNanoseconds"] for frame in frames["causal"]])
+        self.assertLess(unsteadiness(frames["smooth"]), 0.9 * unsteadiness(frames["causal"]))
+        self.assertTrue(all("smoothedOver" in frame["bodies"][0] for frame in frames["smooth"]))
+        self.assertFalse(any("smoothedOver" in frame["bodies"][0] for frame in frames["causal"]))
 
     def test_bad_input_is_named(self):
         bad = self.at / "bad.csv"

@@ -107,6 +107,19 @@ class Tracker(Rig):
         wait_for("forgotten", lambda: get_json(again.url + "registration")["version"] is not None and
                  not (pathlib.Path(settings["state_dir"]) / "registration.json").exists())
 
+    def test_what_is_asked_for_seconds_later_is_smoothed_and_says_so(self):
+        smoothing = {"live": True, "sides_ms": 1000, "bodies_ms": 200}
+        fusion = self.start_all(count=3, **{"registration.file": self.given_ring(3),
+                                            **{f"fusion.smoothing.{key}": json.dumps(value) for key, value in smoothing.items()}})
+        frame = wait_for("a body", lambda: (shown := get_json(fusion.url + "frame"))["bodies"] and shown)
+        instant = frame["capturedNanoseconds"]
+        self.assertNotIn("smoothedOver", frame["bodies"][0])
+        self.assertNotIn("smoothedOver", get_json(fusion.url + f"frame?at={instant}")["bodies"][0])
+        over = wait_for("the smoothed frame",
+                        lambda: get_json(fusion.url + f"frame?at={instant}")["bodies"][0].get("smoothedOver"))
+        self.assertAlmostEqual(over, 1.2, delta=0.1)
+        self.assertNotIn("smoothedOver", get_json(fusion.url + f"frames/{frame['sequence']}")["bodies"][0])
+
     def test_a_fusion_server_is_a_sensor_for_another(self):
         cell = self.start_all(count=3, **{"registration.file": self.given_ring(3)})
         wait_for("the cell sees somebody", lambda: self.body_seen(cell))

@@ -38,7 +38,10 @@ TEST(Contest, HoldsEveryMethodAndItsBoundAgainstTheSameTruth) {
   EXPECT_LT(bound, 0.95 * mean);
   EXPECT_GT(bound, 0.2 * mean) << "reachable";
   EXPECT_NEAR(value_of(of(scores, "bound"), "nees"), 1.0, 0.5) << "it knows how far it is off";
-  for (const char* name : {"otto", "otto-kalman-true-labels", "best-sensor", "arrival-kalman"}) {
+  EXPECT_LT(value_of(of(scores, "ours-smoothed"), "jitter_extremity_mm"),
+            value_of(of(scores, "ours"), "jitter_extremity_mm"));
+  for (const char* name :
+       {"ours-smoothed", "otto", "otto-kalman-true-labels", "best-sensor", "arrival-kalman"}) {
     EXPECT_TRUE(std::isfinite(value_of(of(scores, name), "mpjpe_mm"))) << name;
   }
 }

@@ -152,11 +152,13 @@ TEST(FrameBetween, WhatIsOfThePersonComesFromTheFrameBefore) {
   a.bodies[0].slot = 2;
   a.bodies[0].sides_confidence = 0.9;
   a.bodies[0].carried_for = 0.5;
+  a.bodies[0].smoothed_over = b.bodies[0].smoothed_over = 2.5;
   b.bodies[0].slot = 5;
   const BodyResource body = quarter(a, b).bodies.at(0);
   EXPECT_EQ(body.slot, 2U);
   EXPECT_EQ(body.sides_confidence, 0.9);
   EXPECT_EQ(body.carried_for, 0.5);
+  EXPECT_EQ(body.smoothed_over, 2.5);
 }
 
 TEST(FrameBetween, WithOtherSensorsTheBitsMeanSomethingElse) {

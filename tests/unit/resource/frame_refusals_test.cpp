@@ -195,6 +195,8 @@ const std::vector<Damage> kPersonDamages{
     {"less than unsure", [](Json& f) { body(f)["sidesConfidence"] = -0.01; }, "ch:sidesConfidence",
      "between 0 and 1"},
     {"carried for ever", [](Json& f) { body(f)["carriedFor"] = 3601; }, "ch:carriedFor", "3600 s"},
+    {"smoothed for ever", [](Json& f) { body(f)["smoothedOver"] = 3601; }, "ch:smoothedOver",
+     "3600 s"},
     {"carried before", [](Json& f) { body(f)["carriedFor"] = -1; }, "ch:carriedFor", "between 0"},
     {"carried somehow", [](Json& f) { body(f)["carriedFor"] = Json::array(); }, "ch:carriedFor",
      "no finite number"},
@@ -234,6 +236,7 @@ TEST(FrameReader, TakesTheLimitsThemselves) {
   body(frame)["slot"] = kMaxBodies - 1;
   body(frame)["sidesConfidence"] = 1;
   body(frame)["carriedFor"] = 3600;
+  body(frame)["smoothedOver"] = 3600;
   ray(frame);
   spread(frame, 10'000);
   head(frame)["variance"] = 10'000;
@@ -244,6 +247,7 @@ TEST(FrameReader, TakesTheLimitsThemselves) {
   EXPECT_EQ(person.slot, kMaxBodies - 1);
   EXPECT_EQ(person.sides_confidence, 1.0);
   EXPECT_EQ(person.carried_for, 3600.0);
+  EXPECT_EQ(person.smoothed_over, 3600.0);
   const JointResource& joint = person.joints[static_cast<int>(JointId::Head)];
   EXPECT_EQ(joint.measurement, Measurement::Ray);
   EXPECT_EQ(joint.position, Eigen::Vector3d(0.6, 0, 0.8));

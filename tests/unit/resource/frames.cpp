@@ -196,6 +196,7 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
     if (kind.fused && b != 2) body.slot = kind.bodies - 1 - b;  // body 2 has no slot
     if (kind.fused && b != 1) body.sides_confidence = rounded(dice.between(0, 1), 1e-4);
     if (kind.fused && b == 1) body.carried_for = rounded(dice.between(0, 3), 1e-3);
+    if (kind.fused && b == 2) body.smoothed_over = rounded(dice.between(0, 3), 1e-3);
     if (b == 1) body.id = 72'057'594'037'928'018;  // like Kinect v2 ids: too large for a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
@@ -225,6 +226,7 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     if (body.slot) skeleton.integer("slot", std::to_string(*body.slot));
     if (body.sides_confidence) skeleton.decimal("sidesConfidence", *body.sides_confidence, 4);
     if (body.carried_for) skeleton.decimal("carriedFor", *body.carried_for, 3);
+    if (body.smoothed_over) skeleton.decimal("smoothedOver", *body.smoothed_over, 3);
     skeleton.times(body.captured);
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::string joint = iri + "-" + std::string(kJointNames[i]);
@@ -248,6 +250,7 @@ std::string difference(const FrameResource& a, const FrameResource& b) {
     if (!same(a.bodies[i].sides_confidence, b.bodies[i].sides_confidence))
       return "confidence of sides";
     if (!same(a.bodies[i].carried_for, b.bodies[i].carried_for)) return "carried for";
+    if (!same(a.bodies[i].smoothed_over, b.bodies[i].smoothed_over)) return "smoothed over";
     if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const std::string left = text_of(a.bodies[i].joints[j]);

@@ -31,6 +31,7 @@ Snapshot snapshot(std::uint64_t sequence, double x) {
   body.slot = 3;
   body.sides_confidence = 0.875;
   body.carried_for = 0.25;
+  body.smoothed_over = 2.5;
   body.skeleton = testing::standing_person({x, 0, 0});
   body.variance.fill(1e-4);
   body.contributors.fill(0b11);
@@ -53,6 +54,7 @@ TEST(SnapshotResource, SaysWorldSpaceSensorsAndContributors) {
   EXPECT_EQ(frame.bodies[0].slot, 3u);
   EXPECT_EQ(frame.bodies[0].sides_confidence, 0.875);
   EXPECT_EQ(frame.bodies[0].carried_for, 0.25);
+  EXPECT_EQ(frame.bodies[0].smoothed_over, 2.5);
   const auto& neck = frame.bodies[0].joints[index_of(JointId::Neck)];
   EXPECT_EQ(neck.contributors, 0b11u);
   EXPECT_EQ(neck.variance, 1e-4);
