@@ -1,5 +1,6 @@
 #include "fusion-server/wire/registration_fields.h"
 
+#include <array>
 #include <utility>
 
 #include "common/sensor/limits.h"
@@ -7,6 +8,24 @@
 namespace chorus::wire {
 
 using nlohmann::json;
+
+namespace {
+
+constexpr double kMaxNormError = 0.01;  // Tolerates quaternions that were rounded to a few digits.
+
+/// Replaces the pose's rotation, which was read from the quaternion, with the matrix if there is
+/// one, because the matrix is more exact.
+Result<void> read_rotation(const json& object, const std::string& where, Eigen::Isometry3d& pose) {
+  Eigen::Matrix3d rotation = pose.linear();
+  if (auto ok = read_matrix(object, where, "rotation", rotation); !ok) return ok;
+  if ((rotation - pose.linear()).cwiseAbs().maxCoeff() > kMaxNormError) {
+    return tl::unexpected(wrong(where + ".rotation", "differs from qx qy qz qw"));
+  }
+  pose.linear() = rotation;
+  return {};
+}
+
+}  // namespace
 
 Error wrong(std::string where, std::string what) {
   return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
@@ -63,6 +82,34 @@ Result<void> check_covariance(const Eigen::Matrix<double, 6, 6>& covariance,
       kAsymmetry * largest + kRounding)
     return tl::unexpected(wrong(where, "a symmetric matrix is wanted"));
   return {};
+}
+
+json pose_json(const Eigen::Isometry3d& pose) {
+  json rotation = json::array();
+  for (const double value : pose.linear().reshaped()) rotation.push_back(value);
+  const Eigen::Vector3d p = pose.translation();
+  const Eigen::Quaterniond q(pose.rotation());
+  return {{"x", p.x()},  {"y", p.y()},  {"z", p.z()},  {"qx", q.x()},
+          {"qy", q.y()}, {"qz", q.z()}, {"qw", q.w()}, {"rotation", std::move(rotation)}};
+}
+
+Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) {
+  std::array<double, 7> parts{};
+  constexpr std::array kKeys{"x", "y", "z", "qx", "qy", "qz", "qw"};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto value = number(object, where, kKeys[i], i < 3 ? kMaxPlace : 1.0 + kMaxNormError);
+    if (!value) return pass(value);
+    parts[i] = *value;
+  }
+  const Eigen::Quaterniond q(parts[6], parts[3], parts[4], parts[5]);
+  if (std::abs(q.norm() - 1.0) > kMaxNormError) {
+    return tl::unexpected(wrong(where, "qx qy qz qw is not a unit quaternion"));
+  }
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = q.normalized().toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(parts[0], parts[1], parts[2]);
+  if (auto ok = read_rotation(object, where, pose); !ok) return pass(ok);
+  return pose;
 }
 
 }  // namespace chorus::wire

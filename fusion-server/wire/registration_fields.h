@@ -8,12 +8,15 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "common/base/result.h"
 #include "common/base/strong_id.h"
 
 namespace chorus::wire {
+
+inline constexpr double kMaxPlace = 1000.0;  ///< [m]; nothing is farther away.
 
 [[nodiscard]] Error wrong(std::string where, std::string what);
 
@@ -56,5 +59,13 @@ template <class Matrix>
     out.reshaped()(static_cast<Eigen::Index>(i)) = (*it)[i].get<double>();
   return {};
 }
+
+/// x, y, z [m], qx, qy, qz, qw and the rotation matrix.  People and other programs read the
+/// quaternion; the matrix is exact to the bit.
+[[nodiscard]] nlohmann::json pose_json(const Eigen::Isometry3d& pose);
+
+/// What pose_json() writes; without "rotation" the quaternion counts.
+[[nodiscard]] Result<Eigen::Isometry3d> pose_of(const nlohmann::json& object,
+                                                const std::string& where);
 
 }  // namespace chorus::wire

@@ -21,10 +21,8 @@ using nlohmann::json;
 
 // 64 sensors with covariances and all edges need less than 1 MB.
 constexpr JsonLimits kLimits{4U << 20U, 16};
-constexpr double kMaxPlace = 1000.0;  // [m]
 constexpr double kLeastScale = 0.1;
 constexpr double kMostScale = 10.0;
-constexpr double kMaxNormError = 0.01;  // Tolerates quaternions that were rounded to a few digits.
 constexpr const char* kClockOffset = "clockOffsetMilliseconds";
 constexpr const char* kClockUncertainty = "clockUncertaintyMilliseconds";
 constexpr const char* kClockStated = "clockStatedMilliseconds";
@@ -41,16 +39,6 @@ json verdict_json(const SensorVerdict& own) {
   return {{"verdict", name_of(own.verdict)}, {"reasons", own.reasons}};
 }
 
-json pose_json(const Eigen::Isometry3d& pose) {
-  // Humans and other programs read the quaternion; the matrix is exact to the bit.
-  json rotation = json::array();
-  for (const double value : pose.linear().reshaped()) rotation.push_back(value);
-  const Eigen::Vector3d p = pose.translation();
-  const Eigen::Quaterniond q(pose.rotation());
-  return {{"x", p.x()},  {"y", p.y()},  {"z", p.z()},  {"qx", q.x()},
-          {"qy", q.y()}, {"qz", q.z()}, {"qw", q.w()}, {"rotation", std::move(rotation)}};
-}
-
 json sensor_json(const SensorId& id, const Extrinsics& place) {
   json covariance = json::array();
   for (const double value : place.covariance.reshaped()) covariance.push_back(value);
@@ -63,36 +51,6 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
                  {"covariance", std::move(covariance)},
                  {"scale", place.scale}});
   return object;
-}
-
-Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) {
-  std::array<double, 7> parts{};
-  constexpr std::array kKeys{"x", "y", "z", "qx", "qy", "qz", "qw"};
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto value = number(object, where, kKeys[i], i < 3 ? kMaxPlace : 1.0 + kMaxNormError);
-    if (!value) return pass(value);
-    parts[i] = *value;
-  }
-  const Eigen::Quaterniond q(parts[6], parts[3], parts[4], parts[5]);
-  if (std::abs(q.norm() - 1.0) > kMaxNormError) {
-    return tl::unexpected(wrong(where, "qx qy qz qw is not a unit quaternion"));
-  }
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = q.normalized().toRotationMatrix();
-  pose.translation() = Eigen::Vector3d(parts[0], parts[1], parts[2]);
-  return pose;
-}
-
-/// Replaces the pose's rotation, which was read from the quaternion, with the matrix if there is
-/// one, because the matrix is more exact.
-Result<void> read_rotation(const json& object, const std::string& where, Eigen::Isometry3d& pose) {
-  Eigen::Matrix3d rotation = pose.linear();
-  if (auto ok = read_matrix(object, where, "rotation", rotation); !ok) return ok;
-  if ((rotation - pose.linear()).cwiseAbs().maxCoeff() > kMaxNormError) {
-    return tl::unexpected(wrong(where + ".rotation", "differs from qx qy qz qw"));
-  }
-  pose.linear() = rotation;
-  return {};
 }
 
 Result<SensorVerdict> verdict_of(const json& object, const std::string& where, Verdict fallback) {
@@ -117,7 +75,6 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   Extrinsics out;
   auto pose = pose_of(object, where);
   if (!pose) return pass(pose);
-  if (auto ok = read_rotation(object, where, *pose); !ok) return pass(ok);
   out.world_from_sensor = *pose;
   auto chain = ids_of(object, where, "chain");
   if (!chain) return pass(chain);
@@ -272,7 +229,6 @@ Result<void> read_anchors(const json& root, Registration& out) {
     if (!object.is_object()) return tl::unexpected(wrong(where, "an object is wanted"));
     auto pose = pose_of(object, where);
     if (!pose) return pass(pose);
-    if (auto ok = read_rotation(object, where, *pose); !ok) return ok;
     out.anchors.emplace(std::move(*id), *pose);
   }
   return {};
