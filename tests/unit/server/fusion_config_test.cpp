@@ -110,6 +110,14 @@ TEST(FusionConfig, TwoSensorsOfOneNameOrTooManyAreRefused) {
   EXPECT_NE(why(R"({"sensors": [)" + many + "]}").find("64"), std::string::npos);
 }
 
+TEST(FusionConfig, ReadsHowFarSensorsMayDifferInLatency) {
+  const auto none = read(R"({"registration": {"latency_sigma_ms": 0}})");
+  ASSERT_TRUE(none) << to_string(none.error());
+  EXPECT_EQ(none->live.registration.latency_sigma, Duration{0});
+  EXPECT_NE(why(R"({"registration": {"latency_sigma_ms": 201}})").find("latency_sigma_ms"),
+            std::string::npos);
+}
+
 TEST(FusionConfig, ALengthForCamerasNamesTwoSensors) {
   const auto config = read(R"({"registration": {"stature_m": 1.78,
       "known_distances": [{"between": ["cam1", "cam2"], "m": 4.31}]}})");
