@@ -18,9 +18,9 @@ namespace {
 constexpr double kSame = 0.3;
 constexpr double kMarkHeight = 0.5;  // [m]
 // By how much sensors that were not moved are off at least, from one walk to another [m].
-constexpr double kLeastUsual = 0.015;
+constexpr double kLeastUsual = 0.020;
 constexpr double kMedianToUsual = 0.85;  // median of the norm of a 2-D Gaussian: 1.177 sigma
-constexpr double kCutoff = 3.0;  // standard deviations, where the weight of a sensor is a quarter
+constexpr double kCutoff = 3.0;  // standard deviations; sensors that are off by more do not count
 
 /// A sensor that both worlds have: where they put two points below and before it.  These are half a
 /// metre above the floor, because the tilt between the two worlds turns about them: what is marked
@@ -130,7 +130,8 @@ struct RobustWorld {
   double usual = 0.0;  ///< Standard deviation by which the sensors are off [m].
 };
 
-/// Geman-McClure weights; they and the fit are repeated in turn.
+/// Leaves out what does not fit, again and again, and weighs the rest alike: an unweighted fit
+/// leaves the mean of all marks where it is.
 std::optional<RobustWorld> fit_robustly(const std::vector<Common>& group) {
   constexpr int kRounds = 20;
   auto move = first_guess(group);
@@ -139,10 +140,7 @@ std::optional<RobustWorld> fit_robustly(const std::vector<Common>& group) {
     std::vector<double> off;
     for (const Common& each : group) off.push_back(off_by(each, *move));
     out = {*move, std::max(kLeastUsual, kMedianToUsual * median(off))};
-    for (double& value : off) {
-      const double ratio = value / (kCutoff * out.usual);
-      value = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));
-    }
+    for (double& value : off) value = value <= kCutoff * out.usual ? 1.0 : 0.0;
     move = fit(group, off);
   }
   if (!move) return std::nullopt;

@@ -31,10 +31,10 @@ struct Origin {
 
 /// The registration, moved into the world of these anchors.  This is decided by the largest group
 /// of sensors whose relative places are the same in both (within 0.3 m); of equally large groups,
-/// by the one with the master.  Within the group a robust fit decides, so that a sensor which was
-/// pushed by centimetres does not pull the world.  The anchors stay as they are, so that errors of
-/// many registrations do not add up; a sensor that does not fit is anchored at its new place.
-/// Unchanged if they have no sensor in common.
+/// by the one with the master.  Within the group, those that do not fit the rest are left out (60
+/// mm or more), so that a sensor which was pushed does not pull the world.  The anchors stay as
+/// they are, so that errors of many registrations do not add up; a sensor that does not fit is
+/// anchored at its new place. Unchanged if they have no sensor in common.
 [[nodiscard]] Registration in_world_of(const Anchors& anchors, Registration candidate);
 
 inline constexpr double kMaxOrigin = 1000.0;  ///< Along x and along z [m].

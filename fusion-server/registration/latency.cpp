@@ -14,25 +14,25 @@ namespace chorus::registration {
 namespace {
 
 constexpr double kKnownClock = 0.002;  // [s] as in time_offset.cpp
-constexpr double kLeastSigma = 0.001;  // [s] of a pair: views differ not only in time
-constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less and less
-constexpr int kIterations = 10;
+constexpr double kLeastLatencySigma = 0.001;  // [s] of a pair: views differ not only in time
+constexpr double kOddPair = 3.0;       // sigmas from which a pair counts less and less
+constexpr int kLatencyRounds = 10;
 // An edge between two sensors that have this many counts for nothing: with 64 sensors, all edges
 // would take seconds.
 constexpr std::size_t kEnoughEdges = 5;
 constexpr double kSignificant = 3.0;  // sigmas
 constexpr double kWorthIt = 0.005;    // [s]
 
-struct Measured {
+struct PairMeasured {
   std::size_t target;
   std::size_t source;
   Eigen::Isometry3d target_from_source;
   std::optional<PairLatency> found;
 };
 
-struct Network {
+struct LatencyNetwork {
   std::vector<const WalkTrack*> tracks;
-  std::vector<Measured> pairs;
+  std::vector<PairMeasured> pairs;
   Eigen::VectorXd latencies;
   Eigen::MatrixXd covariance;
 
@@ -60,8 +60,8 @@ Eigen::Isometry3d place_of(const PairwiseRegistration& edge, const Registration&
   return target->second.world_from_sensor.inverse() * source->second.world_from_sensor;
 }
 
-Network network_of(const std::vector<WalkTrack>& walk, const Registration& found) {
-  Network network;
+LatencyNetwork network_of(const std::vector<WalkTrack>& walk, const Registration& found) {
+  LatencyNetwork network;
   std::map<SensorId, std::size_t> numbers;
   for (const WalkTrack& track : walk) {
     if (!knows_its_clock(track)) continue;
@@ -81,14 +81,14 @@ Network network_of(const std::vector<WalkTrack>& walk, const Registration& found
   return network;
 }
 
-void measure(Network& network, const RegistrationConfig& config, const PairSearch& search) {
+void measure_latencies(LatencyNetwork& network, const RegistrationConfig& config, const PairSearch& search) {
   std::vector<Walker> walkers(network.tracks.size());
   search.for_each(walkers.size(), [&](std::size_t i) {
     if (!search.stopped()) walkers[i] = offset_walker(*network.tracks[i], config);
   });
   search.for_each(network.pairs.size(), [&](std::size_t i) {
     if (search.stopped()) return;
-    Measured& pair = network.pairs[i];
+    PairMeasured& pair = network.pairs[i];
     pair.found =
         pair_latency(walkers[pair.target], walkers[pair.source], pair.target_from_source, config);
   });
@@ -96,20 +96,20 @@ void measure(Network& network, const RegistrationConfig& config, const PairSearc
 
 /// One step of weighted least squares; from the second step on, pairs far from the last result
 /// count less.
-void solve(Network& network, double prior_sigma) {
-  const auto size = Network::at(network.tracks.size());
+void solve(LatencyNetwork& network, double prior_sigma) {
+  const auto size = LatencyNetwork::at(network.tracks.size());
   const bool first = network.latencies.size() == 0;
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(size, size) / (prior_sigma * prior_sigma);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
-  for (const Measured& pair : network.pairs) {
+  for (const PairMeasured& pair : network.pairs) {
     if (!pair.found) continue;
-    const auto target = Network::at(pair.target);
-    const auto source = Network::at(pair.source);
-    const double sigma = std::hypot(pair.found->sigma, kLeastSigma);
+    const auto target = LatencyNetwork::at(pair.target);
+    const auto source = LatencyNetwork::at(pair.source);
+    const double sigma = std::hypot(pair.found->sigma, kLeastLatencySigma);
     double weight = 1.0 / (sigma * sigma);
     if (!first) {
       const double between = network.latencies[source] - network.latencies[target];
-      const double off = (pair.found->latency - between) / (kOutlier * sigma);
+      const double off = (pair.found->latency - between) / (kOddPair * sigma);
       weight /= 1.0 + off * off;
     }
     information(target, target) += weight;
@@ -124,11 +124,11 @@ void solve(Network& network, double prior_sigma) {
 }
 
 /// The sensor of the median latency; of two middle ones the earlier, since delays only add.
-std::size_t middle_of(const Network& network) {
+std::size_t middle_of(const LatencyNetwork& network) {
   std::vector<std::size_t> order(network.tracks.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::stable_sort(order, {},
-                           [&](std::size_t i) { return network.latencies[Network::at(i)]; });
+                           [&](std::size_t i) { return network.latencies[LatencyNetwork::at(i)]; });
   return order[(order.size() - 1) / 2];
 }
 
@@ -151,13 +151,13 @@ Latencies latencies_of(const std::vector<WalkTrack>& walk, const Registration& f
                        const RegistrationConfig& config, const PairSearch& search) {
   Latencies latencies;
   if (config.latency_sigma <= Duration{0} || config.method == PairMethod::IcpOnly) return latencies;
-  Network network = network_of(walk, found);
+  LatencyNetwork network = network_of(walk, found);
   if (network.pairs.empty()) return latencies;
-  measure(network, config, search);
-  for (int i = 0; i < kIterations; ++i) solve(network, seconds(config.latency_sigma));
+  measure_latencies(network, config, search);
+  for (int i = 0; i < kLatencyRounds; ++i) solve(network, seconds(config.latency_sigma));
   const std::size_t middle = middle_of(network);
   for (std::size_t i = 0; i < network.tracks.size(); ++i) {
-    const double later = network.latencies[Network::at(i)] - network.latencies[Network::at(middle)];
+    const double later = network.latencies[LatencyNetwork::at(i)] - network.latencies[LatencyNetwork::at(middle)];
     const double sigma = network.sigma_between(i, middle);
     const bool sure = std::abs(later) > std::max(kSignificant * sigma, kWorthIt);
     latencies[network.tracks[i]->sensor] = {from_seconds(later), from_seconds(sigma), sure};

@@ -20,16 +20,16 @@ using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using Design = Eigen::Matrix<double, 3, kUnknowns>;
 
-constexpr std::size_t kMostFrames = 300;
-constexpr std::size_t kMinFrames = 30;
+constexpr std::size_t kMostSights = 300;
+constexpr std::size_t kLeastSights = 30;
 constexpr std::size_t kReach = 2;       // frames to either side from which a velocity is taken
 constexpr double kMostReach = 0.3;      // [s] between these two
-constexpr double kErrorTime = 2.0;      // [s] after which a sensor's error is nearly independent
-constexpr double kFreedom = 4.0;        // of the Student-t
+constexpr double kErrorLasts = 2.0;      // [s] after which a sensor's error is nearly independent
+constexpr double kTailFreedom = 4.0;        // of the Student-t
 constexpr double kTurnSigma = deg(10);  // how far the pair's place may be wrong
 constexpr double kShiftSigma = 0.3;     // [m]
 constexpr double kMostLatency = 0.3;    // [s]
-constexpr double kOptimism = 1.3;
+constexpr double kWidened = 1.3;
 constexpr double kLeastSignal = 0.02;  // with less, velocities are noise
 constexpr double kSettled = 0.25;      // sigmas by which another round would change little
 constexpr int kRounds = 3;
@@ -100,14 +100,14 @@ class Regression {
       : source_eye_(target_from_source.translation()), along_ratio_(config.along_ratio) {}
 
   void add(const std::vector<Sight>& sights) {
-    const std::size_t step = std::max<std::size_t>(1, sights.size() / kMostFrames);
+    const std::size_t step = std::max<std::size_t>(1, sights.size() / kMostSights);
     for (std::size_t i = kReach + step; i + kReach < sights.size(); i += step)
       add(sights, i - step, i);
   }
 
   /// Latency and its sigma, as a correction.
   [[nodiscard]] std::optional<PairLatency> solve() const {
-    if (parts_.size() < kMinFrames) return std::nullopt;
+    if (parts_.size() < kLeastSights) return std::nullopt;
     Unknowns prior;
     prior << Eigen::Vector3d::Constant(1.0 / (kTurnSigma * kTurnSigma)),
         Eigen::Vector3d::Constant(1.0 / (kShiftSigma * kShiftSigma)),
@@ -142,7 +142,7 @@ class Regression {
     }
     const double by_prior = inverse.row(kLatency).cwiseAbs2().dot(prior.transpose());
     return PairLatency{found[kLatency],
-                       kOptimism * std::sqrt(squares * inflation_of(scores) + by_prior)};
+                       kWidened * std::sqrt(squares * inflation_of(scores) + by_prior)};
   }
 
  private:
@@ -172,7 +172,7 @@ class Regression {
   }
 
   void add(const std::vector<Sight>& sights, std::size_t before, std::size_t here) {
-    const double kept = std::exp(-(sights[here].time - sights[before].time) / kErrorTime);
+    const double kept = std::exp(-(sights[here].time - sights[before].time) / kErrorLasts);
     Part part;
     const auto slots = slots_of(JointChoice::All);
     for (std::size_t slot = 0; slot < slots.size(); ++slot) {
@@ -211,7 +211,7 @@ class Regression {
     }
     variance = std::max(1e-6, sum / values);
     for (std::size_t k = 0; k < parts_.size(); ++k)
-      weights[k] = (kFreedom + 3.0) / (kFreedom + 3.0 * squares[k] / (parts_[k].values * variance));
+      weights[k] = (kTailFreedom + 3.0) / (kTailFreedom + 3.0 * squares[k] / (parts_[k].values * variance));
   }
 
   Eigen::Vector3d source_eye_;
