@@ -13,9 +13,9 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kKnownClock = 0.002;  // [s] as in time_offset.cpp
+constexpr double kKnownClock = 0.002;         // [s] as in time_offset.cpp
 constexpr double kLeastLatencySigma = 0.001;  // [s] of a pair: views differ not only in time
-constexpr double kOddPair = 3.0;       // sigmas from which a pair counts less and less
+constexpr double kOddPair = 3.0;              // sigmas from which a pair counts less and less
 constexpr int kLatencyRounds = 10;
 // An edge between two sensors that have this many counts for nothing: with 64 sensors, all edges
 // would take seconds.
@@ -81,7 +81,8 @@ LatencyNetwork network_of(const std::vector<WalkTrack>& walk, const Registration
   return network;
 }
 
-void measure_latencies(LatencyNetwork& network, const RegistrationConfig& config, const PairSearch& search) {
+void measure_latencies(LatencyNetwork& network, const RegistrationConfig& config,
+                       const PairSearch& search) {
   std::vector<Walker> walkers(network.tracks.size());
   search.for_each(walkers.size(), [&](std::size_t i) {
     if (!search.stopped()) walkers[i] = offset_walker(*network.tracks[i], config);
@@ -96,7 +97,7 @@ void measure_latencies(LatencyNetwork& network, const RegistrationConfig& config
 
 /// One step of weighted least squares; from the second step on, pairs far from the last result
 /// count less.
-void solve(LatencyNetwork& network, double prior_sigma) {
+void solve_network(LatencyNetwork& network, double prior_sigma) {
   const auto size = LatencyNetwork::at(network.tracks.size());
   const bool first = network.latencies.size() == 0;
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(size, size) / (prior_sigma * prior_sigma);
@@ -154,10 +155,11 @@ Latencies latencies_of(const std::vector<WalkTrack>& walk, const Registration& f
   LatencyNetwork network = network_of(walk, found);
   if (network.pairs.empty()) return latencies;
   measure_latencies(network, config, search);
-  for (int i = 0; i < kLatencyRounds; ++i) solve(network, seconds(config.latency_sigma));
+  for (int i = 0; i < kLatencyRounds; ++i) solve_network(network, seconds(config.latency_sigma));
   const std::size_t middle = middle_of(network);
   for (std::size_t i = 0; i < network.tracks.size(); ++i) {
-    const double later = network.latencies[LatencyNetwork::at(i)] - network.latencies[LatencyNetwork::at(middle)];
+    const double later =
+        network.latencies[LatencyNetwork::at(i)] - network.latencies[LatencyNetwork::at(middle)];
     const double sigma = network.sigma_between(i, middle);
     const bool sure = std::abs(later) > std::max(kSignificant * sigma, kWorthIt);
     latencies[network.tracks[i]->sensor] = {from_seconds(later), from_seconds(sigma), sure};

@@ -17,23 +17,23 @@ namespace {
 constexpr int kUnknowns = 7;
 constexpr int kLatency = 6;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
-using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using LatencyNormal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using Design = Eigen::Matrix<double, 3, kUnknowns>;
 
 constexpr std::size_t kMostSights = 300;
 constexpr std::size_t kLeastSights = 30;
 constexpr std::size_t kReach = 2;       // frames to either side from which a velocity is taken
 constexpr double kMostReach = 0.3;      // [s] between these two
-constexpr double kErrorLasts = 2.0;      // [s] after which a sensor's error is nearly independent
-constexpr double kTailFreedom = 4.0;        // of the Student-t
+constexpr double kErrorLasts = 2.0;     // [s] after which a sensor's error is nearly independent
+constexpr double kTailFreedom = 4.0;    // of the Student-t
 constexpr double kTurnSigma = deg(10);  // how far the pair's place may be wrong
 constexpr double kShiftSigma = 0.3;     // [m]
 constexpr double kMostLatency = 0.3;    // [s]
 constexpr double kWidened = 1.3;
 constexpr double kLeastSignal = 0.02;  // with less, velocities are noise
-constexpr double kSettled = 0.25;      // sigmas by which another round would change little
-constexpr int kRounds = 3;
-constexpr int kIterations = 8;
+constexpr double kLittleMoved = 0.25;  // sigmas by which another round would change little
+constexpr int kLatencyFits = 3;
+constexpr int kStudentRounds = 8;
 
 /// One frame of the source and the target at that time, both in the target's space.
 struct Sight {
@@ -47,7 +47,7 @@ struct Sight {
 
 /// A frame's part of the normal equations.
 struct Part {
-  Normal normal = Normal::Zero();
+  LatencyNormal normal = LatencyNormal::Zero();
   Unknowns right = Unknowns::Zero();
   double squares = 0.0;
   double values = 0.0;  ///< Number of residuals.
@@ -115,9 +115,9 @@ class Regression {
     std::vector<double> weights(parts_.size(), 1.0);
     double variance = 1.0;
     Unknowns found = Unknowns::Zero();
-    Normal inverse;
-    for (int i = 0; i < kIterations; ++i) {
-      Normal normal = prior.asDiagonal();
+    LatencyNormal inverse;
+    for (int i = 0; i < kStudentRounds; ++i) {
+      LatencyNormal normal = prior.asDiagonal();
       Unknowns right = Unknowns::Zero();
       double noise = 0.0;
       for (std::size_t k = 0; k < parts_.size(); ++k) {
@@ -128,7 +128,7 @@ class Regression {
       const double signal = normal(kLatency, kLatency) - noise;
       if (signal < kLeastSignal * normal(kLatency, kLatency)) return std::nullopt;
       normal(kLatency, kLatency) = signal;
-      inverse = normal.ldlt().solve(Normal::Identity());
+      inverse = normal.ldlt().solve(LatencyNormal::Identity());
       found = inverse * right;
       reweigh(found, weights, variance);
     }
@@ -211,7 +211,8 @@ class Regression {
     }
     variance = std::max(1e-6, sum / values);
     for (std::size_t k = 0; k < parts_.size(); ++k)
-      weights[k] = (kTailFreedom + 3.0) / (kTailFreedom + 3.0 * squares[k] / (parts_[k].values * variance));
+      weights[k] =
+          (kTailFreedom + 3.0) / (kTailFreedom + 3.0 * squares[k] / (parts_[k].values * variance));
   }
 
   Eigen::Vector3d source_eye_;
@@ -225,14 +226,14 @@ std::optional<PairLatency> pair_latency(const Walker& target, const Walker& sour
                                         const Eigen::Isometry3d& target_from_source,
                                         const RegistrationConfig& config) {
   PairLatency sum;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kLatencyFits; ++round) {
     Regression regression(target_from_source, config);
     regression.add(sights_of(target, source, target_from_source, sum.latency, config.max_gap));
     const auto more = regression.solve();
     if (!more) return std::nullopt;
     sum.latency = std::clamp(sum.latency + more->latency, -kMostLatency, kMostLatency);
     sum.sigma = more->sigma;
-    if (std::abs(more->latency) < kSettled * more->sigma) break;
+    if (std::abs(more->latency) < kLittleMoved * more->sigma) break;
   }
   return sum;
 }
