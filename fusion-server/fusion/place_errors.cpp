@@ -8,8 +8,9 @@
 namespace chorus::fusion {
 namespace {
 
-// r of (21): correlation between the places of two sensors.  Where each errs by as much as the
-// master, and independently, half of what each errs by relative to the master is the master's.
+// r of (21): correlation between the places of two sensors along the floor.  Where each errs by as
+// much as the master, and independently, half of what each errs by relative to the master is the
+// master's.  Heights are relative to the common floor, and independent.
 constexpr double kPlacesAlike = 0.5;
 
 /// v x u = crossed(v) u.
@@ -36,6 +37,10 @@ std::vector<OpenView> open_views(const Person& person, const std::vector<SensorI
   return open;
 }
 
+double floor_variance(const Eigen::Matrix3d& covariance) {
+  return 0.5 * std::max(0.0, covariance(0, 0) + covariance(2, 2));
+}
+
 /// Eq. (21).
 Eigen::Matrix3d open_place(const std::vector<OpenView>& views, const Shares& shares,
                            const Eigen::Vector3d& x) {
@@ -48,11 +53,15 @@ Eigen::Matrix3d open_place(const std::vector<OpenView>& views, const Shares& sha
     const Eigen::Matrix3d covariance = place_covariance(*each.view, x);
     own += share * share * covariance;
     common += share * covariance;
-    sigmas += share * std::sqrt(std::max(0.0, mean_variance(covariance)));
+    sigmas += share * std::sqrt(floor_variance(covariance));
   }
-  const double variance = mean_variance(common);
-  if (!(variance > 0)) return Eigen::Matrix3d::Zero();
-  return (1.0 - kPlacesAlike) * own + kPlacesAlike * sigmas * sigmas / variance * common;
+  const double variance = floor_variance(common);
+  if (!(variance > 0)) return own;
+  const double along = std::sqrt(1.0 - kPlacesAlike);
+  const Eigen::DiagonalMatrix<double, 3> independent(along, 1.0, along);
+  const Eigen::DiagonalMatrix<double, 3> floor(1.0, 0.0, 1.0);
+  return independent * own * independent +
+         kPlacesAlike * sigmas * sigmas / variance * (floor * common * floor);
 }
 
 }  // namespace

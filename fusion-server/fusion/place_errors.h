@@ -4,11 +4,12 @@
 // so by itself.  With (w, t) the error of a sensor's (rotation vector, position) in world axes, of
 // covariance C, a point x that it sees is wrong by t + w x (x - eye):
 //   C_v(x) = J C J^T,   J = [-[x - eye]x  I]                            docs/papers/body.md (20)
-//   C(x)   = (1 - r) sum s_v^2 C_v + r k sum s_v C_v                              (21)
-//   k      = (sum s_v sigma_v)^2 / sum s_v sigma_v^2,   sigma_v^2 = tr C_v / 3
-// with s_v the view's share in the joint, and r the correlation between the places of two sensors,
-// which both have the master's error.  All this does not change from one instant to the next, and
-// moves no joint.
+//   C(x)   = D (sum s_v^2 C_v) D + r k H (sum s_v C_v) H                          (21)
+//   k      = (sum s_v sigma_v)^2 / sum s_v sigma_v^2
+// with s_v the view's share in the joint, sigma_v^2 its variance along the floor, H the part along
+// the floor, and D a factor of sqrt(1 - r) there.  r is the correlation between the places of two
+// sensors along the floor, which both have the master's error.  All this does not change from one
+// instant to the next, and moves no joint.
 #pragma once
 
 #include <array>

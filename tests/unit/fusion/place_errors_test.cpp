@@ -93,6 +93,13 @@ TEST(PlaceErrors, SensorsThatErrAsTheMasterDoesLeaveWhatTheMasterErrsBy) {
   EXPECT_NEAR(added(seen_by({2}, kAside)), variance * 2.0, 0.01 * variance);
 }
 
+TEST(PlaceErrors, HeightsAreEachSensorsOwn) {
+  Vector6 upward = Vector6::Zero();
+  upward[4] = 0.04;
+  const double variance = upward.squaredNorm() / 3.0;
+  EXPECT_NEAR(added(seen_by({1, 2, 3, 4}, upward)), variance / 4.0, 0.01 * variance);
+}
+
 TEST(PlaceErrors, CountByTheShareOfTheSensor) {
   Person person = seen_by({1, 2}, kAside);
   person.views[0].place_covariance.setZero();
