@@ -25,6 +25,8 @@ struct SensorView {
   double bearing = std::numeric_limits<double>::quiet_NaN();  ///< Otto Eq. (3) alpha [rad].
   double weight = 0.0;                            ///< Product of Eqs. (1)-(3), in [0, 1].
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Sensor position in world [m].
+  /// Extrinsics::covariance of the sensor; zero: its place is exact, or nothing is known of it.
+  Eigen::Matrix<double, 6, 6> place_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Skeleton<WorldSpace> skeleton;
 };
 

@@ -8,7 +8,10 @@
 namespace chorus::fusion {
 
 Memory::Memory(const Memory& other)
-    : config_(other.config_), last_(other.last_), several_(other.several_) {
+    : config_(other.config_),
+      last_(other.last_),
+      several_(other.several_),
+      place_errors_(other.place_errors_) {
   for (const auto& [key, estimator] : other.estimators_) {
     estimators_.emplace(key, estimator->clone());
   }
@@ -45,6 +48,7 @@ FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   auto& estimator = estimators_[{person.id, method}];
   if (!estimator) estimator = begin(method, config_);
   FusedBody body = estimator->fuse(person, instant);
+  place_errors_[person.id].add(body, person, instant.sensors);
   const bool placed = std::ranges::any_of(body.skeleton.joints, &Joint::seen);
   if (!person.carried && placed) last_[person.id] = {body, instant.at, method};
   if (!known) return body;
@@ -59,11 +63,14 @@ void Memory::keep_only(const std::set<PersonId>& tracked) {
                 [&](const auto& entry) { return !tracked.contains(entry.first.first); });
   std::erase_if(last_, [&](const auto& entry) { return !tracked.contains(entry.first); });
   std::erase_if(several_, [&](const auto& entry) { return !tracked.contains(entry.first); });
+  std::erase_if(place_errors_, [&](const auto& entry) { return !tracked.contains(entry.first); });
 }
 
 FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,
                const FusionConfig& config) {
-  return begin(method_for(person, config), config)->fuse(person, {Timestamp{}, sensors});
+  FusedBody body = begin(method_for(person, config), config)->fuse(person, {Timestamp{}, sensors});
+  PlaceErrors().add(body, person, sensors);
+  return body;
 }
 
 }  // namespace chorus::fusion

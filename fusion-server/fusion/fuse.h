@@ -12,6 +12,7 @@
 #include "fusion-server/fusion/estimator.h"
 #include "fusion-server/fusion/fusion_config.h"
 #include "fusion-server/fusion/methods.h"
+#include "fusion-server/fusion/place_errors.h"
 
 namespace chorus::fusion {
 
@@ -48,6 +49,7 @@ class Memory {
   std::map<PersonId, Last> last_;
   std::map<PersonId, Timestamp> several_;  ///< When method_for() last returned the configured
                                            ///< method.
+  std::map<PersonId, PlaceErrors> place_errors_;
   std::map<std::pair<PersonId, Method>, std::unique_ptr<Estimator>> estimators_;
 };
 

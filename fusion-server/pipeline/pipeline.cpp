@@ -79,6 +79,7 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
       SensorView view = view_of(sensor, body, limits);
       view.skeleton = to_world(world_from_sensor, body.skeleton);
       view.eye = world_from_sensor.translation();
+      view.place_covariance = place->second.covariance;
       views.push_back(std::move(view));
     }
   }

@@ -32,6 +32,20 @@ std::vector<FusionCase> scenes_of(const std::string& profile) {
           std::move(cold)};
 }
 
+/// Walks in which the places of the sensors are those that the product finds from the same walk.
+std::vector<FusionCase> registered_cases() {
+  std::vector<FusionCase> cases;
+  for (const std::size_t sensors : {6U, 3U, 2U}) {
+    for (const char* profile : {"A", "B", "D"}) {
+      const std::string ring = sensors == 6 ? "workshop6" : fmt::format("sensors-{}", sensors);
+      cases.push_back({fmt::format("{}-{}-own-registration", ring, profile),
+                       contest_of(profile, sensors, PathKind::Random), true});
+      cases.back().contest.own_registration = true;
+    }
+  }
+  return cases;
+}
+
 /// The yaws at which every sensor swaps left and right, and swaps them back [rad].
 struct Flips {
   double out;
@@ -77,14 +91,12 @@ std::vector<FusionCase> main_cases() {
     }
   }
   cases.push_back({"sensors-10-A", contest_of("A", 10, PathKind::Random)});
-  FusionCase registered{"workshop6-A-own-registration", contest_of("A", 6, PathKind::Random)};
-  registered.contest.own_registration = true;
-  cases.push_back(std::move(registered));
   for (const char* profile : {"A", "B", "D"}) {
     cases.push_back({fmt::format("workshop6-{}-by-shoulders", profile),
                      contest_of(profile, 6, PathKind::Random)});
     cases.back().contest.pipeline.sides.by = facing::SidesBy::Shoulders;
   }
+  for (FusionCase& each : registered_cases()) cases.push_back(std::move(each));
   for (FusionCase& each : cases) {
     each.quick =
         each.name == kMainCase || each.name == "workshop6-A-cold" || each.name == "workshop6-D";

@@ -43,10 +43,12 @@ std::vector<std::size_t> reached_from(std::size_t start, const std::vector<Eigen
 }  // namespace
 
 Method product(fusion::FusionConfig config) {
-  return [config = std::move(config), memory = fusion::Memory()](const Person& person,
-                                                                 Timestamp instant) mutable {
-    static const std::vector<SensorId> kNobody;
-    return memory.fuse({person}, {instant, kNobody}, config).front().skeleton;
+  return [config = std::move(config), memory = fusion::Memory(), sensors = std::vector<SensorId>()](
+             const Person& person, Timestamp instant) mutable {
+    for (const SensorView& view : person.views) {
+      if (std::ranges::count(sensors, view.sensor) == 0) sensors.push_back(view.sensor);
+    }
+    return memory.fuse({person}, {instant, sensors}, config).front().skeleton;
   };
 }
 

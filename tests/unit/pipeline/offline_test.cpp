@@ -103,6 +103,21 @@ TEST(FuseOffline, GivenExtrinsicsAreUsedAsTheyAre) {
   EXPECT_LT(mean_error(fused->snapshots, Eigen::Isometry3d::Identity()), mm(2));
 }
 
+TEST(FuseOffline, StatesWhatTheGivenExtrinsicsLeaveOpen) {
+  const auto tracks = walk({.length = 2, .noise = 0.02});
+  Registration loose = published();
+  for (auto& [sensor, place] : loose.sensors) place.covariance(4, 4) = 0.05 * 0.05;
+  const auto exact = fuse_offline(tracks, published(), {});
+  const auto open = fuse_offline(tracks, loose, {});
+  ASSERT_TRUE(exact && open && !exact->snapshots.empty());
+  ASSERT_EQ(open->snapshots.size(), exact->snapshots.size());
+  const auto upward = [](const Snapshot& snapshot) {
+    const Joint& neck = snapshot.bodies.at(0).skeleton[JointId::Neck];
+    return neck.covariance.matrix()(1, 1);
+  };
+  EXPECT_GT(upward(open->snapshots.back()) - upward(exact->snapshots.back()), 0.15 * 0.05 * 0.05);
+}
+
 TEST(FuseOffline, SameInputsSameBytes) {
   const auto tracks = walk({.length = 5});
   const auto first = fuse_offline(tracks, std::nullopt, {});

@@ -86,6 +86,20 @@ TEST(Perceive, HandsOnTheViewsThatStepFuses) {
   EXPECT_EQ(perceived.memory.tracks.people.size(), fused.memory.tracks.people.size());
 }
 
+TEST(Step, WhatTheRegistrationLeavesOpenIsInTheStatedErrors) {
+  Registration loose = ring_registration(6);
+  for (auto& [sensor, place] : loose.sensors) place.covariance(5, 5) = mm(40) * mm(40);
+  for (const PipelineConfig& config : {without_memory(), PipelineConfig{}}) {
+    const Step exact = run(ring_histories({}), ring_registration(6), 20, config);
+    const Step open = run(ring_histories({}), loose, 20, config);
+    ASSERT_EQ(open.snapshot.bodies.size(), 1u);
+    const auto along_z = [](const Step& step) {
+      return step.snapshot.bodies[0].skeleton[JointId::Neck].covariance.matrix()(2, 2);
+    };
+    EXPECT_GT(along_z(open) - along_z(exact), 0.15 * mm(40) * mm(40));
+  }
+}
+
 TEST(Step, ThreePeopleSeenByTenSensorsAreThreePeople) {
   const Step last = run(ring_histories({.sensors = 10, .people = 3}), ring_registration(10), 20);
   EXPECT_EQ(last.snapshot.bodies.size(), 3u);
