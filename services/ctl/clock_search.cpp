@@ -12,15 +12,15 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr double kStep = 0.05;        // between offsets that are tried [s]
-constexpr double kThinned = 0.1;      // between points that are compared [s]
-constexpr double kLeastCommon = 5.0;  // [s]
-constexpr double kLeastShare = 0.5;   // of the shorter trace that the two must have in common
-constexpr double kOther = 0.5;        // offsets nearer than this are one minimum [s]
-constexpr double kAlike = 1.2;        // a second minimum this much worse may be the true one
-constexpr double kOneMotion = 0.3;    // [m]; with a larger misfit they show different motions
-constexpr double kPerfect = 0.002;    // [m], below which misfits are not told apart
-constexpr double kTrim = 3.0;         // medians beyond which a point does not count
+constexpr double kStep = 0.05;         // between offsets that are tried [s]
+constexpr double kThinned = 0.1;       // between points that are compared [s]
+constexpr double kLeastCommon = 5.0;   // [s]
+constexpr double kLeastOverlap = 0.5;  // of the shorter trace that the two must have in common
+constexpr double kOther = 0.5;         // offsets nearer than this are one minimum [s]
+constexpr double kAlike = 1.2;         // a second minimum this much worse may be the true one
+constexpr double kOneMotion = 0.3;     // [m]; with a larger misfit they show different motions
+constexpr double kPerfect = 0.002;     // [m], below which misfits are not told apart
+constexpr double kTrim = 3.0;          // medians beyond which a point does not count
 constexpr std::size_t kMostOffsets = 100'000;
 
 Trace thinned(const Trace& trace) {
@@ -120,7 +120,7 @@ Result<double> rough_offset(const Trace& ours, const Trace& reference,
   if (length_of(ours) < kLeastCommon || length_of(reference) < kLeastCommon) return little();
   const Trace few = thinned(ours);
   const double common =
-      std::max(kLeastCommon, kLeastShare * std::min(length_of(ours), length_of(reference)));
+      std::max(kLeastCommon, kLeastOverlap * std::min(length_of(ours), length_of(reference)));
   // Holes in our own trace are not the reference's fault.
   const double filled = static_cast<double>(few.size()) * kThinned / length_of(ours);
   const auto least = static_cast<std::size_t>(common / kThinned * std::min(1.0, 0.9 * filled));

@@ -17,18 +17,19 @@ constexpr double kBeside = 0.1;       // [m] from the line to the front
 
 Eigen::Vector3d on_floor(const Eigen::Vector2d& place) { return {place.x(), 0.0, place.y()}; }
 
-std::vector<double> distances(std::span<const Mark> marks, const Eigen::Isometry3d& now_from_new) {
+std::vector<double> distances(std::span<const FloorMark> marks,
+                              const Eigen::Isometry3d& now_from_new) {
   std::vector<double> off;
-  for (const Mark& mark : marks)
+  for (const FloorMark& mark : marks)
     off.push_back((now_from_new * on_floor(mark.shall) - on_floor(mark.now)).norm());
   return off;
 }
 
 /// Between the two of them that are farthest from each other.
-double reach_of(std::span<const Mark> marks, Eigen::Vector2d Mark::*place) {
+double reach_of(std::span<const FloorMark> marks, Eigen::Vector2d FloorMark::*place) {
   double most = 0.0;
-  for (const Mark& one : marks) {
-    for (const Mark& other : marks) most = std::max(most, (one.*place - other.*place).norm());
+  for (const FloorMark& one : marks) {
+    for (const FloorMark& other : marks) most = std::max(most, (one.*place - other.*place).norm());
   }
   return most;
 }
@@ -38,10 +39,10 @@ struct Fitted {
   std::vector<double> off;
 };
 
-std::optional<Fitted> fit(std::span<const Mark> marks) {
+std::optional<Fitted> fit(std::span<const FloorMark> marks) {
   std::vector<Eigen::Vector3d> shall;
   std::vector<Eigen::Vector3d> now;
-  for (const Mark& mark : marks) {
+  for (const FloorMark& mark : marks) {
     shall.push_back(on_floor(mark.shall));
     now.push_back(on_floor(mark.now));
   }
@@ -51,14 +52,14 @@ std::optional<Fitted> fit(std::span<const Mark> marks) {
 }
 
 /// True if the marks fit once left and right of the new world are exchanged.
-bool fits_mirrored(std::span<const Mark> marks) {
-  std::vector<Mark> mirrored(marks.begin(), marks.end());
-  for (Mark& mark : mirrored) mark.shall.x() = -mark.shall.x();
+bool fits_mirrored(std::span<const FloorMark> marks) {
+  std::vector<FloorMark> mirrored(marks.begin(), marks.end());
+  for (FloorMark& mark : mirrored) mark.shall.x() = -mark.shall.x();
   const auto found = fit(mirrored);
   return found && std::ranges::max(found->off) <= kMostOff;
 }
 
-tl::unexpected<Error> do_not_fit(std::span<const Mark> marks, const std::vector<double>& off) {
+tl::unexpected<Error> do_not_fit(std::span<const FloorMark> marks, const std::vector<double>& off) {
   const auto worst = std::ranges::max_element(off);
   std::string text =
       fmt::format("the marks do not fit together: mark {} would be {:.2f} m from where it shall be",
@@ -67,7 +68,7 @@ tl::unexpected<Error> do_not_fit(std::span<const Mark> marks, const std::vector<
     text += "; they fit with left and right exchanged: +x is on the left of who faces +z";
   } else if (marks.size() == 2) {
     text += fmt::format("; they are {:.2f} m apart and shall be {:.2f} m apart",
-                        reach_of(marks, &Mark::now), reach_of(marks, &Mark::shall));
+                        reach_of(marks, &FloorMark::now), reach_of(marks, &FloorMark::shall));
   }
   return fail(ErrorCode::Conflict, "origin", std::move(text));
 }
@@ -89,12 +90,13 @@ Result<double> coordinate(std::string_view text) {
 
 }  // namespace
 
-Result<MarkedOrigin> origin_from_marks(std::span<const Mark> marks) {
+Result<MarkedOrigin> origin_from_marks(std::span<const FloorMark> marks) {
   if (marks.size() < 2)
     return fail(ErrorCode::InvalidArgument, "origin", "two marks or more are needed");
   MarkedOrigin out;
-  out.apart = reach_of(marks, &Mark::now);
-  if (out.apart < kLeastApart || reach_of(marks, &Mark::shall) < kLeastApart) return too_near();
+  out.apart = reach_of(marks, &FloorMark::now);
+  if (out.apart < kLeastApart || reach_of(marks, &FloorMark::shall) < kLeastApart)
+    return too_near();
   auto found = fit(marks);
   if (!found) return too_near();
   if (std::ranges::max(found->off) > kMostOff) return do_not_fit(marks, found->off);
@@ -138,7 +140,7 @@ Result<Eigen::Vector2d> read_place(std::string_view text) {
   return Eigen::Vector2d(*x, *z);
 }
 
-Result<Mark> read_mark(std::string_view text) {
+Result<FloorMark> read_mark(std::string_view text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos)
     return fail(ErrorCode::InvalidArgument, "origin",
@@ -149,7 +151,7 @@ Result<Mark> read_mark(std::string_view text) {
   const auto shall = read_place(text.substr(equals + 1));
   if (!now) return pass(now);
   if (!shall) return pass(shall);
-  return Mark{*now, *shall};
+  return FloorMark{*now, *shall};
 }
 
 }  // namespace chorus::ctl

@@ -20,7 +20,7 @@ inline constexpr double kLeastApart = 0.5;
 inline constexpr double kMostOff = 0.10;
 
 /// Places on the floor are (x, z) [m].
-struct Mark {
+struct FloorMark {
   Eigen::Vector2d now;    ///< In the world as it is.
   Eigen::Vector2d shall;  ///< In the world to be.
 };
@@ -34,7 +34,7 @@ struct MarkedOrigin {
 /// Least squares over yaw and place.  InvalidArgument: fewer than two marks, or all within
 /// kLeastApart.  Conflict: a mark is off by more than kMostOff; the error says whether left and
 /// right are exchanged.
-[[nodiscard]] Result<MarkedOrigin> origin_from_marks(std::span<const Mark> marks);
+[[nodiscard]] Result<MarkedOrigin> origin_from_marks(std::span<const FloorMark> marks);
 
 /// From where the origin is, from any place straight ahead of it, and from one on the left of that
 /// line (+x).  The third only checks: Conflict if it is on the right, or within 0.1 m of the line.
@@ -46,6 +46,6 @@ struct MarkedOrigin {
 /// "0.5,-2" -> (0.5, -2); within 1000 m.
 [[nodiscard]] Result<Eigen::Vector2d> read_place(std::string_view text);
 /// "0.1,2.3=0,0": where it is, and where it shall be.
-[[nodiscard]] Result<Mark> read_mark(std::string_view text);
+[[nodiscard]] Result<FloorMark> read_mark(std::string_view text);
 
 }  // namespace chorus::ctl

@@ -153,8 +153,8 @@ Result<std::vector<Eigen::Vector2d>> walk_the_marks(const OriginArguments& argum
 }
 
 /// The marks with numbers: those given, and those that the person is led to.
-Result<std::vector<Mark>> marks_of(const OriginArguments& arguments) {
-  std::vector<Mark> marks;
+Result<std::vector<FloorMark>> marks_of(const OriginArguments& arguments) {
+  std::vector<FloorMark> marks;
   for (const std::string& text : arguments.marks) {
     const auto mark = read_mark(text);
     if (!mark) return pass(mark);

@@ -18,8 +18,8 @@ Place old_place(const Place& fresh, double yaw) {
                -2.0 - fresh.x() * std::sin(yaw) + fresh.y() * std::cos(yaw));
 }
 
-std::vector<Mark> marks_of(const std::vector<Place>& fresh, double yaw) {
-  std::vector<Mark> marks;
+std::vector<FloorMark> marks_of(const std::vector<Place>& fresh, double yaw) {
+  std::vector<FloorMark> marks;
   for (const Place& place : fresh) marks.push_back({old_place(place, yaw), place});
   return marks;
 }
@@ -67,7 +67,7 @@ TEST(Marks, ThatContradictOneAnotherAreRefusedByName) {
 
 TEST(Marks, WithLeftAndRightExchangedAreNamed) {
   auto marks = marks_of({{0, 0}, {0, 2}, {2, 0}}, 0.0);
-  for (Mark& mark : marks) mark.shall.x() = -mark.shall.x();
+  for (FloorMark& mark : marks) mark.shall.x() = -mark.shall.x();
   EXPECT_THAT(origin_from_marks(marks).error().message, HasSubstr("left and right exchanged"));
 }
 

@@ -20,19 +20,19 @@ using std::chrono::milliseconds;
 
 constexpr JointId kJoint = JointId::Neck;
 constexpr std::size_t kAt = index_of(kJoint);
-constexpr double kStep = 0.04;       // [s]
+constexpr double kInstant = 0.04;    // [s]
 constexpr double kNoise = 1e-4;      // of a measurement [m^2]
 constexpr double kSlow = 9e-4;       // what views err by for long [m^2]
-constexpr double kDensity = 2.0;     // [m^2 / s^3]
+constexpr double kRestless = 2.0;    // [m^2 / s^3]
 constexpr double kSpeedPrior = 1.0;  // [m^2 / s^2]
 const Timestamp kBegin = from_unix_ns(1'790'000'000'000'000'000);
 
 using Matrix = Eigen::MatrixXd;
 
-Eigen::Matrix2d forwards() { return (Eigen::Matrix2d() << 1, kStep, 0, 1).finished(); }
+Eigen::Matrix2d forwards() { return (Eigen::Matrix2d() << 1, kInstant, 0, 1).finished(); }
 Eigen::Matrix2d driven() {
-  const double t = kStep;
-  return kDensity * (Eigen::Matrix2d() << t * t * t / 3, t * t / 2, t * t / 2, t).finished();
+  const double t = kInstant;
+  return kRestless * (Eigen::Matrix2d() << t * t * t / 3, t * t / 2, t * t / 2, t).finished();
 }
 
 /// Bodies of one joint, as a plain Kalman filter gives them along the x axis; NaN: not measured.
@@ -62,8 +62,8 @@ std::vector<FusedBody> filtered(const std::vector<double>& measured) {
     (*body.motion)[kAt] = {{mean(1), 0, 0},
                            covariance(1, 1),
                            covariance(0, 1),
-                           kDensity,
-                           kDensity,
+                           kRestless,
+                           kRestless,
                            covariance(0, 0),
                            seen};
     bodies.push_back(body);
@@ -74,7 +74,7 @@ std::vector<FusedBody> filtered(const std::vector<double>& measured) {
 std::vector<BodyAt> course_of(const std::vector<FusedBody>& bodies, std::size_t from = 0) {
   std::vector<BodyAt> course;
   for (std::size_t i = from; i < bodies.size(); ++i)
-    course.push_back({kBegin + from_seconds(kStep * static_cast<double>(i)), &bodies[i]});
+    course.push_back({kBegin + from_seconds(kInstant * static_cast<double>(i)), &bodies[i]});
   return course;
 }
 

@@ -15,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 
 /// Sensors on a ring, 70 deg apart, that stamp what they see this much later.
-std::vector<WalkTrack> ring(const std::vector<int>& late_ms, WalkSpec spec = {}) {
+std::vector<WalkTrack> late_ring(const std::vector<int>& late_ms, WalkSpec spec = {}) {
   std::vector<WalkTrack> walk;
   for (std::size_t i = 0; i < late_ms.size(); ++i) {
     const int number = static_cast<int>(i) + 1;
@@ -25,21 +25,24 @@ std::vector<WalkTrack> ring(const std::vector<int>& late_ms, WalkSpec spec = {})
   return walk;
 }
 
-Latencies of(const std::vector<WalkTrack>& walk) { return solve(walk, kWalkStart, {}).latencies; }
+Latencies latencies_in(const std::vector<WalkTrack>& walk) {
+  return solve(walk, kWalkStart, {}).latencies;
+}
 
-double milliseconds_of(Duration duration) { return 1e3 * seconds(duration); }
+double ms_of(Duration duration) { return 1e3 * seconds(duration); }
 
-Eigen::Vector2d circle(double t) { return {1.2 * std::sin(0.75 * t), 1.2 * std::cos(0.75 * t)}; }
+Eigen::Vector2d round_walk(double t) {
+  return {1.2 * std::sin(0.75 * t), 1.2 * std::cos(0.75 * t)};
+}
 
 TEST(Latencies, AreToldAndTakenOff) {
-  const auto walk = ring({0, 20, 0, 50, 0});
-  const Latencies told = of(walk);
+  const auto walk = late_ring({0, 20, 0, 50, 0});
+  const Latencies told = latencies_in(walk);
   ASSERT_EQ(told.size(), 5u);
   for (const auto& [number, late] : {std::pair{1, 0}, {2, 20}, {3, 0}, {4, 50}, {5, 0}}) {
     const Latency& latency = told.at(sensor(number));
-    EXPECT_LT(milliseconds_of(latency.sigma), 4.0) << number;
-    EXPECT_NEAR(milliseconds_of(latency.found), late, 3.0 * milliseconds_of(latency.sigma) + 0.5)
-        << number;
+    EXPECT_LT(ms_of(latency.sigma), 4.0) << number;
+    EXPECT_NEAR(ms_of(latency.found), late, 3.0 * ms_of(latency.sigma) + 0.5) << number;
     EXPECT_EQ(latency.applied, late > 0) << number;
     EXPECT_EQ(latency.added(), late > 0 ? -latency.found : Duration{0});
   }
@@ -49,8 +52,8 @@ TEST(Latencies, AreNotClaimedWhereThereAreNone) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     WalkSpec spec;
     spec.seed = seed;
-    for (const auto& [sensor, latency] : of(ring({0, 0, 0, 0}, spec))) {
-      EXPECT_FALSE(latency.applied) << sensor.str() << " " << milliseconds_of(latency.found);
+    for (const auto& [sensor, latency] : latencies_in(late_ring({0, 0, 0, 0}, spec))) {
+      EXPECT_FALSE(latency.applied) << sensor.str() << " " << ms_of(latency.found);
     }
   }
 }
@@ -62,12 +65,12 @@ TEST(Latencies, AreWithinTheirStatedSigma) {
     WalkSpec spec;
     spec.seed = seed;
     spec.length = 10;
-    const Latencies told = of(ring({0, 0, 30}, spec));
+    const Latencies told = latencies_in(late_ring({0, 0, 30}, spec));
     for (int number = 1; number <= 3; ++number) {
       const Latency& latency = told.at(sensor(number));
       if (latency.sigma == Duration{0}) continue;  // what the others are compared with
-      const double off = milliseconds_of(latency.found) - (number == 3 ? 30 : 0);
-      inside += std::abs(off) < 1.96 * milliseconds_of(latency.sigma) ? 1 : 0;
+      const double off = ms_of(latency.found) - (number == 3 ? 30 : 0);
+      inside += std::abs(off) < 1.96 * ms_of(latency.sigma) ? 1 : 0;
       ++asked;
     }
   }
@@ -77,9 +80,9 @@ TEST(Latencies, AreWithinTheirStatedSigma) {
 
 TEST(Latencies, OfACircleAreLeftAtZero) {
   WalkSpec spec;
-  spec.path = circle;
+  spec.path = round_walk;
   spec.noise = 0.02;
-  auto walk = ring({0, 50}, spec);
+  auto walk = late_ring({0, 50}, spec);
   for (std::size_t i = 0; i < walk.size(); ++i) {
     const Eigen::Isometry3d sensor_from_world =
         ring_place(deg(70.0 * static_cast<double>(i + 1))).inverse();
@@ -96,26 +99,26 @@ TEST(Latencies, OfACircleAreLeftAtZero) {
       }
     }
   }
-  const Latencies told = of(walk);
+  const Latencies told = latencies_in(walk);
   for (const auto& [sensor, latency] : told) EXPECT_FALSE(latency.applied) << sensor.str();
 }
 
 TEST(Latencies, BelongToClocksThatAreKnown) {
-  auto walk = ring({0, 30, 0});
+  auto walk = late_ring({0, 30, 0});
   for (SensorFrame& frame : walk[1].frames) frame.clock_sigma = 0.1;
   const Registration found = solve(walk, kWalkStart, {});
   EXPECT_FALSE(found.latencies.contains(sensor(2)));
-  EXPECT_NEAR(milliseconds_of(found.clocks.at(sensor(2)).added), -30, 12);
+  EXPECT_NEAR(ms_of(found.clocks.at(sensor(2)).added), -30, 12);
 }
 
 TEST(Latencies, AreNotAskedForWithASigmaOfZero) {
   RegistrationConfig config;
   config.latency_sigma = Duration{0};
-  EXPECT_TRUE(solve(ring({0, 50, 0}), kWalkStart, config).latencies.empty());
+  EXPECT_TRUE(solve(late_ring({0, 50, 0}), kWalkStart, config).latencies.empty());
 }
 
 TEST(Latencies, TakenOffMakePlacesBetter) {
-  const auto walk = ring({0, 80, 0});
+  const auto walk = late_ring({0, 80, 0});
   RegistrationConfig config;
   config.master = sensor(1);
   const auto off = [&](const Registration& found) {
@@ -130,7 +133,7 @@ TEST(Latencies, TakenOffMakePlacesBetter) {
 }
 
 TEST(PairLatency, OfSensorsThatSawNothingTogetherIsNone) {
-  const Walker first = offset_walker(ring({0})[0], {});
+  const Walker first = offset_walker(late_ring({0})[0], {});
   EXPECT_FALSE(pair_latency(first, Walker{}, Eigen::Isometry3d::Identity(), {}));
   EXPECT_FALSE(pair_latency(Walker{}, first, Eigen::Isometry3d::Identity(), {}));
 }
