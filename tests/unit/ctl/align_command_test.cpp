@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 /// A walk of 20 s, fused once for all tests in this file.
-const Cell& fused_cell() {
+const Cell& aligned_cell() {
   static const Cell cell(20.0);
   static const Outcome fused =
       run_chorus({"fuse", cell.recordings(), "--out", cell.file("walk.mcap"), "--from-walk"});
@@ -27,7 +27,7 @@ const Cell& fused_cell() {
 }
 
 Registration places() {
-  return **RecordedCell::open({fused_cell().file("walk.mcap")})->registration();
+  return **RecordedCell::open({aligned_cell().file("walk.mcap")})->registration();
 }
 
 constexpr double kYaw = deg(30);
@@ -39,7 +39,7 @@ Eigen::Vector3d in_reference(const Eigen::Vector3d& x_in_world) {
 
 /// Writes what a tracker at (kYaw, kPlace) sees of the heads in the walk, as columns t,x,y,z.
 std::string head_file(const char* name, double late = 0.0) {
-  const Cell& cell = fused_cell();
+  const Cell& cell = aligned_cell();
   const std::string exported = cell.file("exported.csv");
   EXPECT_EQ(
       run_chorus({"export", cell.file("walk.mcap"), "--format", "csv", "--out", exported}).code,
@@ -69,7 +69,7 @@ Json aligned(std::vector<std::string> words) {
 }
 
 TEST(AlignCommand, FindsTheOriginOfTheOtherTracker) {
-  const Json found = aligned({head_file("head.csv"), fused_cell().file("walk.mcap")});
+  const Json found = aligned({head_file("head.csv"), aligned_cell().file("walk.mcap")});
   EXPECT_NEAR(found.at("origin").at("x"), kPlace.x(), 0.005);
   EXPECT_NEAR(found.at("origin").at("z"), kPlace.z(), 0.005);
   EXPECT_NEAR(found.at("origin").at("yawDegrees"), 30.0, 0.1);
@@ -78,7 +78,7 @@ TEST(AlignCommand, FindsTheOriginOfTheOtherTracker) {
 
 TEST(AlignCommand, SaysWhatToCall) {
   const Outcome done =
-      run_chorus({"align", head_file("head2.csv"), fused_cell().file("walk.mcap")});
+      run_chorus({"align", head_file("head2.csv"), aligned_cell().file("walk.mcap")});
   ASSERT_EQ(done.code, kExitOk) << done.error;
   EXPECT_THAT(done.out, HasSubstr("Head beside the reference"));
   EXPECT_THAT(done.out, HasSubstr("(they are not UTC)"));
@@ -87,7 +87,8 @@ TEST(AlignCommand, SaysWhatToCall) {
 
 TEST(AlignCommand, OurOwnExportIsAReferenceToo) {
   head_file("head3.csv");
-  const Json found = aligned({fused_cell().file("exported.csv"), fused_cell().file("walk.mcap")});
+  const Json found =
+      aligned({aligned_cell().file("exported.csv"), aligned_cell().file("walk.mcap")});
   EXPECT_EQ(found.at("walk").at("body"), "Head");
   EXPECT_NEAR(found.at("walk").at("clockOffsetMilliseconds"), 0.0, 1.0);
   EXPECT_NEAR(found.at("origin").at("yawDegrees"), 0.0, 0.05);
@@ -95,7 +96,7 @@ TEST(AlignCommand, OurOwnExportIsAReferenceToo) {
 
 TEST(AlignCommand, AnotherJointDoesNotFitAsWell) {
   const std::string file = head_file("head4.csv");
-  const std::string walk = fused_cell().file("walk.mcap");
+  const std::string walk = aligned_cell().file("walk.mcap");
   const auto median = [](const Json& found) {
     return found.at("walk").at("residuals").at("all").at("medianMillimetres").get<double>();
   };
@@ -103,7 +104,7 @@ TEST(AlignCommand, AnotherJointDoesNotFitAsWell) {
 }
 
 TEST(AlignCommand, NamesTheAxesThatWouldFit) {
-  const std::string file = fused_cell().file("turned.csv");
+  const std::string file = aligned_cell().file("turned.csv");
   std::ofstream out(file);
   bool first = true;
   for (const std::string& line : lines_of(chorus::testing::bytes_of(head_file("head5.csv")))) {
@@ -113,7 +114,7 @@ TEST(AlignCommand, NamesTheAxesThatWouldFit) {
     first = false;
   }
   out.close();
-  const std::string walk = fused_cell().file("walk.mcap");
+  const std::string walk = aligned_cell().file("walk.mcap");
   const Outcome wrong = run_chorus({"align", file, walk});
   EXPECT_EQ(wrong.code, kExitFailed);
   EXPECT_THAT(wrong.error, HasSubstr("With --axes z-up they fit"));
@@ -121,7 +122,7 @@ TEST(AlignCommand, NamesTheAxesThatWouldFit) {
 }
 
 std::string sensors_file() {
-  const std::string file = fused_cell().file("sensors.csv");
+  const std::string file = aligned_cell().file("sensors.csv");
   std::ofstream out(file);
   out << "name,x,y,z,qx,qy,qz,qw\n";
   for (const auto& [sensor, place] : places().sensors) {
@@ -136,7 +137,7 @@ std::string sensors_file() {
 }
 
 TEST(AlignCommand, ComparesTheSensorsWithBodiesOnThem) {
-  const Json found = aligned({sensors_file(), fused_cell().file("walk.mcap"), "--sensor-axes"});
+  const Json found = aligned({sensors_file(), aligned_cell().file("walk.mcap"), "--sensor-axes"});
   EXPECT_FALSE(found.contains("walk"));
   EXPECT_NEAR(found.at("origin").at("yawDegrees"), 30.0, 0.01);
   ASSERT_EQ(found.at("sensorsFromMaster").size(), 3u);
@@ -157,7 +158,7 @@ TEST(AlignCommand, AppliesOnlyToTheWorldOfTheRecording) {
   const std::string same = wire::write_registration(places());
   const ScriptedServer server(ScriptedServer::Texts{{"/registration", {same}}});
   const std::string file = head_file("head6.csv");
-  const std::string walk = fused_cell().file("walk.mcap");
+  const std::string walk = aligned_cell().file("walk.mcap");
   const Outcome done = run_chorus({"align", file, walk, "--apply", "--url", server.url()});
   EXPECT_EQ(done.code, kExitOk) << done.error;
   ASSERT_EQ(server.written().size(), 1u);
@@ -174,7 +175,7 @@ TEST(AlignCommand, AppliesOnlyToTheWorldOfTheRecording) {
 }
 
 TEST(AlignCommand, SaysWhatIsMissing) {
-  const std::string walk = fused_cell().file("walk.mcap");
+  const std::string walk = aligned_cell().file("walk.mcap");
   EXPECT_EQ(run_chorus({"align", "/nothing.csv", walk}).code, kExitFailed);
   EXPECT_EQ(run_chorus({"align", walk, walk}).code, kExitFailed);
   EXPECT_EQ(run_chorus({"align", head_file("head7.csv"), walk, "--joint", "Nose"}).code,

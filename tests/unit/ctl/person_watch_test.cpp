@@ -9,15 +9,15 @@ namespace {
 using Json = nlohmann::json;
 
 Json joint(double x, double z) { return {{"x", x}, {"y", 1.0}, {"z", z}}; }
-Json frame(std::vector<Json> bodies) { return {{"bodies", std::move(bodies)}}; }
+Json watched_frame(std::vector<Json> bodies) { return {{"bodies", std::move(bodies)}}; }
 
 TEST(Shown, IsOneJointOfTheOnlyPerson) {
   const Json body{{"joints", {{"SpineBase", joint(1, 2)}, {"HandLeft", joint(3, 4)}}}};
-  EXPECT_EQ(*place_in(frame({body}), "SpineBase"), Eigen::Vector2d(1, 2));
-  EXPECT_EQ(*place_in(frame({body}), "HandLeft"), Eigen::Vector2d(3, 4));
-  EXPECT_EQ(place_in(frame({body}), "Head").error().code, ErrorCode::NotFound);
-  EXPECT_EQ(place_in(frame({}), "SpineBase").error().code, ErrorCode::NotFound);
-  EXPECT_EQ(place_in(frame({body, body}), "SpineBase").error().code, ErrorCode::Conflict);
+  EXPECT_EQ(*place_in(watched_frame({body}), "SpineBase"), Eigen::Vector2d(1, 2));
+  EXPECT_EQ(*place_in(watched_frame({body}), "HandLeft"), Eigen::Vector2d(3, 4));
+  EXPECT_EQ(place_in(watched_frame({body}), "Head").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(place_in(watched_frame({}), "SpineBase").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(place_in(watched_frame({body, body}), "SpineBase").error().code, ErrorCode::Conflict);
 }
 
 TEST(Shown, FeetAreTheMiddleBetweenThem) {
@@ -26,7 +26,7 @@ TEST(Shown, FeetAreTheMiddleBetweenThem) {
                     {"FootLeft", joint(0.2, 0.2)},
                     {"AnkleRight", joint(-0.2, 0.0)},
                     {"FootRight", joint(-0.2, 0.2)}}}};
-  EXPECT_TRUE(place_in(frame({body}), kFeet)->isApprox(Eigen::Vector2d(0, 0.1)));
+  EXPECT_TRUE(place_in(watched_frame({body}), kFeet)->isApprox(Eigen::Vector2d(0, 0.1)));
 }
 
 /// Frames at 10 Hz: the first that tells a place, as a time; negative if none does.
