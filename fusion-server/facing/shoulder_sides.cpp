@@ -16,7 +16,7 @@ namespace {
 constexpr double kSquare = deg(40);  // Otto 3.2: yaw is reliable up to here.
 constexpr double kJump = deg(90);    // Nobody turns this far between two frames.
 constexpr double kMemory = 0.5;      // [s]; over which states are averaged.
-constexpr double kHalf = 0.5;
+constexpr double kMostly = 0.8;      // A share of frames that settles it.
 constexpr double kLongestGap = 1.0;  // [s]; after it a body counts as new.
 
 bool collar_tracked(const Skeleton<WorldSpace>& body) {
@@ -37,7 +37,8 @@ ShoulderSight next_sight(const ShoulderSight& before, Timestamp instant, double 
   ShoulderSight now{instant, angle, before.rear, before.guessed};
   if (std::abs(wrap_angle(angle - before.angle)) > kJump) now.rear = !now.rear;
   now.guessed += passed / (passed + kMemory) * ((tracked ? 0.0 : 1.0) - now.guessed);
-  if (std::abs(angle) < kSquare) now.rear = now.guessed > kHalf;
+  if (std::abs(angle) < kSquare && now.guessed > kMostly) now.rear = true;
+  if (std::abs(angle) < kSquare && now.guessed < 1.0 - kMostly) now.rear = false;
   return now;
 }
 

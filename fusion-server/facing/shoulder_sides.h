@@ -4,9 +4,9 @@
 // of the collar joints.  Our reading, per body of each sensor:
 //   angle    shoulders that turn by more than 90 deg between two frames do not turn: the tracker
 //            has exchanged left and right, so front becomes rear or rear front;
-//   states   of somebody seen squarely (phi within 40 deg, where the paper finds yaw reliable) the
-//            collar (neck, upper spine, shoulders) is tracked throughout from the front; inferred
-//            joints for half a second and more mean the rear.
+//   states   of somebody seen squarely (phi within 40 deg, where the paper finds yaw reliable) a
+//            collar (neck, upper spine, shoulders) that is mostly tracked for half a second means
+//            the front, one that mostly is not the rear.
 // No view knows of another.  docs/papers/sides.md compares it with resolve_sides().
 #pragma once
 

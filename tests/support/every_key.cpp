@@ -8,29 +8,13 @@ namespace {
 using nlohmann::json;
 
 /// Values to try for a key that holds a string; each is valid for some key.
-constexpr const char* kWords[] = {"s2",
-                                  "0.0.0.0",
-                                  "http://a",
-                                  "warn",
-                                  "json",
-                                  "A",
-                                  "circle",
-                                  "replay",
-                                  "otto",
-                                  "centre-axis",
-                                  "icp-only",
-                                  "when-accepted",
-                                  "neck",
-                                  "as-recorded",
-                                  "powerwall",
-                                  "predicted",
-                                  "global",
-                                  "multicast",
-                                  "metres",
-                                  "239.1.2.3",
-                                  "/tmp/x.bvh",
-                                  "10.0.0.1",
-                                  "tests/unit/learn/head_model.json"};
+constexpr const char* kWords[] = {
+    "s2",        "0.0.0.0",     "http://a",    "warn",
+    "json",      "A",           "circle",      "replay",
+    "otto",      "centre-axis", "icp-only",    "when-accepted",
+    "neck",      "shoulders",   "as-recorded", "powerwall",
+    "predicted", "global",      "multicast",   "metres",
+    "239.1.2.3", "/tmp/x.bvh",  "10.0.0.1",    "tests/unit/learn/head_model.json"};
 
 std::vector<json> other_values(const json& value) {
   std::vector<json> others;

@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 constexpr Duration kTakeLength = std::chrono::seconds(12);
 constexpr std::size_t kDrawsOfTake = 4;
 constexpr std::uint64_t kDrawTake = 781;
-constexpr double kBuildSpread = 0.08;  // the same as for people who walk
-constexpr std::size_t kWorst = 6;      // joints that are named
+constexpr double kPerformersSpread = 0.08;  // the same as for people who walk
+constexpr std::size_t kWorst = 6;           // joints that are named
 constexpr const char* kMean = "flip-fixed-mean-true-labels";
 
 struct CapturedTake {
@@ -69,7 +69,7 @@ synthetic::Person performer_of(const CapturedTake& take, std::uint64_t seed) {
   synthetic::Draw draw{seed, kDrawTake};
   synthetic::PerformerScript script;
   script.turn = draw.uniform(-std::numbers::pi, std::numbers::pi);
-  script.body_scale += draw.uniform(-kBuildSpread, kBuildSpread);
+  script.body_scale += draw.uniform(-kPerformersSpread, kPerformersSpread);
   const synthetic::Performer performer(take.performance, script);
   const Duration length = performer.loop() / 2;  // played back and forth
   const double part = draw.uniform();

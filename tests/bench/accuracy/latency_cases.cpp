@@ -21,8 +21,8 @@ namespace {
 
 using registration::WalkTrack;
 
-constexpr std::size_t kDraws = 20;
-constexpr std::size_t kQuickDraws = 2;
+constexpr std::size_t kLatencyDraws = 20;
+constexpr std::size_t kQuickLatencyDraws = 2;
 constexpr double kMillisecond = 1e3;
 constexpr std::array kPlanted{std::chrono::milliseconds(0), std::chrono::milliseconds(20),
                               std::chrono::milliseconds(50)};
@@ -189,7 +189,7 @@ void measure_latencies(Report& report) {
         if (pair) each.setting.places = pair_places(deg(90));
         each.name = fmt::format("latency-{}{}-30s-{}", is_late ? "" : "none-",
                                 pair ? "pair" : "ring6", profile);
-        const std::size_t draws = report.quick() ? kQuickDraws : kDraws;
+        const std::size_t draws = report.quick() ? kQuickLatencyDraws : kLatencyDraws;
         report_draws(report, each, over_draws(draws, [&](std::size_t i) {
                        return one_draw(each, report.seed() + i);
                      }));

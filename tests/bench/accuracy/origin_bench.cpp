@@ -15,8 +15,8 @@
 namespace chorus::bench {
 namespace {
 
-constexpr std::size_t kDraws = 20;
-constexpr std::size_t kQuickDraws = 1;
+constexpr std::size_t kOriginDraws = 20;
+constexpr std::size_t kQuickOriginDraws = 1;
 constexpr std::size_t kQuickAgain = 2;
 constexpr double kStays = mm(10);
 constexpr double kStaysTurned = deg(0.1);
@@ -99,13 +99,14 @@ void report_profile(Report& report, const std::string& profile, const std::vecto
 Result<void> run_origin(Report& report) {
   report.profile(described({"A", "B"}));
   for (const std::string profile : {"A", "B"}) {
-    const auto lives = over_draws(report.quick() ? kQuickDraws : kDraws, [&](std::size_t i) {
-      LifeSetting setting;
-      setting.profile = profile;
-      setting.seed = report.seed() + i;
-      if (report.quick()) setting.again = kQuickAgain;
-      return live_on(setting);
-    });
+    const auto lives =
+        over_draws(report.quick() ? kQuickOriginDraws : kOriginDraws, [&](std::size_t i) {
+          LifeSetting setting;
+          setting.profile = profile;
+          setting.seed = report.seed() + i;
+          if (report.quick()) setting.again = kQuickAgain;
+          return live_on(setting);
+        });
     report_profile(report, profile, lives);
   }
   report.note(

@@ -24,7 +24,7 @@ constexpr Duration kWalk = std::chrono::seconds(30);
 constexpr Duration kBetween = std::chrono::seconds(60);  // from the beginning of a walk to the next
 constexpr Duration kSpare = std::chrono::seconds(5);     // so that pauses do not end a walk early
 constexpr double kReach = 1.0;                           // of the marks, along x and along z [m]
-constexpr double kBuildSpread = 0.08;
+constexpr double kWalkersSpread = 0.08;
 
 SensorId sensor_number(std::size_t place) {
   return SensorId::parse(fmt::format("s{}", place + 1)).value();
@@ -132,7 +132,7 @@ void Cell::begin_walk() {
   synthetic::WalkerScript script;
   synthetic::Draw draw{kLifePurpose, setting_.seed, walks_};
   script.seed = draw.bits();
-  script.body_scale += draw.uniform(-kBuildSpread, kBuildSpread);
+  script.body_scale += draw.uniform(-kWalkersSpread, kWalkersSpread);
   scene_.people = synthetic::make_people(script, 1);
 }
 
