@@ -96,7 +96,7 @@ class Booted(unittest.TestCase):
                          "token=$(sed -n 's/.*\"token\": \"\\([0-9a-f]*\\)\", \"role\": \"read\".*/\\1/p' /etc/chorus/sensor.json) && "
                          "chorus init fusion --sensor b1=http://127.0.0.1:8081/,$token && "
                          "install -d -o chorus -g chorus -m 750 /var/lib/chorus/fusion && "
-                         f"echo '{PLACE}' | install -o chorus -g chorus -m 640 /dev/stdin /var/lib/chorus/fusion/registration.json && "
+                         f"echo '{PLACE}' > /var/lib/chorus/fusion/registration.json && chown chorus: /var/lib/chorus/fusion/registration.json && "
                          "rm -r /packages && rm -f /usr/sbin/policy-rc.d")
         cls.machine = Machine(cls.maker.root)
         cls.addClassCleanup(cls.machine.off)  # before it boots, which can fail halfway
