@@ -344,7 +344,7 @@ void add_reference_options(CLI::App& options, AlignArguments& arguments) {
 void add_source_options(CLI::App& options, AlignArguments& arguments) {
   const std::vector<std::string> joints(kJointNames.begin(), kJointNames.end());
   options.add_option("--joint", arguments.joint, "Our joint that carries the marker")
-      ->check(CLI::IsMember(joints))
+      ->check(CLI::IsMember(joints).description("JOINT"))
       ->capture_default_str();
   options.add_option("--person", arguments.person, "Our person of this id");
   options

@@ -246,7 +246,7 @@ std::vector<CLI::Option*> add_watch_options(CLI::App& options, OriginArguments& 
   auto* with =
       options
           .add_option("--with", arguments.with, "What of the person is above a mark: a joint, feet")
-          ->check(CLI::IsMember(names))
+          ->check(CLI::IsMember(names).description("JOINT"))
           ->capture_default_str();
   auto* seconds =
       options.add_option("--seconds", arguments.seconds, "How long the person stands still [s]")
