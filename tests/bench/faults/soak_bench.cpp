@@ -262,7 +262,12 @@ Result<void> run_soak(Report& report) {
   Day day(*cell);
   const Timestamp begun = now();
   for (int second = 0; second < soak_seconds(report); ++second) {
-    if (auto passed = day.pass_second(second); !passed) return passed;
+    if (auto passed = day.pass_second(second); !passed) {  // what was measured so far is told
+      report.condition(
+          fmt::format("the day goes on after second {}: {}", second, to_string(passed.error())),
+          false);
+      break;
+    }
     wait_for(seconds(begun + from_seconds(second + 1.0) - now()));
   }
   const Timestamp ended = now();
