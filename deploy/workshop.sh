@@ -138,10 +138,12 @@ packages_for() {  # SSH
 }
 
 install_on() {  # SSH PACKAGE...
-  local host=$1 folder; shift
+  local host=$1 folder lacking; shift
   folder=$(packages_for "$host")
   doing="installing $*"
-  tar -C "$folder" -cf - --exclude=./debug . | on "$host" "rm -rf $there && mkdir -p $there && tar -C $there -xf -"
+  tar -C "$folder" -cf - SYSTEM Packages install.sh | on "$host" "rm -rf $there && mkdir -p $there && tar -C $there -xf -"
+  lacking=$(on "$host" "$there/install.sh --list $*" </dev/null)
+  [[ -z $lacking ]] || tar -C "$folder" -cf - --files-from=<(echo "$lacking") | on "$host" "tar -C $there -xf -"
   on "$host" "$there/install.sh $*" </dev/null
 }
 

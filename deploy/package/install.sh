@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
 # Installs Chorus from this folder, without internet: ./install.sh chorus-sensor | chorus-fusion | chorus-tools ...
+#   ./install.sh --list PACKAGE... prints which packages of this folder that would install here, and changes nothing.
 # Neither reads nor changes the system's own package sources.
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
-(( $# > 0 )) || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
+list=''
+[[ ${1:-} != --list ]] || { list=yes; shift; }
+(( $# > 0 )) || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 [[ -e "$folder/SYSTEM" && -e "$folder/Packages" ]] ||
   { echo "install: $folder is not complete; copy again all that deploy/make-packages.sh made" >&2; exit 1; }
 for name in "$@"; do
-  [[ $name != -* ]] && compgen -G "$folder/${name%%=*}_*.deb" >/dev/null && continue
+  [[ $name != -* ]] && grep -Fqx "Package: ${name%%=*}" "$folder/Packages" && continue
   echo "install: there is no package $name here; there are:" "$(sed -n 's/^Package: \(chorus-\)/\1/p' "$folder/Packages" | sort -u | tr '\n' ' ')" >&2
   exit 1
 done
@@ -28,6 +31,14 @@ echo "deb [trusted=yes] copy:$folder ./" > "$scratch/sources.list"
 apt=(apt-get -q -o DPkg::Lock::Timeout=120 -o "Dir::Etc::SourceList=$scratch/sources.list" -o Dir::Etc::SourceParts=/dev/null
   -o "Dir::State::Lists=$scratch/lists" -o "Dir::Cache::Archives=$scratch/archives"
   -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=root)
+install=(install -y --no-install-recommends --allow-downgrades)
+if [[ -n $list ]]; then
+  "${apt[@]}" update >/dev/null
+  # Lines 'copy:FOLDER/./FILE' NAME SIZE HASH, where FILE is written as in a URL.
+  "${apt[@]}" -qq --print-uris "${install[@]}" "$@" | sed -n "s|^'copy:$folder/\./\([^']*\)'.*|\1|p" |
+    while read -r file; do printf '%b\n' "${file//%/\\x}"; done
+  exit
+fi
 "${apt[@]}" update
-DEBIAN_FRONTEND=noninteractive "${apt[@]}" install -y --no-install-recommends --allow-downgrades \
+DEBIAN_FRONTEND=noninteractive "${apt[@]}" "${install[@]}" \
   -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--force-confold "$@"  # keeps the user's changes

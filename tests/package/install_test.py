@@ -31,6 +31,10 @@ class Install(unittest.TestCase):
         for wrong in ("chorus-senser", "--reinstall"):
             self.assertIn(f"no package {wrong} here; there are: chorus-sensor \n", self.refused(wrong))
 
+    def test_the_packages_themselves_may_come_after_the_list(self):
+        (self.folder / "chorus-sensor_1_amd64.deb").unlink()
+        self.assertRegex(self.refused("--list", "chorus-sensor"), "run this as root|these packages are for another-1-amd64")
+
     def test_half_a_folder_is_refused(self):
         (self.folder / "SYSTEM").unlink()
         self.assertIn("copy again all", self.refused("chorus-sensor"))

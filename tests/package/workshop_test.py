@@ -13,7 +13,8 @@ TOKEN = "0123456789abcdef"
 FAKE_SSH = """#!/bin/bash
 echo "$1 | $2" >> "$NOTES/commands"
 case $2 in
-  *"tar -C /var/tmp"*) tar -tf - > "$NOTES/sent.$1" ;;
+  *"tar -C /var/tmp"*) tar -tf - >> "$NOTES/sent.$1" ;;
+  *"install.sh --list"*) [[ "$1" == *has-one* ]] || echo "chorus-sensor_$([[ "$1" == *board* ]] && echo arm64 || echo amd64).deb" ;;
   "cat /etc/chorus/sensor.json") printf '// http://x\\n{"http": {"tls": {"key": "k"}, "tokens": [{"token": "%s", "role": "read"}]}}' '""" + TOKEN + """' ;;
   *"test -e /etc/chorus/tls/host.crt") [[ "$1" == *has-one* ]] ;;
   "dpkg --print-architecture") [[ "$1" == *board* ]] && echo arm64 || echo amd64 ;;
@@ -48,6 +49,8 @@ class Workshop(unittest.TestCase):
         packages.mkdir()
         (packages / "SYSTEM").write_text(f"debian-12-{architecture}\n")
         (packages / f"chorus-sensor_{architecture}.deb").touch()
+        (packages / "chorus-tools.deb").touch()
+        (packages / "Packages").touch()
         (packages / "install.sh").write_text("#!/bin/sh\n")
         (packages / "install.sh").chmod(0o755)
 
@@ -66,7 +69,7 @@ class Workshop(unittest.TestCase):
     def test_installs_the_authority_first_then_the_sensors(self):
         done = self.run_it("lay-out")
         self.assertEqual(done.returncode, 0, done.stderr)
-        hosts = [line.split(" | ")[0] for line in self.noted("commands").splitlines() if "install.sh" in line]
+        hosts = [line.split(" | ")[0] for line in self.noted("commands").splitlines() if "install.sh chorus" in line]
         self.assertEqual(hosts, ["root@10.0.0.10", "root@10.0.0.11", "admin@host-2"])
         self.assertIn("install.sh", self.noted("sent.admin@host-2"))
         commands = self.noted("commands")
@@ -104,6 +107,13 @@ class Workshop(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("chorus-sensor_arm64.deb", self.noted("sent.root@board"))
         self.assertIn("chorus-sensor_amd64.deb", self.noted("sent.root@10.0.0.11"))
+
+    def test_a_host_is_sent_only_the_packages_that_it_lacks(self):
+        self.run_it("lay-out", self.with_sensor("root@has-one"))
+        self.assertNotIn(".deb", self.noted("sent.root@has-one"))
+        self.assertIn("root@has-one | /var/tmp/chorus-packages/install.sh chorus-sensor chrony", self.noted("commands"))
+        self.assertIn("chorus-sensor_amd64.deb", self.noted("sent.admin@host-2"))
+        self.assertNotIn("chorus-tools", self.noted("sent.admin@host-2"))
 
     def test_check_asks_every_host_and_fails_when_one_is_not_well(self):
         self.assertEqual(self.run_it("check").returncode, 0)
