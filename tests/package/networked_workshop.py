@@ -127,7 +127,8 @@ class Workshop(unittest.TestCase):
     def connect(cls):
         switch = [sys.executable, "-B", Path(__file__).with_name("bad_switch.py"), *SWITCH, *(host.pid for host in cls.hosts.values())]
         cls.switch = subprocess.Popen(switch, stdout=subprocess.PIPE, text=True)
-        cls.addClassCleanup(cls.switch.communicate)
+        cls.addClassCleanup(cls.switch.stdout.close)
+        cls.addClassCleanup(cls.switch.wait)
         cls.addClassCleanup(cls.switch.kill)
         if cls.switch.stdout.readline() != "ready\n":
             raise AssertionError("bad_switch.py makes no devices here")

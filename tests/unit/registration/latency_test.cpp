@@ -49,12 +49,8 @@ TEST(Latencies, AreToldAndTakenOff) {
 }
 
 TEST(Latencies, AreNotClaimedWhereThereAreNone) {
-  for (const unsigned seed : {1U}) {
-    WalkSpec spec;
-    spec.seed = seed;
-    for (const auto& [sensor, latency] : latencies_in(late_ring({0, 0, 0, 0}, spec))) {
-      EXPECT_FALSE(latency.applied) << sensor.str() << " " << ms_of(latency.found);
-    }
+  for (const auto& [sensor, latency] : latencies_in(late_ring({0, 0, 0, 0}))) {
+    EXPECT_FALSE(latency.applied) << sensor.str() << " " << ms_of(latency.found);
   }
 }
 
@@ -75,7 +71,7 @@ TEST(Latencies, AreWithinTheirStatedSigma) {
     }
   }
   EXPECT_EQ(asked, 8);
-  EXPECT_GE(inside, 6);
+  EXPECT_GE(inside, 7);
 }
 
 TEST(Latencies, OfACircleAreLeftAtZero) {
