@@ -63,7 +63,8 @@ void read_noise(ConfigReader config, synthetic::SensorChoice& choice) {
   model.sampling.drop_share = dropped / 100.0;
   choice.seed = choice.bias_seed = static_cast<std::uint64_t>(seed);
   // Noise differs between sensors that share a seed, and is the same in every run.
-  model.seed = choice.seed ^ fnv1a(choice.id.str());
+  choice.own_seed = fnv1a(choice.id.str());
+  model.seed = choice.seed ^ *choice.own_seed;
 }
 
 void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
