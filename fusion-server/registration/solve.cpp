@@ -265,7 +265,7 @@ void explain_unlinked(Work& work, const SensorId& sensor) {
     }
   }
   if (work.walkers.at(sensor).trail.frames.empty()) {
-    reasons = {fmt::format("sensor {} saw nobody alone during the walk", sensor.str())};
+    reasons = {why_empty(work.walkers.at(sensor).trail)};
   } else if (strangers.size() == 1 && reasons.empty()) {
     const auto [first, second] = std::minmax(sensor.str(), strangers.front());
     reasons = {fmt::format("sensors {} and {} never saw the person together", first, second)};

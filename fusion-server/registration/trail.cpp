@@ -162,6 +162,7 @@ Trail trail_of(const WalkTrack& walk, JointChoice choice) {
   Trail trail;
   trail.sensor = walk.sensor;
   const std::set<BodyId> statues = statues_of(walk);
+  trail.stood = !statues.empty();
   for (const SensorFrame& frame : walk.frames) {
     const BodyFrame* body = sole_body(frame, statues);
     if (!body) continue;
@@ -171,6 +172,12 @@ Trail trail_of(const WalkTrack& walk, JointChoice choice) {
   }
   mark_rests(trail.frames);
   return trail;
+}
+
+std::string why_empty(const Trail& trail) {
+  return "sensor " + trail.sensor.str() +
+         (trail.stood ? " saw nobody who moved, only somebody or something that stood still: walk"
+                      : " saw nobody alone during the walk");
 }
 
 Eigen::Vector3d middle_of(const Trail& trail) {

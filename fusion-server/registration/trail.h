@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/body/skeleton.h"
@@ -38,6 +39,7 @@ struct TrailFrame {
 struct Trail {
   SensorId sensor;
   std::vector<TrailFrame> frames;  ///< Strictly increasing in time.
+  bool stood = false;              ///< Somebody was left out because they never moved.
 };
 
 /// Uses frames with exactly one body, and only tracked joints.  Bodies that are seen for a second
@@ -45,6 +47,9 @@ struct Trail {
 /// Frames with several other bodies would first need association across sensors; the place for that
 /// is sole_body() in trail.cpp.
 [[nodiscard]] Trail trail_of(const WalkTrack& walk, JointChoice choice);
+
+/// Why a trail has no frames.
+[[nodiscard]] std::string why_empty(const Trail& trail);
 
 /// The middle of the walk as this sensor saw it: mean of the first slot [m].
 [[nodiscard]] Eigen::Vector3d middle_of(const Trail& trail);

@@ -168,7 +168,13 @@ Result<http::ActionResult> RegistrationResources::move_origin(const http::Reques
   if (auto idle = unless_busy(progress_, "origin"); !idle) return pass(idle);
   auto next = core::with_origin(registration_, *origin);
   if (!next) return pass(next);
-  registration_ = std::move(*next);
+  if (progress_.proposal) {
+    if (auto moved = core::with_origin(progress_.proposal->registration, *origin))
+      progress_.proposal->registration = std::move(*moved);
+  }
+  const std::uint64_t version = registration_.version + 1;
+  progress_.earlier = std::exchange(registration_, std::move(*next));
+  registration_.version = version;
   control_.move_origin(*origin, ++asked_);
   show();
   return http::ActionResult{http::status::kOk, live_->current(), {}};

@@ -277,7 +277,8 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   status.fates.early += report.early;
   status.fates.stale += report.stale;
   status.refused = refused(status.fates);
-  const core::Share share = core_.share(report.sensor.id);
+  const bool lost = silent || report.state == poll::SensorState::Lost;
+  const core::Share share = lost ? core::Share{} : core_.share(report.sensor.id);
   status.share = share.in_time;
   status.share_afterwards = share.afterwards;
   status.awaited = share.awaited;

@@ -70,6 +70,7 @@ class Tracker(Rig):
         victim = self.sensors[2]
         victim.kill()
         wait_for("s3 is lost", lambda: self.states(fusion)["s3"] == "lost")
+        self.assertEqual(get_json(fusion.url + "sensors/")["sensors"]["s3"]["share"], 0)
         others = wait_for("bodies without s3", lambda: "s3" not in self.contributors(fusion) and self.contributors(fusion))
         self.assertGreaterEqual(len(others), 2)
         self.processes.remove(victim)

@@ -303,11 +303,15 @@ TEST_F(Registering, DeleteForgetsAndShowsItFromTheAnswerOn) {
 TEST_F(Registering, TheOriginMovesAndIsShownFromTheAnswerOn) {
   registration_.sensors[sensor_id("s1")] = Extrinsics{};
   registration_.verdict = Verdict::Good;
+  registration_.version = 12;
   publish();
+  EXPECT_EQ(shown().find("\"earlier\""), std::string::npos);
   const auto moved = act(http::Method::Post, "/registration/origin", R"({"x": 2, "z": -1.5})");
   ASSERT_TRUE(moved) << to_string(moved.error());
   EXPECT_EQ(moved->status, 200);
   EXPECT_EQ(asked_, "origin 2 -1.5 0 #1; ");
+  EXPECT_NE(shown().find("\"version\": 13"), std::string::npos) << shown();
+  EXPECT_NE(shown().find("\"earlier\""), std::string::npos) << "what undo returns to";
   publish();  // publishes a state from before the command was carried out
   EXPECT_NE(shown().find("\"x\": -2"), std::string::npos) << shown();
   EXPECT_NE(shown().find("\"z\": 1.5"), std::string::npos);
