@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <set>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -45,6 +46,7 @@ struct CharacteriseArguments {
 
 struct Recorded {
   Tracks tracks;
+  std::set<std::string> others;  ///< Sensors that were not asked for.
   std::vector<std::string> notes;
 };
 
@@ -56,7 +58,10 @@ Result<Recorded> frames_of(RecordedCell& cell, const std::string& only) {
     for (auto frame = lane.next(); true; frame = lane.next()) {
       if (!frame) return pass(frame);
       if (!*frame) break;
-      if (!only.empty() && (*frame)->sensor.str() != only) continue;
+      if (!only.empty() && (*frame)->sensor.str() != only) {
+        recorded.others.insert((*frame)->sensor.str());
+        continue;
+      }
       if (++count > kMostFrames) {
         recorded.notes.push_back(fmt::format(
             "only the first {} frames were read; --sensor reads one sensor alone", kMostFrames));
@@ -139,10 +144,30 @@ void measure_together(RecordedCell& cell, const Recorded& recorded, pipeline::Of
         characteristics::MeasuredDepthBias{walked->depth_bias->bias, walked->depth_bias->sigma};
 }
 
+Result<void> check_frames(const Recorded& recorded, const CharacteriseArguments& arguments) {
+  if (!recorded.tracks.empty()) return {};
+  if (arguments.sensor.empty())
+    return fail(ErrorCode::NotFound, "the recording", "has no frames of a sensor");
+  return fail(ErrorCode::NotFound, "--sensor",
+              fmt::format("the recording has no frames of {}, but of {}", arguments.sensor,
+                          fmt::join(recorded.others, ", ")));
+}
+
+/// Whole turns that end after the recording, which would be searched in vain.
+Result<void> check_turns(const Recorded& recorded, const characteristics::Known& known) {
+  double longest = 0.0;
+  for (const auto& [sensor, frames] : recorded.tracks)
+    longest = std::max(longest, seconds(frames.back().captured - frames.front().captured));
+  for (const characteristics::KnownTurn& turn : known.turns) {
+    if (turn.to > longest)
+      return fail(ErrorCode::InvalidArgument, "--turn",
+                  fmt::format("{:g},{:g} ends after the recording, which is {:.1f} s long",
+                              turn.from, turn.to, longest));
+  }
+  return {};
+}
+
 Result<void> check_distance(const Recorded& recorded, const CharacteriseArguments& arguments) {
-  if (recorded.tracks.empty())
-    return fail(ErrorCode::NotFound, arguments.sensor.empty() ? "the recording" : arguments.sensor,
-                "has no frames of a sensor");
   if (arguments.distance <= 0.0 || recorded.tracks.size() == 1) return {};
   return fail(ErrorCode::InvalidArgument, "--distance",
               "is that of one sensor; name which with --sensor");
@@ -188,6 +213,8 @@ Result<SensorReport> measured(const CharacteriseArguments& arguments,
   if (!cell) return pass(cell);
   auto recorded = frames_of(*cell, arguments.sensor);
   if (!recorded) return pass(recorded);
+  if (auto ok = check_frames(*recorded, arguments); !ok) return pass(ok);
+  if (auto ok = check_turns(*recorded, *known); !ok) return pass(ok);
   if (auto ok = check_distance(*recorded, arguments); !ok) return pass(ok);
   SensorReport report;
   report.source = arguments.inputs.front();
@@ -247,6 +274,12 @@ Run add_characterise(CLI::App& options) {
       .add_option("--turn", arguments->turns,
                   "When one whole, even turn began and ended, in seconds from the first frame, as "
                   "in 4,28; may be repeated. Without it the shoulders are followed")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const auto turn = known_turn(text);
+            return turn ? std::string() : turn.error().message;
+          },
+          "FROM,TO"))
       ->take_all()
       ->allow_extra_args(false);
   options.add_option("--out", arguments->out,

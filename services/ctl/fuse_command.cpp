@@ -1,5 +1,6 @@
 // chorus fuse REC --out FILE: runs recordings through the pipeline, without clocks or sockets.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/geometry/error_radius.h"
 #include "fusion-server/client/recordings.h"
 #include "fusion-server/fusion/methods.h"
 #include "fusion-server/pipeline/offline.h"
@@ -59,6 +61,34 @@ void note_unused(const FuseArguments& arguments, Places& places) {
       std::string("--distance, --stature and --joints change nothing without --from-walk");
 }
 
+/// What came of the distance that was measured: refused if a sensor is unknown, noted if the walk
+/// contradicts it.
+Result<void> check_distances(const registration::RegistrationConfig& config, Places& places) {
+  if (!places.solved) return {};
+  const Registration& found = *places.registration;
+  constexpr double kClose = 0.02;  // of the length
+  for (const registration::KnownDistance& known : config.known_distances) {
+    for (const SensorId& id : {known.first, known.second}) {
+      if (!found.sensors.contains(id) && !found.verdicts.contains(id))
+        return fail(ErrorCode::InvalidArgument, "--distance",
+                    "the recordings have no sensor " + id.str());
+    }
+    const auto first = found.sensors.find(known.first);
+    const auto second = found.sensors.find(known.second);
+    if (first == found.sensors.end() || second == found.sensors.end()) continue;
+    const double walked = (first->second.world_from_sensor.translation() -
+                           second->second.world_from_sensor.translation())
+                              .norm();
+    if (std::abs(walked - known.length) < kClose * known.length) continue;
+    places.note += fmt::format(
+        "{}{} and {} are {:.2f} m apart by --distance and {:.2f} m by the walk; sensors that "
+        "measure depth are not scaled by it",
+        places.note.empty() ? "" : "; ", known.first.str(), known.second.str(), known.length,
+        walked);
+  }
+  return {};
+}
+
 struct Fused {
   Registration registration;
   std::string method;
@@ -91,6 +121,12 @@ Result<Fused> fuse_into(const std::string& out, RecordedCell& cell, Registration
 }
 
 nlohmann::json summary_of(const Fused& fused) {
+  auto registration = nlohmann::json::parse(wire::write_registration(fused.registration));
+  for (const auto& [sensor, place] : fused.registration.sensors) {
+    const double radius = radius_on_floor(place.covariance);
+    if (!place.covariance.isZero(0.0) && std::isfinite(radius))
+      registration["sensors"][sensor.str()]["presentRadius"] = radius;
+  }
   return {{"sensors", fused.told.sensors},
           {"frames", fused.frames},
           {"framesWithBodies", fused.with_bodies},
@@ -98,7 +134,14 @@ nlohmann::json summary_of(const Fused& fused) {
           {"rateHz", fused.rate_hz},
           {"smoothed", fused.smoothed},
           {"notes", fused.told.notes},
-          {"registration", nlohmann::json::parse(wire::write_registration(fused.registration))}};
+          {"registration", std::move(registration)}};
+}
+
+/// Only the body filter smooths where joints are; the other methods are given smoothed sides.
+const char* smoothing_shown(const nlohmann::json& summary) {
+  if (!summary["smoothed"].get<bool>()) return "";
+  const bool whole = summary["method"] == fusion::name_of(fusion::Method::BodyFilter);
+  return whole ? ", smoothed" : ", left and right smoothed, places as without --smooth";
 }
 
 std::string counted(std::size_t count, std::string_view what) {
@@ -114,8 +157,7 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
     std::cerr << "note: " << note.get<std::string>() << '\n';
   std::cerr << registration_report(summary["registration"])
             << fmt::format("method {}{}, {:.6g} instants a second\n",
-                           summary["method"].get<std::string>(),
-                           summary["smoothed"].get<bool>() ? ", smoothed" : "",
+                           summary["method"].get<std::string>(), smoothing_shown(summary),
                            summary["rateHz"].get<double>())
             << fmt::format("{}, {}, {} with somebody in them\n",
                            counted(summary["sensors"].get<std::size_t>(), "sensor"),
@@ -134,6 +176,7 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   if (!cell) return pass(cell);
   auto places = places_of(arguments.places, *files, *cell, *config);
   if (!places) return pass(places);
+  if (auto ok = check_distances(config->registration, *places); !ok) return pass(ok);
   auto fused = fuse_into(arguments.out, *cell, std::move(*places->registration), *config);
   if (!fused) return pass(fused);
   note_unused(arguments, *places);

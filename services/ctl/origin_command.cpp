@@ -17,6 +17,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/marked_points.h"
+#include "services/ctl/no_fusion_server.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/person_watch.h"
 #include "services/ctl/registration_report.h"
@@ -48,15 +49,17 @@ struct OriginArguments {
 };
 
 /// Where the person stands who is watched for so long, and which way they face.
-Result<Stance> watch_stance(const std::string& server, double seconds) {
+Result<Stance> watch_stance(const OriginArguments& arguments) {
   std::vector<Stance> seen;
-  const auto watched =
-      watch_frames(server, seconds, [&](const nlohmann::json& frame) -> Result<bool> {
-        const auto stance = stance_in(frame);
-        if (!stance) return pass(stance);
-        seen.push_back(*stance);
-        return false;
-      });
+  const auto take = [&](const nlohmann::json& frame) -> Result<bool> {
+    const auto stance = stance_in(frame);
+    if (!stance) return pass(stance);
+    const auto place = place_in(frame, arguments.with);
+    if (!place) return pass(place);
+    seen.push_back({place->x(), place->y(), stance->yaw});
+    return false;
+  };
+  const auto watched = watch_frames(arguments.url, arguments.seconds, take);
   if (!watched) return pass(watched);
   return steady(seen);
 }
@@ -89,9 +92,10 @@ std::string origin_report(const nlohmann::json& registration) {
 }
 
 /// Without an origin to set: shows the present one.
-Result<int> show_origin(const ServiceClient& server, bool json) {
+Result<int> show_origin(const ServiceClient& server, const std::string& url, bool json) {
   const auto registration = server.get("/registration");
-  if (!registration) return pass(registration);
+  if (!registration)
+    return tl::unexpected<Error>(no_fusion_server(server, url, registration.error()));
   std::cout << (json ? json_text(*registration) : origin_report(*registration));
   return kExitOk;
 }
@@ -199,7 +203,7 @@ std::string marks_report(const MarkedOrigin& found) {
 Result<Stance> wanted_origin(const OriginArguments& arguments) {
   if (arguments.here) {
     std::cerr << fmt::format("stand still for {} s, facing the front\n", arguments.seconds);
-    return watch_stance(arguments.url, arguments.seconds);
+    return watch_stance(arguments);
   }
   if (!arguments.points && arguments.stand.empty() && arguments.marks.empty())
     return Stance{arguments.x, arguments.z, deg(arguments.yaw)};
@@ -207,6 +211,21 @@ Result<Stance> wanted_origin(const OriginArguments& arguments) {
   if (!found) return pass(found);
   std::cerr << marks_report(*found);
   return found->origin;
+}
+
+/// The version of the registration, whose origin can be set at once: nobody shall stand still for a
+/// server that is not there, or that would refuse.
+Result<double> version_to_change(const ServiceClient& server, const std::string& url) {
+  const auto registration = server.get("/registration");
+  if (!registration)
+    return tl::unexpected<Error>(no_fusion_server(server, url, registration.error()));
+  const auto state = client::text_at(client::part_at(*registration, "session"), "state", "");
+  if (state == "collecting" || state == "solving")
+    return fail(ErrorCode::Conflict, "origin",
+                "a registration session is running; wait for its end, or cancel it: chorus "
+                "register --cancel");
+  const double version = client::number_at(*registration, "version");
+  return std::isfinite(version) ? version : 0.0;
 }
 
 Result<int> set_origin(const ServiceClient& server, const Stance& origin, bool json) {
@@ -229,13 +248,24 @@ Result<int> set_origin(const ServiceClient& server, const Stance& origin, bool j
 Result<int> run_origin(const OriginArguments& arguments) {
   const auto server = ServiceClient::of(arguments.url);
   if (!server) return pass(server);
-  if (!arguments.set) return show_origin(*server, arguments.json);
-  if (arguments.here || arguments.points || !arguments.stand.empty()) {
-    // Nobody shall stand still for a server that is not there.
-    if (const auto there = server->get("/registration"); !there) return pass(there);
+  if (!arguments.set) return show_origin(*server, arguments.url, arguments.json);
+  const bool watches = arguments.here || arguments.points || !arguments.stand.empty();
+  std::optional<double> world;
+  if (watches) {
+    const auto ready = version_to_change(*server, arguments.url);
+    if (!ready) return pass(ready);
+    world = *ready;
   }
   const auto origin = wanted_origin(arguments);
   if (!origin) return pass(origin);
+  if (world) {
+    const auto now = version_to_change(*server, arguments.url);
+    if (!now) return pass(now);
+    if (*now != *world)
+      return fail(ErrorCode::Conflict, "origin",
+                  "the registration was changed while you stood on the marks, so they are of "
+                  "another world; nothing was changed now, begin again");
+  }
   return set_origin(*server, *origin, arguments.json);
 }
 

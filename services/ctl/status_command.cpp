@@ -12,6 +12,7 @@
 #include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/no_fusion_server.h"
 #include "services/ctl/registration_report.h"
 #include "services/ctl/server_option.h"
 
@@ -106,17 +107,6 @@ std::string bodies_report(const nlohmann::json& frame) {
                     shown(client::number_at(head, "z"), 3));
   }
   return text;
-}
-
-/// The error of /sensors/, or that this is a sensor, which has no such resource.
-Error no_fusion_server(const client::ServiceClient& server, const std::string& url, Error error) {
-  if (error.code != ErrorCode::NotFound) return error;
-  const auto self = server.get("/");
-  if (!self || client::text_at(*self, "sensorId", "").empty()) return error;
-  return {ErrorCode::Unsupported, url,
-          "is sensor " + client::text_at(*self, "sensorId") +
-              ", not a fusion server; its own state is at " + url +
-              (url.ends_with('/') ? "healthz" : "/healthz")};
 }
 
 Result<int> run_status(const StatusArguments& arguments) {

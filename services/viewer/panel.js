@@ -86,7 +86,8 @@ export function showRegistration(registration) {
   element('session').textContent = sessionLine(registration.session);
   const reasons = registration.reasons ?? [];
   const last = (registration.session?.reasons ?? []).filter((reason) => !reasons.includes(reason));
-  showLines('reasons', [...reasons, ...last.map((reason) => `last walk: ${reason}`)]);
+  const of = registration.session?.state === 'collecting' ? 'so far' : 'last walk';
+  showLines('reasons', [...reasons, ...last.map((reason) => `${of}: ${reason}`)]);
   showLines('alarms', registration.alarms ?? []);
   showLines('awaits', registration.awaits ?? []);
   const problem = registration.storeProblem ?? '';

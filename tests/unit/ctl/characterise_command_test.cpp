@@ -98,6 +98,25 @@ TEST(CharacteriseCommand, AWalkBeforeSeveralSensorsSaysHowTheyDiffer) {
   EXPECT_THAT(report.at("notes").dump(), HasSubstr("stays on one spot"));
 }
 
+TEST(CharacteriseCommand, ATurnIsWithinTheRecording) {
+  const TurnRecorded cell;
+  const Outcome after = run_chorus({"characterise", cell.file("turn.mcap"), "--turn", "4,3000"});
+  EXPECT_EQ(after.code, kExitFailed);
+  EXPECT_THAT(after.error, HasSubstr("4,3000 ends after the recording, which is "));
+  for (const char* wrong : {"4", "30,10", "a,b"}) {
+    const Outcome done = run_chorus({"characterise", cell.file("turn.mcap"), "--turn", wrong});
+    EXPECT_EQ(done.code, kExitUsage) << wrong;
+    EXPECT_THAT(done.error, HasSubstr("write it as 4,28"));
+  }
+}
+
+TEST(CharacteriseCommand, ASensorThatIsNotThereIsAnsweredWithThoseThatAre) {
+  const TurnRecorded cell;
+  const Outcome done = run_chorus({"characterise", cell.file("turn.mcap"), "--sensor", "s9"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("no frames of s9, but of s1"));
+}
+
 TEST(CharacteriseCommand, ADistanceIsThatOfOneSensor) {
   const Cell cell(8.0);
   const Outcome done = run_chorus({"characterise", cell.recordings(), "--distance", "2.5"});

@@ -165,6 +165,36 @@ TEST(FuseCommand, NeverWritesOverWhatItReadsOrOverARecording) {
               HasSubstr("never overwritten"));
 }
 
+TEST(FuseCommand, AMeasuredDistanceIsHeldAgainstTheWalk) {
+  const Cell cell(4.0);
+  const auto with = [&](const char* distance) {
+    return run_chorus(
+        {"fuse", cell.recordings(), "--from-walk", "--distance", distance, "--out", "-"});
+  };
+  const Outcome unknown = with("s1,s9=3");
+  EXPECT_EQ(unknown.code, kExitFailed);
+  EXPECT_THAT(unknown.error, HasSubstr("have no sensor s9"));
+  EXPECT_THAT(with("s1,s2=9").error, HasSubstr("s1 and s2 are 9.00 m apart by --distance and "));
+}
+
+TEST(FuseCommand, SaysHowWellTheWalkPlacedTheSensors) {
+  const Cell cell(4.0);
+  const Outcome done = run_chorus({"fuse", cell.recordings(), "--out", "-", "--json"});
+  for (const auto& [name, sensor] :
+       Json::parse(done.error).at("registration").at("sensors").items())
+    EXPECT_GT(sensor.at("presentRadius").get<double>(), 0.0) << name;
+}
+
+TEST(FuseCommand, SaysWhatIsSmoothed) {
+  const Cell cell(4.0);
+  const auto by = [&](const char* method) {
+    return run_chorus({"fuse", cell.recordings(), "--smooth", "--method", method, "--out", "-"})
+        .error;
+  };
+  EXPECT_THAT(by("body-filter"), HasSubstr("method body-filter, smoothed, "));
+  EXPECT_THAT(by("otto"), HasSubstr("left and right smoothed, places as without --smooth"));
+}
+
 TEST(FuseCommand, TheResultAndThePlacesNeedAFileEach) {
   const Cell cell(2.0);
   const std::string out = cell.file("both.ndjson");

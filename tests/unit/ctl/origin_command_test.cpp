@@ -46,8 +46,37 @@ TEST(Origin, ThePersonIsWatchedOnOneConnection) {
   EXPECT_NEAR(asked.at("x"), 1.0, 1e-9);
   EXPECT_NEAR(asked.at("z"), -2.0, 1e-9);
   EXPECT_NEAR(asked.at("yawDegrees"), 0.0, 1e-9) << "the person faces +z";
-  EXPECT_LE(server.connections(), 3u)
-      << "one to see that it is there, one for the frames, one to set the origin";
+  EXPECT_LE(server.connections(), 4u)
+      << "one to see that it is there, one for the frames, one before and one to set the origin";
+}
+
+TEST(Origin, HereIsWhereTheNamedJointIs) {
+  std::vector<std::string> frames;
+  for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
+  const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
+  const Outcome done = run_chorus(
+      {"origin", "--url", server.url(), "--here", "--seconds", "0.6", "--with", "ShoulderLeft"});
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_NEAR(origin_asked(server).at("x"), 1.2, 1e-9);
+}
+
+TEST(Origin, IsNotSetInAWorldThatWasChangedMeanwhile) {
+  std::vector<std::string> frames;
+  for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
+  const ScriptedServer server(ScriptedServer::Texts{
+      {"/frame", frames}, {"/registration", {R"({"version": 3})", R"({"version": 4})"}}});
+  const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("the registration was changed while"));
+  EXPECT_TRUE(server.written().empty());
+}
+
+TEST(Origin, NobodyStandsStillWhileASessionRuns) {
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/registration", {R"({"session": {"state": "collecting"}})"}}});
+  const Outcome done = run_chorus({"origin", "--url", server.url(), "--here"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("chorus register --cancel"));
 }
 
 /// One frame a second of a person who stands for 30 s at each of these places (x, z).
