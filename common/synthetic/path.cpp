@@ -233,7 +233,9 @@ PathPoint Path::along(const Leg& leg, double time) const {
   } else if (leg.move == Move::Walk) {
     const double begin = std::clamp(time / leg.ramp, 0.0, 1.0);
     const double end = std::clamp((leg.duration - time) / leg.ramp, 0.0, 1.0);
-    const double cruise = std::clamp(time, leg.ramp, leg.duration - leg.ramp) - leg.ramp;
+    // A short way has no cruise: the two ramps are all of it, but for rounding.
+    const double brake = std::max(leg.ramp, leg.duration - leg.ramp);
+    const double cruise = std::clamp(time, leg.ramp, brake) - leg.ramp;
     const double way =
         leg.speed * (leg.ramp * (smooth_way(begin) + 0.5 - smooth_way(end)) + cruise);
     point.place = leg.from + way * (leg.to - leg.from).normalized();

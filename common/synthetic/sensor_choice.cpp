@@ -24,7 +24,7 @@ std::unique_ptr<BodySensor> drawn_sensor(const Scene& scene, const SensorChoice&
   return std::make_unique<kinect::KinectSensor>(
       scene,
       kinect::KinectSetting{choice.id, choice.place, stressed(profile, choice.stress), choice.seed,
-                            choice.bias_seed, choice.own_clock, false, choice.own_seed},
+                            choice.bias_seed, choice.own_clock},
       start);
 }
 
@@ -35,7 +35,7 @@ std::unique_ptr<BodySensor> rendered_sensor(const Scene& scene, const SensorChoi
   return std::make_unique<depth::DepthSensor>(
       scene,
       depth::DepthSetting{choice.id, choice.place, stressed(profile, choice.stress), choice.seed,
-                          choice.bias_seed, choice.own_clock, choice.own_seed},
+                          choice.bias_seed, choice.own_clock},
       start);
 }
 

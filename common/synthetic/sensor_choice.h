@@ -40,8 +40,6 @@ struct SensorChoice {
   /// Seed of the biases of the SDK and of people; meant to be the same in every run.
   std::uint64_t bias_seed = 1;
   bool own_clock = true;  ///< True: stamps frames by the host's erring clock; false: by true time.
-  /// Tells this sensor's own errors from those of others with the same seed; none: the place does.
-  std::optional<std::uint64_t> own_seed = std::nullopt;
   /// The parameters of "gauss".  It has no intervals to draw from, no sources to scale, and an
   /// exact clock.
   SensorModel gauss = {};

@@ -54,7 +54,7 @@ std::optional<SensorFrame> DepthSensor::next() {
   frame.floor =
       kinect::estimated_floor(scene_->world_from_sensor[setting_.place], number, floor_, keys());
   const DepthImage image = measure(render(view(exposed), camera_), setting_.profile.camera,
-                                   Draw{kDrawImage, setting_.seed, keys().sensor, number});
+                                   Draw{kDrawImage, setting_.seed, setting_.place, number});
   for (TrackedBody& body : tracker_.look(image, *frame.floor)) {
     frame.bodies.push_back({body.id, frame.captured, std::move(body.skeleton)});
   }

@@ -6,8 +6,6 @@
 // simulated as in kinect/.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "common/synthetic/body_sensor.h"
@@ -25,8 +23,6 @@ struct DepthSetting {
   std::uint64_t people_seed = 1;  ///< Seed of people's build and clothing; equal for all sensors.
   /// True: frames are stamped by the host's clock with its errors.  False: by true time.
   bool own_clock = true;
-  /// Tells this sensor's own errors from those of others with the same seed; none: the place does.
-  std::optional<std::uint64_t> own_seed = std::nullopt;
 };
 
 class DepthSensor final : public BodySensor {
@@ -40,9 +36,7 @@ class DepthSensor final : public BodySensor {
 
  private:
   [[nodiscard]] View view(Timestamp exposed) const;
-  [[nodiscard]] kinect::ErrorKeys keys() const {
-    return {setting_.seed, setting_.own_seed.value_or(setting_.place), 0};
-  }
+  [[nodiscard]] kinect::ErrorKeys keys() const { return {setting_.seed, setting_.place, 0}; }
 
   const Scene* scene_;
   DepthSetting setting_;

@@ -55,7 +55,7 @@ KinectSensor::KinectSensor(const Scene& scene, KinectSetting setting, Timestamp 
       number_(first_frame(setting_.profile.delivery, start, keys(0))),
       memory_(scene.people.size()),
       ids_(keys(0), scene.people.size()) {
-  setting_.profile.yaw = own_behaviour(setting_.profile.yaw, setting_.seed, keys(0).sensor);
+  setting_.profile.yaw = own_behaviour(setting_.profile.yaw, setting_.seed, setting_.place);
   for (std::size_t person = 0; person < memory_.size(); ++person) {
     memory_[person].bias = harmonics_of(setting_.profile.bias, {setting_.bias_seed, person});
     memory_[person].proportions = proportions_of(setting_.profile.fit, keys(person));
@@ -63,7 +63,7 @@ KinectSensor::KinectSensor(const Scene& scene, KinectSetting setting, Timestamp 
 }
 
 ErrorKeys KinectSensor::keys(std::size_t person) const {
-  return {setting_.seed, setting_.own_seed.value_or(setting_.place), person};
+  return {setting_.seed, setting_.place, person};
 }
 
 Timestamp KinectSensor::next_exposure() const {

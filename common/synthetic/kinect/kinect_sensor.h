@@ -37,8 +37,6 @@ struct KinectSetting {
   /// True: each joint's covariance is the true mean square of its error (error_moment.h).  No real
   /// sensor knows that; it serves to compute bounds.
   bool confides = false;
-  /// Tells this sensor's own errors from those of others with the same seed; none: the place does.
-  std::optional<std::uint64_t> own_seed = std::nullopt;
 };
 
 class KinectSensor final : public BodySensor {

@@ -117,6 +117,23 @@ TEST(Simulated, ProfilesOfTheJudgeAreDevicesToo) {
             std::chrono::milliseconds(20));
 }
 
+TEST(Simulated, SensorsOfTheSameSeedErrEachOnItsOwn) {
+  for (const char* profile : {R"({"profile": "A"})", R"({"profile": "C"})"}) {
+    const auto run = [&](std::string_view id) {
+      auto source = device(profile, id, std::make_shared<HastyClock>());
+      return first_captures(**source, 20);
+    };
+    const auto one = run("s1");
+    const auto other = run("s2");
+    const auto neck = [](const Capture& capture) {
+      return capture.frame.bodies.at(0).skeleton[JointId::Neck].position;
+    };
+    ASSERT_FALSE(one.back().frame.bodies.empty() || other.back().frame.bodies.empty()) << profile;
+    EXPECT_NE(one.back().frame.captured, other.back().frame.captured) << profile;
+    EXPECT_GT((neck(one.back()) - neck(other.back())).norm(), 1e-3) << profile;
+  }
+}
+
 TEST(Simulated, DeliversInOrderAfterCaptureWithoutGaps) {
   auto source = device(R"({"latency_ms": 20})", "s1", std::make_shared<HastyClock>());
   const auto captures = first_captures(**source, 30);

@@ -64,15 +64,6 @@ TEST(SensorChoice, ProfilesDrawsAndSeedsDiffer) {
   EXPECT_NE(nominal, recorded(scene, other));
 }
 
-TEST(SensorChoice, SensorsWithSeedsOfTheirOwnErrDifferently) {
-  const Scene scene = room();
-  for (const char* profile : {"A", "C"}) {
-    SensorChoice own = choice(profile);
-    own.own_seed = 7;
-    EXPECT_NE(recorded(scene, choice(profile)), recorded(scene, own)) << profile;
-  }
-}
-
 TEST(SensorChoice, ProfileCIsRenderedAndFitted) {
   const Scene scene = room();
   const auto nominal = recorded(scene, choice("C"));

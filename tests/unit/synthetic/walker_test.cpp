@@ -146,6 +146,17 @@ TEST(Walker, RandomWalkCoversItsAreaAndTurnsEverywhere) {
   for (const bool seen : headings) EXPECT_TRUE(seen);
 }
 
+TEST(Walker, WaysMayBeTooShortForACruise) {  // ends the process where the library's assertions hold
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    WalkerScript script;
+    script.seed = seed;
+    script.reach = 0.4;
+    const Walker walker(script);
+    for (Duration t{}; t < std::chrono::seconds(60); t += 10 * kStep)
+      ASSERT_LT(walker.path().at(t).place.cwiseAbs().maxCoeff(), 0.5) << seed;
+  }
+}
+
 TEST(Walker, TurnsInPlaceOnceRoundToEitherSideWithPauses) {
   WalkerScript script;
   script.path = PathKind::Turn;

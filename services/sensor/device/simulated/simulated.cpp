@@ -66,7 +66,6 @@ bool Simulated::wait_until(const std::stop_token& stop, Timestamp due) const {
 
 Capture Simulated::with_images(SensorFrame frame) const {
   const Timestamp instant = frame.captured;
-  constexpr std::size_t kPlace = 0;
   Capture capture;
   capture.frame = std::move(frame);
   const auto stamped = [host = time_.host](Result<CameraImage> image) {
@@ -74,10 +73,10 @@ Capture Simulated::with_images(SensorFrame frame) const {
     return image;
   };
   capture.color = [settings = settings_, camera = camera_, instant, stamped] {
-    return stamped(render_color(settings->scene, kPlace, instant, camera));
+    return stamped(render_color(settings->scene, settings->choice.place, instant, camera));
   };
   capture.depth = [settings = settings_, camera = camera_, instant, stamped] {
-    return stamped(render_depth(settings->scene, kPlace, instant, camera));
+    return stamped(render_depth(settings->scene, settings->choice.place, instant, camera));
   };
   return capture;
 }

@@ -63,8 +63,7 @@ void read_noise(ConfigReader config, synthetic::SensorChoice& choice) {
   model.sampling.drop_share = dropped / 100.0;
   choice.seed = choice.bias_seed = static_cast<std::uint64_t>(seed);
   // Noise differs between sensors that share a seed, and is the same in every run.
-  choice.own_seed = fnv1a(choice.id.str());
-  model.seed = choice.seed ^ *choice.own_seed;
+  model.seed = choice.seed ^ fnv1a(choice.id.str());
 }
 
 void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
@@ -75,6 +74,14 @@ void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
   choice.profile = kProfiles.at(profile);
   if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
   choice.own_clock = false;  // No clock of its own: the service provides the host's clock.
+}
+
+/// The profiles tell the errors of sensors that share a seed by their index in the scene, and each
+/// process has one sensor alone: its index comes from its id.
+void stand_at(const Eigen::Isometry3d& world_from_sensor, SimulatedSettings& settings) {
+  constexpr std::uint64_t kPlaces = 4096;
+  settings.choice.place = fnv1a(settings.choice.id.str()) % kPlaces;
+  settings.scene.world_from_sensor.assign(settings.choice.place + 1, world_from_sensor);
 }
 
 }  // namespace
@@ -98,8 +105,8 @@ SimulatedSettings read_simulated_settings(ConfigReader& config, const SensorId& 
   SceneSettings scene = read_scene(config.child("scene"));
   settings.scene = std::move(scene.scene);
   settings.people = std::move(scene.people);
-  settings.scene.world_from_sensor.push_back(config.has("pose") ? read_pose(config.child("pose"))
-                                                                : read_ring(config.child("ring")));
+  stand_at(config.has("pose") ? read_pose(config.child("pose")) : read_ring(config.child("ring")),
+           settings);
   read_noise(config.child("noise"), settings.choice);
   read_profile(config, settings.choice);
   config.read_ms("latency_ms", settings.latency, Duration::zero(), std::chrono::milliseconds(500));
