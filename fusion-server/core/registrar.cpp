@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "fusion-server/core/accuracy.h"
 #include "fusion-server/core/awaited.h"
@@ -228,14 +229,18 @@ bool Registrar::take_back() {
 
 std::vector<std::string> Registrar::shortfalls(const Registration& candidate) const {
   std::vector<std::string> reasons = candidate.reasons;
+  std::vector<std::string> missing;
   for (const auto& [sensor, place] : registration_.sensors) {
-    if (candidate.sensors.contains(sensor)) continue;
-    reasons.push_back(
-        fmt::format("the registration in use places sensor {0}, this walk does not; take {0} out "
-                    "of \"sensors\" if it is gone; chorus register --fresh (DELETE /registration) "
-                    "gives all places up",
-                    sensor.str()));
+    if (!candidate.sensors.contains(sensor)) missing.push_back(sensor.str());
   }
+  if (missing.empty()) return reasons;
+  const bool one = missing.size() == 1;
+  reasons.push_back(
+      fmt::format("the registration in use places sensor{} {}, this walk does not; take {} out of "
+                  "\"sensors\" if {} gone; chorus register --fresh (DELETE /registration) gives "
+                  "all places up",
+                  one ? "" : "s", fmt::join(missing, ", "), one ? missing.front() : "them",
+                  one ? "it is" : "they are"));
   return reasons;
 }
 

@@ -1,6 +1,8 @@
 // A check of numbers on the command line.
 #pragma once
 
+#include <cmath>
+
 #include <CLI/CLI.hpp>
 
 namespace chorus::ctl {
@@ -12,8 +14,8 @@ inline CLI::Validator number_range(double least, double most) {
     double value = 0.0;
     const bool number = CLI::detail::lexical_cast(text, value);
     if (number && value >= least && value <= most) return {};
-    const std::string why = range(text);
-    return why.empty() ? "Value " + text + " is not a number" : why;
+    return number && !std::isnan(value) ? range(text)
+                                        : text + " is not a number (units are not written)";
   };
   return {check, range.get_description()};
 }

@@ -229,7 +229,7 @@ int report(const nlohmann::json& session, const nlohmann::json& registration, bo
     std::cout << json_text(whole);
   } else {
     if (!good) {
-      std::cerr << (done ? "this walk was not good enough:\n" : "the session was cancelled:\n");
+      std::cerr << (done ? "this walk was not good enough:\n" : "the session ended early:\n");
       for (const std::string& reason : lines_at(session, "reasons"))
         std::cerr << "  " << reason << '\n';
     }

@@ -142,6 +142,14 @@ TEST_F(Sessions, AWalkThatMissesASensorSaysWhatToDo) {
               Contains(HasSubstr("sensor s3, this walk does not; take s3 out of \"sensors\"")));
 }
 
+TEST_F(Sessions, AWalkThatMissesSeveralSensorsSaysSoOnce) {
+  begin_with(ring());
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring(1)}, now_), Outcome::Nothing);
+  EXPECT_THAT(newest().reasons,
+              Contains(HasSubstr("sensors s2, s3, this walk does not; take them")));
+}
+
 TEST_F(Sessions, ARefusedEndTakesTheSessionsOwnProvisionalBackAndSaysSo) {
   begin_with({});
   ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));

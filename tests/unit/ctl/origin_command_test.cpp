@@ -71,6 +71,12 @@ TEST(Origin, IsNotSetInAWorldThatWasChangedMeanwhile) {
   EXPECT_TRUE(server.written().empty());
 }
 
+TEST(Origin, NumbersHaveNoUnits) {
+  const Outcome done = run_chorus({"origin", "--x", "1.2m"});
+  EXPECT_EQ(done.code, kExitUsage);
+  EXPECT_THAT(done.error, HasSubstr("1.2m is not a number (units are not written)"));
+}
+
 TEST(Origin, NobodyStandsStillWhileASessionRuns) {
   const ScriptedServer server(
       ScriptedServer::Texts{{"/registration", {R"({"session": {"state": "collecting"}})"}}});

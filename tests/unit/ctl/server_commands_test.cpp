@@ -203,7 +203,7 @@ TEST(Register, CtrlCEndsTheCommandAndSaysThatTheSessionGoesOn) {
 TEST(Register, SaysWhenSomebodyElseCancels) {
   const Outcome told = register_at(ScriptedServer(walk(session("cancelled", "None", false))));
   EXPECT_EQ(told.code, kExitFailed);
-  EXPECT_THAT(told.error, HasSubstr("the session was cancelled"));
+  EXPECT_THAT(told.error, HasSubstr("the session ended early"));
 }
 
 TEST(Register, JoinsTheSessionThatRuns) {
