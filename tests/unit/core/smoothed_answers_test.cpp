@@ -16,16 +16,16 @@ using testing::sensor_id;
 
 constexpr Duration kLength = std::chrono::seconds(6);
 
-struct Answers {
+struct LiveAndSmoothed {
   std::vector<Snapshot> live;
   std::vector<Snapshot> smoothed;
 };
 
 /// Runs a core for six seconds; every third frame of the last sensor comes 0.4 s late.
-Answers answers(CoreConfig config) {
+LiveAndSmoothed answers(CoreConfig config) {
   FusionCore core(std::move(config), ring());
   std::deque<std::pair<Duration, SensorFrame>> on_the_way;
-  Answers all;
+  LiveAndSmoothed all;
   for (Duration t{0}; t < kLength; t += milliseconds(1)) {
     for (int i = 0; i < kSensors; ++i) {
       if ((t - milliseconds(7 * i)) % milliseconds(33) != Duration{0}) continue;
@@ -59,7 +59,7 @@ CoreConfig smoothing() {
 }
 
 TEST(SmoothedAnswers, AreGivenOnceForEveryInstantAfterTheDelay) {
-  const Answers all = answers(smoothing());
+  const LiveAndSmoothed all = answers(smoothing());
   ASSERT_GT(all.smoothed.size(), 100u);
   EXPECT_NEAR(static_cast<double>(all.live.size() - all.smoothed.size()), 60.0, 2.0);
   for (std::size_t i = 0; i < all.smoothed.size(); ++i) {
@@ -72,7 +72,7 @@ TEST(SmoothedAnswers, AreGivenOnceForEveryInstantAfterTheDelay) {
 }
 
 TEST(SmoothedAnswers, IncludeFramesThatCameTooLateForTheFirstAnswer) {
-  const Answers all = answers(smoothing());
+  const LiveAndSmoothed all = answers(smoothing());
   const auto complete = [](const std::vector<Snapshot>& snapshots, std::size_t count) {
     std::size_t found = 0;
     for (std::size_t i = 30; i < count; ++i) {
@@ -86,8 +86,8 @@ TEST(SmoothedAnswers, IncludeFramesThatCameTooLateForTheFirstAnswer) {
 }
 
 TEST(SmoothedAnswers, ChangeNothingThatIsAnsweredAtOnce) {
-  const Answers with = answers(smoothing());
-  const Answers without = answers(of_three<CoreConfig>());
+  const LiveAndSmoothed with = answers(smoothing());
+  const LiveAndSmoothed without = answers(of_three<CoreConfig>());
   EXPECT_TRUE(without.smoothed.empty());
   ASSERT_EQ(with.live.size(), without.live.size());
   for (std::size_t i = 0; i < with.live.size(); ++i) {

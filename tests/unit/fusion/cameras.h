@@ -30,9 +30,10 @@ class RayDraw {
   RayDraw(std::uint32_t seed, double sigma) : random_(seed), sigma_(sigma) {}
 
   JointView operator()(const Eigen::Vector3d& eye, const Eigen::Vector3d& point) {
-    std::normal_distribution<double> noise(0.0, sigma_);
+    std::normal_distribution<double> normal;
     const Eigen::Vector3d exact = (point - eye).normalized();
-    const Eigen::Vector3d off(noise(random_), noise(random_), noise(random_));
+    const Eigen::Vector3d off =
+        sigma_ * Eigen::Vector3d(normal(random_), normal(random_), normal(random_));
     JointView view;
     view.joint.measurement = Measurement::Ray;
     view.joint.state = JointState::Tracked;

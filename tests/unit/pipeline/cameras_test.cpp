@@ -46,9 +46,10 @@ Registration registration_of(const Cell& cell) {
 }
 
 void make_rays(Skeleton<SensorSpace>& body, double sigma, std::mt19937& random) {
-  std::normal_distribution<double> noise(0.0, sigma);
+  std::normal_distribution<double> normal;
   for (Joint& joint : body.joints) {
-    const Eigen::Vector3d off(noise(random), noise(random), noise(random));
+    const Eigen::Vector3d off =
+        sigma * Eigen::Vector3d(normal(random), normal(random), normal(random));
     joint.position = (joint.position.normalized() + off).normalized();
     joint.measurement = Measurement::Ray;
     joint.orientation.coeffs().setZero();

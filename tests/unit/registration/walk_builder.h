@@ -91,7 +91,8 @@ inline FloorPlane plane_in_sensor(const FloorPlane& in_world,
 inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
                        const WalkSpec& spec) {
   std::mt19937 random(spec.seed * 1000 + static_cast<unsigned>(number));
-  std::normal_distribution<double> noise(0.0, spec.noise);
+  std::normal_distribution<double> normal;
+  const auto noise = [&] { return spec.noise * normal(random); };  // also none at all
   std::uniform_real_distribution<double> chance(0.0, 1.0);
   WalkTrack track{sensor(number), {}};
   const Eigen::Isometry3d sensor_from_world = world_from_sensor.inverse();
@@ -103,7 +104,7 @@ inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
                                      ? Eigen::Vector3d(chance(random), 0, 2.0 * chance(random))
                                      : Eigen::Vector3d::Zero();
     for (Joint& joint : body.joints) {
-      joint.position += jump + Eigen::Vector3d(noise(random), noise(random), noise(random));
+      joint.position += jump + Eigen::Vector3d(noise(), noise(), noise());
     }
     SensorFrame frame;
     frame.sensor = track.sensor;
@@ -118,10 +119,10 @@ inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
 /// Moves every joint along its line of sight by a depth error of its own.
 inline WalkTrack with_depth_error(WalkTrack track, double sigma, unsigned seed) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, sigma);
+  std::normal_distribution<double> normal;
   for (SensorFrame& frame : track.frames) {
     for (Joint& joint : frame.bodies[0].skeleton.joints) {
-      joint.position *= 1.0 + noise(random) / joint.position.norm();
+      joint.position *= 1.0 + sigma * normal(random) / joint.position.norm();
     }
   }
   return track;
