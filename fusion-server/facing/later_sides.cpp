@@ -1,5 +1,6 @@
 #include "fusion-server/facing/later_sides.h"
 
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -64,6 +65,13 @@ std::vector<double> right_afterwards(std::span<const SidesStep> steps) {
     after = before(steps[i], after);
   }
   return found;
+}
+
+bool exchanged_afterwards(const SidesStep& step, double right, std::optional<bool> before,
+                          double change_odds) {
+  const double against = std::log((1.0 - right) / right);
+  const bool is_published = !step.first && before && *before != step.turned_round;
+  return against > (is_published ? 0.0 : change_odds);
 }
 
 void exchange_sides(Person& person) {

@@ -8,6 +8,7 @@
 // places.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,14 @@ namespace chorus::facing {
 /// `steps`, which are one person's in order of time.  After a gap (SidesStep::first) the person may
 /// have either side: nothing is passed on across it.
 [[nodiscard]] std::vector<double> right_afterwards(std::span<const SidesStep> steps);
+
+/// Whether the sides that were held after `step` are to be exchanged, if they are right with the
+/// probability `right` (right_afterwards()): only if the log odds against them exceed `change_odds`
+/// (SidesConfig), as the filter itself changes sides.  `before`: whether those of the person's
+/// instant before were exchanged; then they stay so while the odds are against the held ones at
+/// all. Otherwise what is in doubt would change from instant to instant.
+[[nodiscard]] bool exchanged_afterwards(const SidesStep& step, double right,
+                                        std::optional<bool> before, double change_odds);
 
 /// Swaps left and right in all views of a person whose sides were resolved the wrong way round, and
 /// turns `facing` to match.  Orientations are lost, because they describe the body as it was

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "common/body/bones.h"
 
@@ -138,6 +139,27 @@ Eigen::Vector3d towards_sensor(const SensorView& view) {
   return way.normalized();
 }
 
+/// How far a foot that points along `ahead` can be trusted, in [0, 1]: not at all within 70 degrees
+/// of the way to the sensor, where a tracker that takes the rear for the front has the feet of
+/// somebody who turns the back on it; fully from 90 degrees on.
+double trust_in_foot(const Eigen::Vector3d& ahead, const Eigen::Vector3d& to_sensor) {
+  constexpr double kNone = 0.34;  // Cosine of 70 degrees.
+  return std::clamp(1.0 - ahead.normalized().dot(to_sensor) / kNone, 0.0, 1.0);
+}
+
+void add_feet(Offset& offset, const SensorView& view) {
+  using enum JointId;
+  const Eigen::Vector3d to_sensor = towards_sensor(view);
+  if (to_sensor.isZero()) return;
+  for (const auto& [ankle, foot] :
+       {std::pair{AnkleLeft, FootLeft}, std::pair{AnkleRight, FootRight}}) {
+    const double weight = weight_of(view.skeleton, ankle, foot);
+    Eigen::Vector3d ahead = view.skeleton[foot].position - view.skeleton[ankle].position;
+    ahead.y() = 0;
+    if (weight > 0 && !ahead.isZero()) offset.add(ahead, weight * trust_in_foot(ahead, to_sensor));
+  }
+}
+
 double tracked_share_of_arms(const Skeleton<WorldSpace>& body) {
   using enum JointId;
   constexpr std::array kArmJoints{ElbowLeft, WristLeft, ElbowRight, WristRight};
@@ -176,15 +198,18 @@ double posture_log_odds(const std::vector<SensorView>& views, const Eigen::Vecto
   Bend elbows;
   Offset wrists;
   Offset lean;
+  Offset feet;
   for (const SensorView& view : views) {
     add_knees(knees, view.skeleton, left);
     add_elbows(elbows, view.skeleton, stance);
     add_wrists(wrists, view.skeleton);
     add_lean(lean, view.skeleton);
+    add_feet(feet, view);
   }
   const double of_upright = of(cues.wrists, wrists.along(stance.forward)) +
                             of(cues.lean, lean.along(stance.forward)) +
-                            of(cues.hidden, seen_from(views, stance.forward));
+                            of(cues.hidden, seen_from(views, stance.forward)) +
+                            of(cues.feet, std::min(1.0, feet.weight) * feet.along(stance.forward));
   return of(cues.knees, knees.mean()) + of(cues.elbows, elbows.mean()) + upright * of_upright;
 }
 

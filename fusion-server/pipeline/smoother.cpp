@@ -12,17 +12,16 @@ namespace {
 
 using Perceptions = std::deque<Perception>;
 
-/// The probability that the sides of somebody at the oldest instant are right, given all that is
+/// What happened to the sides of somebody at the oldest instant and after it, as far as it is
 /// waiting; none if their sides were not resolved then.
-std::optional<double> right_sides(const Perceptions& waiting, PersonId person) {
+std::vector<facing::SidesStep> course_of_sides(const Perceptions& waiting, PersonId person) {
   std::vector<facing::SidesStep> steps;
   for (const Perception& each : waiting) {
     const auto step = each.sides.find(person);
     if (step != each.sides.end()) steps.push_back(step->second);
     if (steps.empty() || !each.tracked.contains(person)) break;
   }
-  if (steps.empty()) return std::nullopt;
-  return facing::right_afterwards(steps).front();
+  return steps;
 }
 
 std::vector<fusion::BodyAt> course_of(const std::deque<Step>& fused, PersonId person) {
@@ -74,13 +73,23 @@ std::vector<Step> Smoother::finish(const PipelineConfig& config) {
   return done;
 }
 
+void Smoother::settle_sides(Person& person, double change_odds) {
+  const auto steps = course_of_sides(waiting_, person.id);
+  if (steps.empty()) return;
+  const double right = facing::right_afterwards(steps).front();
+  const auto known = exchanged_.find(person.id);
+  const auto before = known == exchanged_.end() ? std::nullopt : std::optional(known->second);
+  const bool wrong = facing::exchanged_afterwards(steps.front(), right, before, change_odds);
+  if (wrong) facing::exchange_sides(person);
+  person.sides_confidence = wrong ? 1.0 - right : right;
+  exchanged_[person.id] = wrong;
+}
+
 void Smoother::fuse_oldest(const PipelineConfig& config) {
   Perceived seen;
-  for (Person& person : waiting_.front().people) {
-    const auto right = right_sides(waiting_, person.id);
-    if (right && *right < 0.5) facing::exchange_sides(person);
-    if (right) person.sides_confidence = std::max(*right, 1.0 - *right);
-  }
+  for (Person& person : waiting_.front().people) settle_sides(person, config.sides.change_odds);
+  std::erase_if(exchanged_,
+                [&](const auto& each) { return !waiting_.front().tracked.contains(each.first); });
   Perception now = std::move(waiting_.front());
   waiting_.pop_front();
   seen.people = std::move(now.people);

@@ -39,12 +39,14 @@ class Smoother {
   [[nodiscard]] std::vector<Step> finish(const PipelineConfig& config);
 
  private:
+  void settle_sides(Person& person, double change_odds);
   void fuse_oldest(const PipelineConfig& config);
   [[nodiscard]] Step smooth_oldest();
 
   std::deque<Perception> waiting_;       ///< For evidence about sides.
   std::deque<Step> fused_;               ///< Waiting for later bodies.
   Memory memory_;                        ///< Of fusion and seating.
+  std::map<PersonId, bool> exchanged_;   ///< Whether the sides held at the last instant were wrong.
   Timestamp newest_ = Timestamp::min();  ///< Of all instants taken.
 };
 

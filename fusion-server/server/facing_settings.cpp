@@ -20,6 +20,7 @@ void read_posture(ConfigReader reader, facing::PostureCues& out) {
   read_cue(reader.child("elbows"), out.elbows);
   read_cue(reader.child("lean"), out.lean);
   read_cue(reader.child("hidden_arms"), out.hidden);
+  read_cue(reader.child("feet"), out.feet);
   reader.read("same_s", out.same, 0.01, kMaxTime);
 }
 

@@ -99,6 +99,25 @@ TEST(LaterSides, DoNotReachBackBeyondASlip) {
   EXPECT_LT(right[6], 0.1);
 }
 
+TEST(LaterSides, AreExchangedWhenTheOddsAreClearAndThenAsLongAsTheyAre) {
+  const auto right_at = [](double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); };
+  const auto exchanged = [&](double log_odds, std::optional<bool> before, bool turned = false) {
+    const SidesStep step{.first = false, .turned_round = turned};
+    return exchanged_afterwards(step, right_at(log_odds), before, 1.0);
+  };
+  EXPECT_FALSE(exchanged(-0.9, std::nullopt));
+  EXPECT_TRUE(exchanged(-1.1, std::nullopt));
+  EXPECT_FALSE(exchanged(-0.9, false));
+  EXPECT_TRUE(exchanged(-1.1, false));
+  EXPECT_TRUE(exchanged(-0.1, true));
+  EXPECT_FALSE(exchanged(0.1, true));
+  // Once the held sides are turned round, what was exchanged is held, and what was not is
+  // exchanged.
+  EXPECT_FALSE(exchanged(-0.9, true, true));
+  EXPECT_TRUE(exchanged(-0.1, false, true));
+  EXPECT_FALSE(exchanged_afterwards(SidesStep{}, right_at(-0.9), true, 1.0)) << "after a gap";
+}
+
 TEST(LaterSides, SayNothingAcrossAGap) {
   Recorded person;
   for (int i = 0; i < 3; ++i) person.see({.news = 0.1});

@@ -19,10 +19,11 @@ struct Posture {
   double wrists = 0.0;
   double elbows = 0.0;
   double shoulders = 0.0;  ///< The arms move with the shoulders.
+  double feet = 0.0;       ///< Toes in front of the ankles.
 };
 
 inline constexpr Posture kPlank{};
-inline constexpr Posture kAtWork{0.02, 0.25, -0.02, 0.05};
+inline constexpr Posture kAtWork{.knees = 0.02, .wrists = 0.25, .elbows = -0.02, .shoulders = 0.05};
 
 /// A person at `place` who faces yaw `heading`; at 0 they face +z, with their left at +x.
 [[nodiscard]] inline Skeleton<WorldSpace> body_at(const Eigen::Vector3d& place, double heading,
@@ -54,7 +55,7 @@ inline constexpr Posture kAtWork{0.02, 0.25, -0.02, 0.05};
   both(HipLeft, 0.10, 0.95, 0);
   both(KneeLeft, 0.10, 0.50, posture.knees);
   both(AnkleLeft, 0.10, 0.08, 0);
-  both(FootLeft, 0.10, 0.03, 0.1);
+  both(FootLeft, 0.10, 0.03, posture.feet);
   return body;
 }
 
