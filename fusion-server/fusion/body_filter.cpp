@@ -65,7 +65,10 @@ class BodyFilter final : public Estimator {
     sighted.settle(lengths_.held(model()), expected, misfits_.found(model()));
     misfits_.learn(sighted.misfits(), passed, model());
     lengths_.learn(sighted.placed(), passed, model());
-    if (model().handover > Duration{0}) handover_.take(sighted.pulls(), passed, model().handover);
+    if (model().handover > Duration{0}) {
+      handover_.take(sighted.pulls(), passed, model().handover);
+      if (model().leap > 0) hold_leaps(sighted.placed(), expected, instant.at);
+    }
     const StatedVariances stated = sighted.stated_variances();
     limb_ends_.learn(sighted.placed(), stated, passed, model());
     const PlacedBody whole =
@@ -103,6 +106,16 @@ class BodyFilter final : public Estimator {
     const double beyond = std::max(0.0, std::abs(off) - kPlay);
     yaw_ = wrap_angle(yaw_ + std::copysign(beyond, off));
     return beyond;
+  }
+
+  /// A joint that was measured before moves on from where it is expected, or two views tell of it.
+  void hold_leaps(const PlacedBody& seen, const PlacedBody& expected, Timestamp instant) {
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const auto& before = filters_[j].updated();
+      if (!seen[j].placed || !expected[j].placed || !before) continue;
+      const double times = std::max(1.0, seconds(instant - *before) / BodyModel::kLeapTime);
+      handover_.hold_leap(j, seen[j].position, expected[j].position, times * model().leap);
+    }
   }
 
   [[nodiscard]] PlacedBody handed_over(PlacedBody body) const {

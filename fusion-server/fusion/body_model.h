@@ -35,6 +35,11 @@ struct BodyModel {
   /// Time constant with which a joint follows after a view of it has begun, ended, or turned into a
   /// guess or out of one (handover.h); 0: it follows at once.
   Duration handover = std::chrono::milliseconds(70);
+  /// How far a joint may be from where its motion had it expected after kLeapTime, in proportion
+  /// after longer times [m], when no two views tell of more; what is beyond is handed over like a
+  /// view that began.  0: any distance.
+  double leap = 0.04;
+  static constexpr double kLeapTime = 1.0 / 30.0;  ///< [s]
   /// For the weights of the views, the pose error (pose_error.h) of every joint is multiplied by
   /// `pose`, and that of an inferred joint also by `inferred`.
   double pose = 0.5;

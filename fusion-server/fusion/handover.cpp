@@ -30,6 +30,19 @@ std::vector<Twice> matched(const std::vector<ViewPulls>& now,
   return sensors;
 }
 
+/// How each view that stays has moved against the mean since an instant ago.
+std::vector<Eigen::Vector3d> moved(std::size_t joint, const std::vector<Twice>& sensors) {
+  std::vector<Eigen::Vector3d> all;
+  for (const Twice& each : sensors) {
+    if (each.now == nullptr || each.before == nullptr) continue;
+    const Pull& now = each.now->joints[joint];
+    const Pull& before = each.before->joints[joint];
+    if (now.state == JointState::NotTracked || now.state != before.state) continue;
+    all.push_back(now.off - before.off);
+  }
+  return all;
+}
+
 /// The movement of the joint since an instant ago according to the views that stay, minus that of
 /// the mean over all views.  Added to the mean, it takes back the jump that the other views cause
 /// by coming, by going, or by becoming or ceasing to be a guess.  Zero if all views stay, or none.
@@ -61,8 +74,20 @@ void Handover::take(std::vector<ViewPulls> now, double passed, Duration fading) 
   const std::vector<Twice> sensors = matched(now, before_);
   for (std::size_t j = 0; j < kJointCount; ++j) {
     offsets_[j] = kept * (offsets_[j] + step_back(j, sensors));
+    moved_[j] = moved(j, sensors);
   }
   before_ = std::move(now);
+}
+
+void Handover::hold_leap(std::size_t joint, const Eigen::Vector3d& mean,
+                         const Eigen::Vector3d& expected, double farthest) {
+  const Eigen::Vector3d leap = mean + offsets_[joint] - expected;
+  const double distance = leap.norm();
+  if (distance <= farthest || before_.size() < 2) return;
+  const auto telling = std::ranges::count_if(moved_[joint], [&](const Eigen::Vector3d& against) {
+    return (mean + against - expected).dot(leap) >= 0.5 * distance * distance;
+  });
+  if (telling < 2) offsets_[joint] -= (1.0 - farthest / distance) * leap;
 }
 
 }  // namespace chorus::fusion

@@ -157,6 +157,7 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read_ms("bias_memory_ms", out.bias_memory, milliseconds(1), std::chrono::seconds(10));
   reader.read_deg("bias_turn_deg", out.bias_turn, 1.0, 360.0);
   reader.read_ms("handover_ms", out.handover, milliseconds(0), std::chrono::seconds(10));
+  reader.read("leap_m", out.leap, 0.0, 10.0);
   reader.read("pose", out.pose, 0.0, 10.0);
   reader.read("inferred_factor", out.inferred, 1.0, 100.0);
   reader.read("huber", out.huber, 0.0, 100.0);

@@ -148,6 +148,31 @@ TEST(BodyFilter, BonesHoldAJointAtTheLengthThatWasLearned) {
   EXPECT_NEAR(length_after(0.0), length + 0.1, 0.005);
 }
 
+TEST(BodyFilter, ALeapThatOneViewOfSeveralTellsIsFollowedLater) {
+  const auto exact = standing();
+  auto leapt = exact;
+  leapt[WristLeft].position.x() += 0.3;
+  // The first sensor sees the leap; so does the second, if `both`.
+  const auto moved = [&](double leap, bool both, int instants) {
+    Room room;
+    room.config.body.leap = leap;
+    room.config.body.resting = 0.0;
+    room.config.body.bone = 0.0;
+    auto second = both ? leapt : exact;
+    if (!both) second[WristLeft] = {};
+    (void)room.settled(exact);
+    FusedBody body;
+    for (int i = 1; i <= instants; ++i) {
+      body = room.at(kFilterSteps + i, {view_of(1, leapt), view_of(2, second)});
+    }
+    return wrist_off(body, exact);
+  };
+  EXPECT_GT(moved(0.0, false, 1), 0.1);
+  EXPECT_LT(moved(0.04, false, 1), 0.045);
+  EXPECT_GT(moved(0.04, false, 20), 0.25);
+  EXPECT_GT(moved(0.04, true, 1), 0.25);
+}
+
 TEST(BodyFilter, AJointThatNobodySeesIsCarriedForAWhileAndSaidToBe) {
   Room room;
   const auto exact = standing();

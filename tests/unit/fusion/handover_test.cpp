@@ -2,6 +2,8 @@
 // to where the other views have it.
 #include "fusion-server/fusion/handover.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/fusion/views.h"
@@ -86,6 +88,38 @@ TEST(Handover, AJointThatNobodySawBeforeIsWhereItsViewsHaveIt) {
   Handover handover;
   handover.take({}, 0.0, kHandoverTime);
   EXPECT_NEAR(placed_after(handover, {{1, 0.5}, {2, 0.7}}, kBetween), 0.6, 1e-12);
+}
+
+TEST(Handover, ALeapThatOneViewOfSeveralTellsIsHeldBackAndFollowsLater) {
+  Handover handover;
+  const Sights elsewhere({{1, 0.0}, {2, 0.0}});
+  handover.take(elsewhere.pulls, kBetween, kHandoverTime);
+  const Eigen::Vector3d expected(1, 0, 0);
+  const Eigen::Vector3d outlier(1, 0.3, 0.4);
+  handover.hold_leap(1, outlier, expected, 0.04);
+  EXPECT_LT((outlier + handover.offset(1) - Eigen::Vector3d(1, 0.024, 0.032)).norm(), 1e-12);
+  EXPECT_TRUE(handover.offset(0).isZero());
+  handover.take(elsewhere.pulls, kBetween, kHandoverTime);
+  EXPECT_NEAR(handover.offset(1).norm(), 0.46 * std::exp(-0.33), 1e-6);
+  handover.hold_leap(1, outlier, outlier + handover.offset(1), 0.04);
+  EXPECT_NEAR(handover.offset(1).norm(), 0.46 * std::exp(-0.33), 1e-6) << "it goes on from there";
+}
+
+/// Three views whose mean leaps from 0 to 0.3 m, and the offset of the joint after that.
+double held_back(const std::vector<PlacedSight>& before, const std::vector<PlacedSight>& after) {
+  Handover handover;
+  (void)placed_after(handover, before, kBetween);
+  const double there = placed_after(handover, after, kBetween);
+  handover.hold_leap(0, Eigen::Vector3d(there, 0, 0), Eigen::Vector3d::Zero(), 0.04);
+  return -handover.offset(0).x();
+}
+
+TEST(Handover, ALeapOfWhichTwoViewsTellIsNotHeldBack) {
+  const std::vector<PlacedSight> before{{1, -0.1}, {2, 0.0}, {3, 0.1}};
+  EXPECT_NEAR(held_back(before, {{1, 0.2}, {2, 0.3}, {3, 0.4}}), 0.0, 1e-12);
+  EXPECT_NEAR(held_back(before, {{1, 0.3}, {2, 0.5}, {3, 0.1}}), 0.0, 1e-12);
+  EXPECT_NEAR(held_back(before, {{1, -0.1}, {2, 0.0}, {3, 1.0}}), 0.26, 1e-12) << "one alone";
+  EXPECT_NEAR(held_back({{1, 0.0}}, {{1, 0.3}}), 0.0, 1e-12) << "nobody could contradict it";
 }
 
 }  // namespace
