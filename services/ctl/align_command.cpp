@@ -33,8 +33,8 @@ using client::ServiceClient;
 
 struct AlignArguments {
   std::string reference;
-  std::string source = client::default_server();
-  std::string url = client::default_server();  ///< For --apply; that of the source if it is one.
+  std::string source;  ///< Empty: the server at `url`.
+  std::string url = client::default_server();
   std::string registration;
   std::string axes = "y-up";
   std::string unit;
@@ -276,7 +276,12 @@ Result<AlignmentFindings> findings_of(const AlignArguments& arguments,
 /// Conflict unless the server's sensors stand where they stood for the source.
 Result<void> same_world(const ServiceClient& server, const AlignArguments& arguments,
                         const std::optional<Registration>& places) {
-  constexpr double kSame = mm(1.0);
+  constexpr double kSame = mm(1.0);  // of the place, and per metre for the turn
+  if (!places)
+    return fail(ErrorCode::Conflict, "align",
+                arguments.source +
+                    " does not say where the sensors stood, so the server's world "
+                    "may be another; name their places with --registration");
   const auto differs = [&] {
     return fail(ErrorCode::Conflict, "align",
                 "the server's sensors do not stand where they stood in " + arguments.source +
@@ -284,20 +289,21 @@ Result<void> same_world(const ServiceClient& server, const AlignArguments& argum
   };
   const auto answer = server.get("/registration");
   if (!answer) return pass(answer);
-  if (!places || client::part_at(*answer, "sensors").empty()) return differs();
+  if (client::part_at(*answer, "sensors").empty()) return differs();
   const auto now = wire::read_registration(answer->dump());
   if (!now) return pass(now);
   for (const auto& [sensor, place] : places->sensors) {
     const auto there = now->sensors.find(sensor);
     if (there == now->sensors.end() ||
-        !(there->second.world_from_sensor.translation() - place.world_from_sensor.translation())
+        !(there->second.world_from_sensor.matrix() - place.world_from_sensor.matrix())
              .isMuchSmallerThan(kSame, 1.0))
       return differs();
   }
   return {};
 }
 
-Result<int> run_align(const AlignArguments& arguments) {
+Result<int> run_align(AlignArguments arguments) {
+  if (arguments.source.empty()) arguments.source = arguments.url;
   const auto places = places_of_source(arguments);
   if (!places) return pass(places);
   const auto found = findings_of(arguments, *places);
@@ -364,20 +370,16 @@ Run add_align(CLI::App& options) {
       .add_option("reference", arguments->reference,
                   "CSV of the other tracker: Motive's, ours, or columns time,x,y,z")
       ->required();
-  options
-      .add_option("source", arguments->source,
-                  "Recording (.mcap), NDJSON of chorus fuse, or address of a fusion server")
-      ->capture_default_str();
+  options.add_option("source", arguments->source,
+                     "Recording (.mcap), NDJSON of chorus fuse, or address of a fusion server; by "
+                     "default the server of --url");
   add_reference_options(options, *arguments);
   add_source_options(options, *arguments);
   options.add_flag("--marker-offset", arguments->marker_offset,
                    "Also find where the marker sits beside the joint");
   options.add_flag("--full", arguments->full, "Let the worlds be tilted against each other");
   options.add_flag("--apply", arguments->apply, "Move the server's world there (chorus origin)");
-  options.add_option("--url", arguments->url, "The server for --apply, if the source is none")
-      ->capture_default_str();
-  add_authority_option(options);
-  add_token_footer(options);
+  add_server_option(options, arguments->url, "The fusion server, if the source is none");
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_align(*arguments); };
 }

@@ -134,10 +134,15 @@ std::string alignment_text(const AlignmentFindings& found) {
   text += sensors_text(found.walk ? "sensor, by the walk" : "sensor, best fit", found.sensors);
   text += sensors_text("sensor, from the master", found.from_master);
   const Stance origin = origin_of(found.ours_from_reference);
-  text += fmt::format("the reference's floor (y = 0) is {:.0f} mm above ours",
-                      to_mm(found.ours_from_reference.translation().y()));
+  const double height = found.ours_from_reference.translation().y();
+  text += fmt::format("the reference's floor (y = 0) is {:.0f} mm {} ours", to_mm(std::abs(height)),
+                      height < 0 ? "below" : "above");
   const double tilt = to_deg(tilt_of(found.ours_from_reference));
-  text += tilt > 1e-6 ? fmt::format(", and tilted by {:.2f} deg\n", tilt) : std::string("\n");
+  if (tilt > 1e-6) text += fmt::format(", and tilted by {:.2f} deg", tilt);
+  if (found.walk && !found.walk->marker_height)
+    text +=
+        fmt::format(", or the marker so far {} {}", height < 0 ? "above" : "below", found.joint);
+  text += '\n';
   return text + fmt::format("the same origin and front: chorus origin --x={} --z={} --yaw={}\n",
                             shown(origin.x, 4), shown(origin.z, 4), shown(to_deg(origin.yaw), 3));
 }

@@ -241,6 +241,7 @@ Result<Alignment> reported(const Problem& problem, const Solved& solved) {
   out.ours_from_reference = solved.state.ours_from_reference;
   out.clock_offset = solved.state.offset;
   if (problem.config.marker_offset) out.marker_offset = solved.state.marker;
+  out.marker_height = problem.poses;
   out.residuals = solved.residuals;
   for (const Pair& pair : solved.pairs) out.times.push_back(pair.time);
   const Normal covariance =

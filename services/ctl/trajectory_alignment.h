@@ -39,6 +39,7 @@ struct Alignment {
   /// Place of our joint relative to the marker [m]: in the marker's axes if the reference has
   /// poses, else in the body's (left, up, front; up is then not found and stays 0).
   std::optional<Eigen::Vector3d> marker_offset = {};
+  bool marker_height = false;              ///< How high the marker is was found, too.
   std::vector<Eigen::Vector3d> residuals;  ///< Ours minus the reference's, in our world [m].
   std::vector<double> times;               ///< Of the residuals, by our clock [s].
   double yaw_sigma = 0.0;                  ///< [rad]

@@ -82,6 +82,7 @@ TEST(AlignCommand, SaysWhatToCall) {
   ASSERT_EQ(done.code, kExitOk) << done.error;
   EXPECT_THAT(done.out, HasSubstr("Head beside the reference"));
   EXPECT_THAT(done.out, HasSubstr("(they are not UTC)"));
+  EXPECT_THAT(done.out, HasSubstr("mm above ours, or the marker so far below Head"));
   EXPECT_THAT(done.out, HasSubstr("the same origin and front: chorus origin --x=0."));
 }
 
@@ -162,14 +163,41 @@ TEST(AlignCommand, AppliesOnlyToTheWorldOfTheRecording) {
   ASSERT_EQ(server.written().size(), 1u);
   EXPECT_THAT(server.written()[0], HasSubstr("POST /registration/origin"));
 
-  auto moved = places();
-  moved.sensors.begin()->second.world_from_sensor.translation().x() += 0.01;
-  const ScriptedServer other(
-      ScriptedServer::Texts{{"/registration", {wire::write_registration(moved)}}});
-  const Outcome refused = run_chorus({"align", file, walk, "--apply", "--url", other.url()});
+  for (const bool turned : {false, true}) {
+    auto moved = places();
+    auto& first = moved.sensors.begin()->second.world_from_sensor;
+    if (turned) {
+      first.linear() = about_y(deg(0.5)) * first.linear();
+    } else {
+      first.translation().x() += 0.01;
+    }
+    const ScriptedServer other(
+        ScriptedServer::Texts{{"/registration", {wire::write_registration(moved)}}});
+    const Outcome refused = run_chorus({"align", file, walk, "--apply", "--url", other.url()});
+    EXPECT_EQ(refused.code, kExitFailed);
+    EXPECT_THAT(refused.error, HasSubstr("do not stand where they stood"));
+    EXPECT_TRUE(other.written().empty());
+  }
+}
+
+TEST(AlignCommand, AppliesNothingIfNobodyKnowsWhereTheSensorsStood) {
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/registration", {wire::write_registration(places())}}});
+  const std::string walk = aligned_cell().file("walk.ndjson");
+  ASSERT_EQ(run_chorus({"fuse", aligned_cell().recordings(), "--out", walk, "--from-walk"}).code,
+            kExitOk);
+  const Outcome refused =
+      run_chorus({"align", head_file("head9.csv"), walk, "--apply", "--url", server.url()});
   EXPECT_EQ(refused.code, kExitFailed);
-  EXPECT_THAT(refused.error, HasSubstr("do not stand where they stood"));
-  EXPECT_TRUE(other.written().empty());
+  EXPECT_THAT(refused.error, HasSubstr("name their places with --registration"));
+  EXPECT_TRUE(server.written().empty());
+}
+
+TEST(AlignCommand, WithoutASourceAsksTheServerOfTheUrl) {
+  const Outcome done =
+      run_chorus({"align", sensors_file(), "--seconds", "0", "--url", "http://127.0.0.1:1/"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("127.0.0.1:1"));
 }
 
 TEST(AlignCommand, SaysWhatIsMissing) {
