@@ -139,12 +139,12 @@ Eigen::Vector3d towards_sensor(const SensorView& view) {
   return way.normalized();
 }
 
-/// How far a foot that points along `ahead` can be trusted, in [0, 1]: not at all within 70 degrees
+/// How far a foot that points along `ahead` can be trusted, in [0, 1]: not at all within 90 degrees
 /// of the way to the sensor, where a tracker that takes the rear for the front has the feet of
-/// somebody who turns the back on it; fully from 90 degrees on.
+/// somebody who turns the back on it; fully from 110 degrees on.
 double trust_in_foot(const Eigen::Vector3d& ahead, const Eigen::Vector3d& to_sensor) {
-  constexpr double kNone = 0.34;  // Cosine of 70 degrees.
-  return std::clamp(1.0 - ahead.normalized().dot(to_sensor) / kNone, 0.0, 1.0);
+  constexpr double kAll = 0.34;  // Minus the cosine of 110 degrees.
+  return std::clamp(-ahead.normalized().dot(to_sensor) / kAll, 0.0, 1.0);
 }
 
 void add_feet(Offset& offset, const SensorView& view) {

@@ -5,8 +5,8 @@
 // lies or turns over.  Elbows bend backwards, hands work in front of the shoulders and people bend
 // forwards, while they are upright; the elbows of others are hinges, too.  Toes are ahead of
 // ankles; but a tracker that sees a person from behind may turn the feet towards itself, with the
-// labels, so feet count only in views in which they point across the line of sight or away from the
-// sensor. Heads are not used: they are drawn towards the sensor, too.
+// labels, so feet count only in views in which they point away from the sensor. Heads are not used:
+// they are drawn towards the sensor, too.
 #pragma once
 
 #include <vector>
@@ -36,8 +36,8 @@ struct PostureCues {
   /// Arm joints that sensors in front of the person see and sensors behind infer; here `at` is a
   /// fraction of these joints.
   Cue hidden{0.5, 0.25};
-  /// Toes in front of the ankles, of upright people, in views whose sensor does not have the toes
-  /// point to itself.  Not learned (decision 0123): in the recordings people face the sensor.
+  /// Toes in front of the ankles, of upright people, in views whose sensor has the toes point
+  /// away from itself.  Not learned (decision 0123): in the recordings people face the sensor.
   Cue feet{2.0, 0.05};
   double same = 5.0;  ///< Time constant of the autocorrelation of postures [s].
 
