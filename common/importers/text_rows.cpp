@@ -75,7 +75,8 @@ std::optional<std::string_view> LineReader::next_filled() {
 }
 
 tl::unexpected<Error> LineReader::malformed(std::string message) const {
-  return fail(ErrorCode::Malformed, fmt::format("{}:{}", origin_, line_), std::move(message));
+  return fail(ErrorCode::Malformed, line_ == 0 ? origin_ : fmt::format("{}:{}", origin_, line_),
+              std::move(message));
 }
 
 Result<Row> Row::split(const LineReader& at, std::string_view line, char separator,

@@ -195,16 +195,26 @@ AlignmentConfig config_of(const AlignArguments& arguments, const Reference& refe
   return config;
 }
 
-/// Whether the two would fit if the reference had other axes than it is said to have.
-std::string other_axes(const AlignArguments& arguments, const Trace& ours,
-                       const std::string& body) {
+/// Whether the two would fit if the reference had another unit or other axes than it is said to
+/// have.
+std::string what_would_fit(const AlignArguments& arguments, const Trace& ours,
+                           const std::string& body) {
+  const auto fits = [&](const AlignArguments& other) {
+    const auto reference = reference_of(other, other.axes);
+    return reference && reference->bodies.contains(body) &&
+           align_traces(ours, trace_of(reference->bodies.at(body)), config_of(other, *reference));
+  };
+  AlignArguments other = arguments;
   for (const auto& [name, value] : kReferenceAxes) {
-    if (name == arguments.axes) continue;
-    const auto other = reference_of(arguments, std::string(name));
-    if (!other || !other->bodies.contains(body)) continue;
-    const auto fit =
-        align_traces(ours, trace_of(other->bodies.at(body)), config_of(arguments, *other));
-    if (fit) return fmt::format(".  With --axes {} they fit", name);
+    other.axes = name;
+    if (name != arguments.axes && fits(other))
+      return fmt::format(".  With --axes {} they fit", name);
+  }
+  other.axes = arguments.axes;
+  for (const auto& [name, metres] : kUnits) {
+    other.unit = name;
+    if (name != arguments.unit && fits(other))
+      return fmt::format(".  With --unit {} they fit", name);
   }
   return {};
 }
@@ -215,7 +225,9 @@ Result<void> align_walk(const AlignArguments& arguments, const Trace& ours,
   auto walk = align_traces(ours, theirs, config_of(arguments, reference));
   if (!walk) {
     Error error = walk.error();
-    if (error.code == ErrorCode::Conflict) error.message += other_axes(arguments, ours, found.body);
+    error.context = arguments.reference + " beside " + arguments.source;
+    if (error.code == ErrorCode::Conflict)
+      error.message += what_would_fit(arguments, ours, found.body);
     return tl::unexpected(std::move(error));
   }
   found.utc = reference.utc;
@@ -278,14 +290,13 @@ Result<void> same_world(const ServiceClient& server, const AlignArguments& argum
                         const std::optional<Registration>& places) {
   constexpr double kSame = mm(1.0);  // of the place, and per metre for the turn
   if (!places)
-    return fail(ErrorCode::Conflict, "align",
-                arguments.source +
-                    " does not say where the sensors stood, so the server's world "
-                    "may be another; name their places with --registration");
+    return fail(ErrorCode::Conflict, arguments.source,
+                "does not say where the sensors stood, so the server's world may be another; name "
+                "their places with --registration");
   const auto differs = [&] {
-    return fail(ErrorCode::Conflict, "align",
-                "the server's sensors do not stand where they stood in " + arguments.source +
-                    ", so its world may be another; without --apply the origin is only said");
+    return fail(ErrorCode::Conflict, arguments.source,
+                "the server's sensors do not stand where they stood there, so its world may be "
+                "another; without --apply the origin is only said");
   };
   const auto answer = server.get("/registration");
   if (!answer) return pass(answer);

@@ -62,9 +62,11 @@ std::string walk_text(const AlignmentFindings& found) {
   std::string text = fmt::format("{} beside {}: {} samples in {:.1f} s\n", found.joint,
                                  found.body.empty() ? "the reference" : printable(found.body),
                                  walk.times.size(), walk.times.back() - walk.times.front());
-  text += fmt::format("clock: {:.1f} ms +- {:.1f} are added to the reference's stamps{}\n",
-                      1e3 * walk.clock_offset, 1.96e3 * walk.clock_sigma,
-                      found.utc ? "" : " (they are not UTC)");
+  const std::string offset = std::abs(walk.clock_offset) < 10.0
+                                 ? fmt::format("{:.1f} ms", 1e3 * walk.clock_offset)
+                                 : fmt::format("{:.4f} s", walk.clock_offset);
+  text += fmt::format("clock: {} +- {:.1f} ms are added to the reference's stamps{}\n", offset,
+                      1.96e3 * walk.clock_sigma, found.utc ? "" : " (they are not UTC)");
   if (walk.marker_offset) text += marker_text(*walk.marker_offset, found);
   std::vector<std::vector<std::string>> rows{{"residual", "median [mm]", "95 % [mm]"}};
   for (const Measure& each : measures_of(walk.residuals))

@@ -111,11 +111,14 @@ std::optional<TracePoint> trace_at(const Trace& trace, double time, double max_g
 
 Result<double> rough_offset(const Trace& ours, const Trace& reference,
                             const AlignmentConfig& config) {
-  const auto little = [] {
-    return fail(ErrorCode::NotFound, "align",
-                fmt::format("the two have less than {} s in common: were they recorded at the same "
-                            "time? If the reference has a clock of its own, give no range for it",
-                            kLeastCommon));
+  const auto little = [&] {
+    std::string message =
+        fmt::format("the two have less than {} s in common: were they recorded at the same time?",
+                    kLeastCommon);
+    if (config.clock_range)
+      message += fmt::format(" Their clocks may differ by {} s here; --clock allows more",
+                             *config.clock_range);
+    return fail(ErrorCode::NotFound, "align", std::move(message));
   };
   if (length_of(ours) < kLeastCommon || length_of(reference) < kLeastCommon) return little();
   const Trace few = thinned(ours);

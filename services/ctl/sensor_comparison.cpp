@@ -55,8 +55,8 @@ Result<Eigen::Isometry3d> ours_from_marks(const std::map<SensorId, SensorMark>& 
     apart = std::max(apart, std::hypot(way.x(), way.z()));
   }
   if (apart < kLeastApart)
-    return fail(ErrorCode::NotFound, "align",
-                "the reference has fewer than two bodies that are called as sensors, or they stand "
+    return fail(ErrorCode::NotFound, "the reference",
+                "has fewer than two bodies that are called as sensors, or they stand "
                 "in one place");
   const auto fit = fit_yaw(theirs, ours);
   if (!fit) return pass(fit);

@@ -235,7 +235,7 @@ Result<Alignment> reported(const Problem& problem, const Solved& solved) {
         ErrorCode::Conflict, "align",
         fmt::format("the two do not show one motion: half of the points are more than {:.0f} "
                     "mm apart. Another joint (--joint), body (--body) or person? Other axes "
-                    "or units (--axes, --unit)? The reference moves {:.3g} times as far",
+                    "or units (--axes, --unit)? The reference moves {:.2f} times as far",
                     1e3 * middle, spread_of(problem.reference) / spread_of(problem.ours)));
   Alignment out;
   out.ours_from_reference = solved.state.ours_from_reference;

@@ -120,6 +120,22 @@ TEST(AlignCommand, NamesTheAxesThatWouldFit) {
   EXPECT_NEAR(aligned({file, walk, "--axes", "z-up"}).at("origin").at("yawDegrees"), 30.0, 0.1);
 }
 
+TEST(AlignCommand, NamesTheUnitThatWouldFit) {
+  const std::string file = aligned_cell().file("millimetres.csv");
+  std::ofstream out(file);
+  bool first = true;
+  for (const std::string& line : lines_of(chorus::testing::bytes_of(head_file("head10.csv")))) {
+    double t = 0, x = 0, y = 0, z = 0;
+    if (!first) std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &t, &x, &y, &z);
+    out << (first ? line + "\n" : fmt::format("{},{},{},{}\n", t, 1e3 * x, 1e3 * y, 1e3 * z));
+    first = false;
+  }
+  out.close();
+  const Outcome wrong = run_chorus({"align", file, aligned_cell().file("walk.mcap")});
+  EXPECT_EQ(wrong.code, kExitFailed);
+  EXPECT_THAT(wrong.error, HasSubstr("With --unit mm they fit"));
+}
+
 std::string sensors_file() {
   const std::string file = aligned_cell().file("sensors.csv");
   std::ofstream out(file);
