@@ -57,7 +57,7 @@ std::vector<CapturedTake> takes_in(const fs::path& folder, Report& report) {
                               to_string(performance.error())));
       continue;
     }
-    takes.push_back({file.stem().string(),
+    takes.push_back({file.filename().string(),
                      std::make_shared<const synthetic::Performance>(*std::move(performance))});
   }
   return takes;
