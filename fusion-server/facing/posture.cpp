@@ -130,13 +130,17 @@ void add_lean(Offset& offset, const Skeleton<WorldSpace>& body) {
              weight_of(body, SpineShoulder, SpineBase));
 }
 
-/// Horizontal unit vector from the person to the sensor; zero when the neck is not seen.
+/// Horizontal unit vector from the person to the sensor; zero when the trunk is not seen.
 Eigen::Vector3d towards_sensor(const SensorView& view) {
-  const Joint& neck = view.skeleton[JointId::Neck];
-  if (!neck.seen()) return Eigen::Vector3d::Zero();
-  Eigen::Vector3d way = view.eye - neck.position;
-  way.y() = 0;
-  return way.normalized();
+  using enum JointId;
+  for (const JointId id : {Neck, SpineShoulder, SpineMid, SpineBase}) {
+    const Joint& joint = view.skeleton[id];
+    if (!joint.seen()) continue;  // Kinect v1 has no neck.
+    Eigen::Vector3d way = view.eye - joint.position;
+    way.y() = 0;
+    return way.normalized();
+  }
+  return Eigen::Vector3d::Zero();
 }
 
 /// How far a foot that points along `ahead` can be trusted, in [0, 1]: not at all within 90 degrees

@@ -37,7 +37,8 @@ struct PostureCues {
   /// fraction of these joints.
   Cue hidden{0.5, 0.25};
   /// Toes in front of the ankles, of upright people, in views whose sensor has the toes point
-  /// away from itself.  Not learned (decision 0123): in the recordings people face the sensor.
+  /// away from itself.  Not learned (decision 0123): in the recordings that may be
+  /// shipped people face the sensor.
   Cue feet{2.0, 0.05};
   double same = 5.0;  ///< Time constant of the autocorrelation of postures [s].
 

@@ -28,5 +28,7 @@ namespace chorus::bench {
 [[nodiscard]] Result<void> side_keraal(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_ntu(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_nw_ucla(Report& report, const std::filesystem::path& folder);
+/// Reports how often toes tell left and right, and correctly, in single frames of single sensors.
+[[nodiscard]] Result<void> toes_nw_ucla(Report& report, const std::filesystem::path& folder);
 
 }  // namespace chorus::bench

@@ -31,7 +31,8 @@ constexpr std::array kParts{Part{"keraal_kinect2_optical", compare_with_keraal},
                             Part{"kinect2_labanotation", side_labanotation},
                             Part{"keraal_kinect2_optical", side_keraal},
                             Part{"ntu_rgbd_kinect2", side_ntu},
-                            Part{"nw_ucla_3kinect", side_nw_ucla}};
+                            Part{"nw_ucla_3kinect", side_nw_ucla},
+                            Part{"nw_ucla_3kinect", toes_nw_ucla}};
 
 }  // namespace
 

@@ -15,6 +15,7 @@
 #include "common/importers/datasets/labanotation_csv.h"
 #include "common/importers/datasets/ntu_skeleton.h"
 #include "common/importers/datasets/nw_ucla_json.h"
+#include "fusion-server/facing/posture.h"
 #include "fusion-server/pipeline/offline.h"
 #include "tests/bench/accuracy/recordings.h"
 #include "tests/judge/labelled_error.h"
@@ -124,6 +125,45 @@ std::optional<Truth> walks_forwards(const FrameRecording& recording, std::size_t
   return Truth{along > 0};
 }
 
+/// What toes say of the side on which the left is, in frames in which they say anything.
+struct Toes {
+  Share gated;           ///< Toes that point away from the sensor, as the facing stage takes them.
+  Share all;             ///< Toes wherever they point.
+  std::size_t seen = 0;  ///< Frames whose truth is known.
+
+  void add(const Body& raw, bool as_labelled) {
+    ++seen;
+    Eigen::Vector3d left =
+        raw[JointId::ShoulderLeft].position - raw[JointId::ShoulderRight].position;
+    left.y() = 0;
+    left = (as_labelled ? 1.0 : -1.0) * left.normalized();
+    facing::PostureCues feet_alone;
+    for (auto cue :
+         {&facing::PostureCues::knees, &facing::PostureCues::wrists, &facing::PostureCues::elbows,
+          &facing::PostureCues::lean, &facing::PostureCues::hidden})
+      (feet_alone.*cue).log_odds = 0.0;
+    SensorView view;
+    view.skeleton = raw;
+    constexpr double kSays = 0.2;
+    const double odds = facing::posture_log_odds({view}, left, 1.0, feet_alone);
+    if (std::abs(odds) > kSays) gated.add(odds > 0);
+    const Eigen::Vector3d front = left.cross(Eigen::Vector3d::UnitY());
+    const double ahead =
+        front.dot(raw[JointId::FootLeft].position - raw[JointId::AnkleLeft].position +
+                  raw[JointId::FootRight].position - raw[JointId::AnkleRight].position);
+    all.add(ahead > 0);
+  }
+
+  void report(Report& to, const std::string& name, const std::string& where) const {
+    to.row(name, "says_percent" + where,
+           100.0 * static_cast<double>(gated.all) /
+               static_cast<double>(std::max<std::size_t>(1, seen)),
+           "%");
+    to.row(name, "right_percent" + where, gated.percent(), "%", "all-toes",
+           gated.percent() / all.percent());
+  }
+};
+
 using Reader = Result<FrameRecording> (*)(const fs::path&, const importers::ImportOptions&);
 
 struct Collection {
@@ -187,6 +227,29 @@ Result<void> side_ntu(Report& report, const fs::path& folder) {
   return count_all(
       report, folder,
       {"ntu", ".skeleton", "", importers::read_ntu_skeleton, labels_are_right, kTarget});
+}
+
+/// In NW-UCLA's walks: is what the toes say of the sides right, where the labels are and where they
+/// are exchanged?
+Result<void> toes_nw_ucla(Report& report, const fs::path& folder) {
+  Toes as_labelled;
+  Toes exchanged;
+  for (const auto& file : fs::recursive_directory_iterator(folder)) {
+    const std::string name = file.path().filename().string();
+    if (!name.starts_with("a04") || !name.ends_with(".json")) continue;
+    const auto recording = importers::read_nw_ucla_json(file.path(), {});
+    if (!recording) continue;
+    for (std::size_t i = 0; i < recording->frames.size(); ++i) {
+      if (recording->frames[i].bodies.empty()) continue;
+      const Body raw =
+          to_world(Eigen::Isometry3d::Identity(), recording->frames[i].bodies.front().skeleton);
+      const auto truth = walks_forwards(*recording, i, raw);
+      if (truth) (truth->as_labelled ? as_labelled : exchanged).add(raw, truth->as_labelled);
+    }
+  }
+  as_labelled.report(report, "toes-nw-ucla-walk", "");
+  exchanged.report(report, "toes-nw-ucla-walk", "_where_exchanged");
+  return {};
 }
 
 Result<void> side_nw_ucla(Report& report, const fs::path& folder) {

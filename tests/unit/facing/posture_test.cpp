@@ -115,6 +115,14 @@ TEST(Posture, ToesThatPointToTheSensorTellNothing) {
   EXPECT_GT(inferred, 0.0);
 }
 
+/// Kinect v1 has no neck.
+TEST(Posture, ToesTellWithoutANeck) {
+  auto body = body_at({0, 0, 0}, 0, {.feet = 0.12});
+  body[JointId::Neck] = {};
+  EXPECT_NEAR(posture_log_odds({view_from(1, deg(180), body)}, kLeft, 1.0, {}), 2.0, 1e-9);
+  EXPECT_EQ(posture_log_odds({view_from(1, 0.0, body)}, kLeft, 1.0, {}), 0.0);
+}
+
 TEST(Posture, OfSomebodyWhoLiesToesTellNothing) {
   const auto body = body_at({0, 0, 0}, 0, {.feet = 0.12});
   EXPECT_EQ(posture_log_odds({view_from(1, deg(180), body)}, kLeft, 0.0, {}), 0.0);
