@@ -11,7 +11,7 @@ ROWS = [
     ["common/time", "common/geometry", "common/tls"],
     ["common/rdf", "common/net"],
     ["common/http"],
-    ["common/body"],
+    ["common/body", "common/inertial"],
     ["common/sensor", "common/layout"],
     ["common/motion", "common/resource"],
     ["common/record"],
