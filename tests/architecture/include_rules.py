@@ -8,7 +8,7 @@ from pathlib import Path
 # A room includes only rooms of earlier rows, never one of its own row.
 ROWS = [
     ["common/base"],
-    ["common/time", "common/geometry", "common/tls"],
+    ["common/time", "common/geometry", "common/tls", "common/report"],
     ["common/rdf", "common/net"],
     ["common/http"],
     ["common/body", "common/inertial"],
