@@ -1,0 +1,152 @@
+#include "common/posture/neutral.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "common/base/median.h"
+#include "common/base/units.h"
+
+namespace chorus::posture {
+namespace {
+
+/// Below these, a posture may be somebody's upright stance.  They are wide because what is measured
+/// includes the errors that the stance is to take off: a Kinect's knees err by up to 15 degrees.
+struct Bound {
+  std::size_t measure;
+  double most;
+  std::string_view is;
+};
+const std::array kBounds{
+    Bound{index_of(Centre::TrunkFlexion), deg(20), "the trunk is bent"},
+    Bound{index_of(Centre::TrunkSideBend), deg(15), "the trunk leans sideways"},
+    Bound{index_of(Limb::KneeFlexion, Side::Left), deg(25), "the left knee is bent"},
+    Bound{index_of(Limb::KneeFlexion, Side::Right), deg(25), "the right knee is bent"},
+    Bound{index_of(Limb::UpperArmElevation, Side::Left), deg(30), "the left arm is raised"},
+    Bound{index_of(Limb::UpperArmElevation, Side::Right), deg(30), "the right arm is raised"},
+    Bound{index_of(Limb::ElbowFlexion, Side::Left), deg(45), "the left elbow is bent"},
+    Bound{index_of(Limb::ElbowFlexion, Side::Right), deg(45), "the right elbow is bent"}};
+
+constexpr std::size_t kLeastInstants = 5;
+/// A stretch is calm if no bounded angle varies by more (its standard deviation).
+constexpr double kCalm = deg(4);
+/// The middle share of the stretch's instants that must be upright.
+constexpr double kUprightShare = 0.9;
+
+double median_of(std::span<const Instant> instants, std::size_t measure) {
+  std::vector<double> values;
+  for (const Instant& each : instants) {
+    const double value = each.measures.values[measure];
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  if (values.size() < kLeastInstants) return std::nan("");
+  return median(std::move(values));
+}
+
+Neutral summed_up(std::span<const Instant> instants) {
+  Neutral neutral;
+  neutral.from = instants.front().at;
+  neutral.until = instants.back().at;
+  neutral.instants = instants.size();
+  for (std::size_t m = 0; m < kMeasures; ++m) neutral.stance.values[m] = median_of(instants, m);
+  return neutral;
+}
+
+/// The largest standard deviation of a bounded angle; infinite if one is not measured.
+double unrest(std::span<const Instant> instants) {
+  double worst = 0.0;
+  for (const Bound& bound : kBounds) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const Instant& each : instants) {
+      const double value = each.measures.values[bound.measure];
+      sum += value;
+      squares += value * value;
+    }
+    const double n = static_cast<double>(instants.size());
+    const double variance = squares / n - (sum / n) * (sum / n);
+    if (!std::isfinite(variance)) return std::numeric_limits<double>::infinity();
+    worst = std::max(worst, std::sqrt(std::max(0.0, variance)));
+  }
+  return worst;
+}
+
+double upright_share(std::span<const Instant> instants) {
+  const auto upright = std::ranges::count_if(
+      instants, [](const Instant& each) { return not_upright(each.measures).empty(); });
+  return static_cast<double>(upright) / static_cast<double>(instants.size());
+}
+
+std::optional<Neutral> calmest(std::span<const Instant> instants, Duration length) {
+  constexpr Duration kStep = std::chrono::milliseconds(200);
+  std::optional<std::span<const Instant>> best;
+  double least = kCalm;
+  std::size_t end = 0;
+  Timestamp next{};
+  for (std::size_t begin = 0; begin < instants.size(); ++begin) {
+    if (begin > 0 && instants[begin].at < next) continue;
+    next = instants[begin].at + kStep;
+    while (end < instants.size() && instants[end].at - instants[begin].at < length) ++end;
+    if (end == instants.size()) break;
+    const auto stretch = instants.subspan(begin, end - begin);
+    if (stretch.size() < kLeastInstants || upright_share(stretch) < kUprightShare) continue;
+    const double moved = unrest(stretch);
+    if (moved < least) {
+      least = moved;
+      best = stretch;
+    }
+  }
+  if (!best) return std::nullopt;
+  return summed_up(*best);
+}
+
+double without(double value, double stance, Zeroing zeroing) {
+  if (!std::isfinite(stance) || zeroing == Zeroing::Kept) return value;
+  if (zeroing == Zeroing::Shifted) return value - stance;
+  return std::copysign(std::max(0.0, std::abs(value) - std::abs(stance)), value);
+}
+
+}  // namespace
+
+Measures relative_to(const Neutral& neutral, const Measures& measures) {
+  Measures out;
+  for (std::size_t m = 0; m < kMeasures; ++m)
+    out.values[m] = std::isnan(measures.values[m])
+                        ? measures.values[m]
+                        : without(measures.values[m], neutral.stance.values[m], row_of(m).zeroing);
+  return out;
+}
+
+std::string not_upright(const Measures& measures) {
+  for (const Bound& bound : kBounds) {
+    const double value = measures.values[bound.measure];
+    if (!std::isfinite(value)) return fmt::format("{} is not measured", name_of(bound.measure));
+    if (std::abs(value) > bound.most)
+      return fmt::format("{} by {:.0f} degrees", bound.is, to_deg(std::abs(value)));
+  }
+  return {};
+}
+
+Result<Neutral> neutral_of(std::span<const Instant> instants) {
+  if (instants.size() < kLeastInstants)
+    return fail(ErrorCode::Timeout, "neutral stance",
+                fmt::format("was seen at {} instants only; stand upright, arms down, where sensors "
+                            "see you, for two seconds",
+                            instants.size()));
+  const Neutral neutral = summed_up(instants);
+  const std::string why = not_upright(neutral.stance);
+  if (!why.empty())
+    return fail(ErrorCode::InvalidArgument, "neutral stance",
+                why + "; stand upright, knees straight, arms hanging down");
+  return neutral;
+}
+
+std::optional<Neutral> find_neutral(std::span<const Instant> instants) {
+  if (auto found = calmest(instants, kStanceLasts)) return found;
+  return calmest(instants, kStanceLasts / 2);
+}
+
+}  // namespace chorus::posture

@@ -1,0 +1,48 @@
+// A person's own upright stance: what the measures are while they stand upright with their arms
+// down.  Angles count from there, so that constant errors of joints cancel.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/posture/measures.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::posture {
+
+struct Instant {
+  Timestamp at;
+  Measures measures;
+};
+
+struct Neutral {
+  Measures stance;  ///< Medians; NaN: not measured then, so nothing is taken off.
+  Timestamp from;
+  Timestamp until;
+  std::size_t instants = 0;
+};
+
+/// The measures relative to the stance, as each row of the table says.
+[[nodiscard]] Measures relative_to(const Neutral& neutral, const Measures& measures);
+
+/// How long one stands for it.
+inline constexpr Duration kStanceLasts = std::chrono::seconds(2);
+
+/// The stance of these instants, in the order of time, which somebody says are one ("stand upright,
+/// arms down").  InvalidArgument if it is plainly none (knees or trunk bent, arms raised), Timeout
+/// if fewer than five instants or none of a measure's joints were seen; the message says what to
+/// do.
+[[nodiscard]] Result<Neutral> neutral_of(std::span<const Instant> instants);
+
+/// The calmest upright stretch of kStanceLasts in a recording; if there is none of that length, of
+/// half of it; none otherwise.
+[[nodiscard]] std::optional<Neutral> find_neutral(std::span<const Instant> instants);
+
+/// Why these measures are no upright stance ("the left knee is bent by 40 degrees"); empty: they
+/// are one.
+[[nodiscard]] std::string not_upright(const Measures& measures);
+
+}  // namespace chorus::posture

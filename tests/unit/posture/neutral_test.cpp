@@ -1,0 +1,85 @@
+#include "common/posture/neutral.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/base/units.h"
+#include "common/posture/spread.h"
+#include "tests/support/builders.h"
+
+namespace chorus::posture {
+namespace {
+
+using chorus::testing::kFrameInterval;
+using chorus::testing::kStart;
+using ::testing::HasSubstr;
+using enum JointId;
+
+/// Walks with swinging arms for two seconds, stands for three, bends for one.
+std::vector<Instant> take() {
+  std::vector<Instant> out;
+  for (int i = 0; i < 180; ++i) {
+    auto body = chorus::testing::standing_person();
+    const double t = i / 30.0;
+    if (t < 2.0) body[ElbowLeft].position.z() += 0.2 * std::sin(6.0 * t);
+    if (t > 5.0) {
+      for (const JointId id : {ShoulderLeft, ShoulderRight, SpineShoulder, Head})
+        body[id].position += Eigen::Vector3d(0, -0.15, 0.4);
+    }
+    body[KneeLeft].position.z() += 0.03;  // the tracker's knees are always bent a little
+    out.push_back({kStart + i * kFrameInterval, posture_of(body).measures});
+  }
+  return out;
+}
+
+TEST(NeutralStance, IsFoundWhereSomebodyStandsStill) {
+  const auto instants = take();
+  const auto found = find_neutral(instants);
+  ASSERT_TRUE(found);
+  EXPECT_GE(found->from - kStart, std::chrono::milliseconds(1950));
+  EXPECT_LE(found->until - kStart, std::chrono::milliseconds(5050));
+  const auto relative = relative_to(*found, instants[100].measures);
+  EXPECT_NEAR(relative.at(Limb::KneeFlexion, Side::Left), 0.0, 1e-9);
+  EXPECT_GT(instants[100].measures.at(Limb::KneeFlexion, Side::Left), deg(5));
+}
+
+TEST(NeutralStance, IsNotFoundWhereNobodyStandsStill) {
+  const auto instants = take();
+  EXPECT_FALSE(find_neutral(std::span(instants).first(55)));
+  EXPECT_FALSE(find_neutral({}));
+}
+
+TEST(NeutralStance, OnCommandRefusesABentPersonAndSaysWhy) {
+  const auto instants = take();
+  const auto bent = neutral_of(std::span(instants).last(25));
+  ASSERT_FALSE(bent);
+  EXPECT_THAT(bent.error().message, HasSubstr("the trunk is bent by"));
+  const auto few = neutral_of(std::span(instants).first(3));
+  ASSERT_FALSE(few);
+  EXPECT_THAT(few.error().message, HasSubstr("two seconds"));
+  EXPECT_TRUE(neutral_of(std::span(instants).subspan(70, 60)));
+}
+
+TEST(NeutralStance, ShortensUnsignedAnglesAndLeavesDistances) {
+  Neutral neutral;
+  neutral.stance[Centre::TrunkFlexion] = deg(-4);
+  neutral.stance.at(Limb::ElbowFlexion, Side::Left) = deg(12);
+  neutral.stance.at(Limb::UpperArmRaise, Side::Left) = deg(6);
+  neutral.stance.at(Limb::HandReach, Side::Left) = 0.2;
+  Measures now;
+  now[Centre::TrunkFlexion] = deg(10);
+  now.at(Limb::ElbowFlexion, Side::Left) = deg(5);
+  now.at(Limb::UpperArmRaise, Side::Left) = deg(-30);
+  now.at(Limb::HandReach, Side::Left) = 0.5;
+  const auto relative = relative_to(neutral, now);
+  EXPECT_NEAR(relative[Centre::TrunkFlexion], deg(14), 1e-12);
+  EXPECT_EQ(relative.at(Limb::ElbowFlexion, Side::Left), 0.0);
+  EXPECT_NEAR(relative.at(Limb::UpperArmRaise, Side::Left), deg(-24), 1e-12);
+  EXPECT_EQ(relative.at(Limb::HandReach, Side::Left), 0.5);
+  EXPECT_TRUE(std::isnan(relative[Centre::TrunkTwist]));
+}
+
+}  // namespace
+}  // namespace chorus::posture
