@@ -92,14 +92,16 @@ if(NOT CHORUS_ONLY_SENSOR)
 
   install(TARGETS chorus-fusion RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fusion)
   set(viewer ${CMAKE_INSTALL_DATADIR}/chorus/viewer)
-  set(three node_modules/three)
   install(DIRECTORY services/viewer/ DESTINATION ${viewer} COMPONENT fusion
     FILES_MATCHING PATTERN node_modules EXCLUDE PATTERN *.js PATTERN *.html PATTERN *.css)
-  install(FILES services/viewer/${three}/LICENSE DESTINATION ${viewer}/${three} COMPONENT fusion OPTIONAL)
-  install(FILES services/viewer/${three}/build/three.module.min.js services/viewer/${three}/build/three.core.min.js
-    DESTINATION ${viewer}/${three}/build COMPONENT fusion OPTIONAL)
-  install(FILES services/viewer/${three}/examples/jsm/controls/OrbitControls.js
-    DESTINATION ${viewer}/${three}/examples/jsm/controls COMPONENT fusion OPTIONAL)
+  # Of its libraries only the files that the page loads (index.html), and their licences where they have a file of their own.
+  set(modules three/build/three.module.min.js three/build/three.core.min.js three/examples/jsm/controls/OrbitControls.js three/LICENSE
+      preact/dist/preact.mjs preact/hooks/dist/hooks.mjs preact/LICENSE htm/dist/htm.mjs htm/LICENSE
+      qrcode-generator/dist/qrcode.mjs qrcode-generator/package.json)
+  foreach(file ${modules})
+    get_filename_component(folder ${file} DIRECTORY)
+    install(FILES services/viewer/node_modules/${file} DESTINATION ${viewer}/node_modules/${folder} COMPONENT fusion OPTIONAL)
+  endforeach()
 endif()
 
 set(CPACK_GENERATOR DEB)

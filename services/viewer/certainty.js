@@ -38,6 +38,10 @@ export function axesOf([xx, xy, xz, yy, yz, zz]) {
     .map((variance) => Math.sqrt(Math.max(variance, 0)));
 }
 
+/// Colours of people, by id, so that a person keeps his colour.
+const PEOPLE = ['#f4f6f8', '#7cc7ff', '#ffd166', '#9be89b', '#ff9ecf', '#c9b6ff', '#ffb08a', '#8ee6dc'];
+export const colourOf = (id) => PEOPLE[((Number(id) % PEOPLE.length) + PEOPLE.length) % PEOPLE.length];
+
 const millimetres = (metres) => Math.round(1000 * metres);
 const percent = (share) => `${Math.round(100 * share)} %`;
 
@@ -78,11 +82,12 @@ export function presence(body) {
   return body.carriedFor === undefined ? 'seen' : `out of sight for ${Number(body.carriedFor).toFixed(1)} s`;
 }
 
-/// One line about a person: who, seen or carried, and how sure left and right are.
+/// One line about a person: who, seen or carried, how tall if that is stated, and how sure left and right are.
 export function personLine(body) {
   const sides = Number(body.sidesConfidence ?? NaN);
+  const stature = Number(body.stature ?? NaN);
   const sure = Number.isFinite(sides) ? `left and right ${Math.floor(100 * sides)} % certain` : 'left and right not looked at';
-  return `person ${body.bodyId}: ${presence(body)}, ${sure}`;
+  return `person ${body.bodyId}: ${[presence(body), ...(Number.isFinite(stature) ? [`${Math.round(100 * stature)} cm`] : []), sure].join(', ')}`;
 }
 
 /// What is known of one joint, in lines.  `frameAge`: age of the frame [ms].

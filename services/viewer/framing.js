@@ -1,17 +1,13 @@
-// Which part of the window the room is drawn in: the part that the panel leaves free.
+// Which part of the window the room is drawn in: the part that the panels leave free.
 
 const FOV = 45; // [deg] across the shorter side of the free part
-const PANEL = 360; // [px] its width, with the gap beside it
-const NARROW = 640; // [px] up to this width viewer.css puts the panel across the top, in so much of the height:
-const TOP = 0.45;
 
-/// {fov [deg], across the whole height; left, top: how much of the picture is pushed out of the panel's way [px]}.
-export function framing(width, height) {
-  const narrow = width <= NARROW;
-  const [left, top] = [narrow ? 0 : PANEL, narrow ? TOP * height : 0];
-  const free = Math.max(1, Math.min(width - left, height - top));
+/// {fov [deg], across the whole height; left, top: how much of the picture is pushed out of the panels' way [px]}.
+/// `margins`: what the panels cover at each side [px].
+export function framing(width, height, { left = 0, right = 0, top = 0, bottom = 0 } = {}) {
+  const free = Math.max(1, Math.min(width - left - right, height - top - bottom));
   const half = Math.tan((FOV * Math.PI) / 360) * Math.max(1, height / free);
-  return { fov: Math.min(120, (Math.atan(half) * 360) / Math.PI), left: left / 2, top: top / 2 };
+  return { fov: Math.min(120, (Math.atan(half) * 360) / Math.PI), left: (left - right) / 2, top: (top - bottom) / 2 };
 }
 
 /// The middle of the sensors and of what each looks at, and how far all that reaches [m].

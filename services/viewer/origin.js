@@ -62,27 +62,19 @@ export function watchOrigin(frame) {
 
 const pause = (seconds) => new Promise((resolve) => { setTimeout(resolve, 1000 * seconds); });
 
+/// Counts down, watches the person, moves the origin, and says each step.  Returns what came of it.
 /// `resource`: the URL of a resource by its path; `timing`: seconds to get ready and to be watched.
-export function offerOrigin(resource, timing = { ready: GET_READY_S, watch: WATCH_S }) {
-  const button = document.getElementById('origin');
-  const say = (text) => { document.getElementById('origin-said').textContent = text; };
-  const run = async () => {
-    for (let left = timing.ready; left > 0; left -= 1) {
-      say(`Stand where the world shall begin and face its front: ${left} s`);
-      await pause(Math.min(1, left));
-    }
-    say('Stand still …');
-    watching = new Watch();
-    await pause(timing.watch);
-    const found = watching.result();
-    watching = null;
-    if (found.problem) return say(found.problem);
-    const problem = await request(resource('registration/origin'), found);
-    return say(problem || `The world begins at what was x ${found.x.toFixed(2)} m, z ${found.z.toFixed(2)} m; its front is what was ${found.yawDegrees.toFixed(1)}°.`);
-  };
-  button.addEventListener('click', async () => {
-    button.disabled = true;
-    await run().catch((error) => say(String(error.message)));
-    button.disabled = false;
-  });
+export async function showOrigin(resource, say, timing = { ready: GET_READY_S, watch: WATCH_S }) {
+  for (let left = timing.ready; left > 0; left -= 1) {
+    say(`Stand where the world shall begin and face its front: ${left} s`);
+    await pause(Math.min(1, left));
+  }
+  say('Stand still …');
+  watching = new Watch();
+  await pause(timing.watch);
+  const found = watching.result();
+  watching = null;
+  if (found.problem) return found.problem;
+  const problem = await request(resource('registration/origin'), found);
+  return problem || `The world begins at what was x ${found.x.toFixed(2)} m, z ${found.z.toFixed(2)} m; its front is what was ${found.yawDegrees.toFixed(1)}°.`;
 }

@@ -1,7 +1,7 @@
 // Draws bodies as bones and joints.  Everything here is metres in a right-handed, y-up space.
 import * as THREE from 'three';
 
-import { REACH, covarianceOf, rootOf } from './certainty.js';
+import { REACH, colourOf, covarianceOf, rootOf } from './certainty.js';
 
 // The bones of the 25 Kinect v2 joints: parent, child (common/body/bones.h).
 export const BONES = [
@@ -21,122 +21,186 @@ const seen = (joint) =>
   joint !== undefined && joint.state !== 'NotTracked' && Number.isFinite(joint.x);
 const at = (joint) => new THREE.Vector3(joint.x, joint.y, joint.z);
 
-/// Faint lines: the bodies that one sensor sees, in that sensor's space (the group holds the pose).
+const MOST_RAW_ENDS = 2 * BONES.length * 16; // of one sensor: sixteen bodies
+
+/// Faint lines: the bodies that one sensor sees, in that sensor's space (the group holds the pose).  One buffer, filled anew for each frame.
 export class RawView {
   constructor(color) {
     this.geometry = new THREE.BufferGeometry();
+    this.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * MOST_RAW_ENDS), 3));
     const material = new THREE.LineBasicMaterial({ color, transparent: true, opacity: 0.55 });
     this.object = new THREE.Group();
     this.lines = new THREE.LineSegments(this.geometry, material);
     this.lines.frustumCulled = false;
     this.object.add(this.lines);
+    this.show([]);
   }
 
+  /// Returns how many bones are drawn.
   show(bodies) {
-    const ends = [];
-    for (const body of bodies) {
+    const { position } = this.geometry.attributes;
+    let end = 0;
+    for (const { joints } of bodies) {
       for (const [parent, child] of BONES) {
-        const a = body.joints[parent];
-        const b = body.joints[child];
-        if (seen(a) && seen(b)) ends.push(a.x, a.y, a.z, b.x, b.y, b.z);
+        if (!seen(joints?.[parent]) || !seen(joints?.[child]) || end + 2 > MOST_RAW_ENDS) continue;
+        for (const { x, y, z } of [joints[parent], joints[child]]) position.setXYZ(end++, x, y, z);
       }
     }
-    this.geometry.setAttribute('position', new THREE.Float32BufferAttribute(ends, 3));
-    this.lines.visible = ends.length > 0;
-    return ends.length / 6;
+    position.needsUpdate = true;
+    this.geometry.setDrawRange(0, end);
+    this.lines.visible = end > 0;
+    return end / 2;
   }
 }
 
-// Shared by all bodies, so that nothing is left over when one disappears.
-const BONE = new THREE.CylinderGeometry(0.022, 0.022, 1, 10);
-const BALL = new THREE.SphereGeometry(0.03, 14, 10);
+const MOST_BODIES = 64;
+const LEFT_DARKER = 0.55; // left limbs are this much of the person's colour, so that left and right can be told apart
+const INFERRED_PALER = 0.45;
+const GUESSED = { dark: new THREE.Color(0x4f5a68), light: new THREE.Color(0xb9c2cc) };
 
-/// One fused body: solid bones, joints as balls, inferred parts dimmer.
-class FusedBody {
-  constructor(material, inferredMaterial) {
-    this.materials = { Tracked: material, Inferred: inferredMaterial };
-    this.object = new THREE.Group();
-    this.bones = BONES.map(() => this.add(BONE));
-    this.joints = new Map();
+const left = (name) => name.endsWith('Left');
+
+/// Instances of one geometry that are filled anew for each frame.
+class Instances {
+  constructor(geometry, material, most) {
+    this.mesh = new THREE.InstancedMesh(geometry, material, most);
+    this.mesh.frustumCulled = false;
+    this.mesh.count = 0;
+    this.most = most;
+    for (let i = 0; i < most; i += 1) this.mesh.setColorAt(i, new THREE.Color(0xffffff));
   }
 
-  add(geometry) {
-    const mesh = new THREE.Mesh(geometry, this.materials.Tracked);
-    this.object.add(mesh);
-    return mesh;
+  begin() { this.mesh.count = 0; }
+
+  add(matrix, color) {
+    if (this.mesh.count >= this.most) return;
+    this.mesh.setMatrixAt(this.mesh.count, matrix);
+    this.mesh.setColorAt(this.mesh.count, color);
+    this.mesh.count += 1;
   }
 
-  show(joints) {
-    let drawn = 0;
-    for (const [name, joint] of Object.entries(joints)) {
-      if (!this.joints.has(name)) this.joints.set(name, this.add(BALL));
-      const mesh = this.joints.get(name);
-      mesh.visible = seen(joint);
-      if (!mesh.visible) continue;
-      mesh.position.copy(at(joint));
-      mesh.scale.setScalar(name === 'Head' ? HEAD_RADIUS / 0.03 : 1);
-      mesh.material = this.materials[joint.state];
-      drawn += 1;
-    }
-    BONES.forEach(([parent, child], i) => this.showBone(this.bones[i], joints[parent], joints[child]));
-    return drawn;
-  }
-
-  showBone(mesh, a, b) {
-    mesh.visible = seen(a) && seen(b);
-    if (!mesh.visible) return;
-    const from = at(a);
-    const along = at(b).sub(from);
-    const length = along.length();
-    if (length < 1e-6) {
-      mesh.visible = false;
-      return;
-    }
-    mesh.position.copy(from).addScaledVector(along, 0.5);
-    mesh.quaternion.setFromUnitVectors(UP, along.divideScalar(length));
-    mesh.scale.set(1, length, 1);
-    mesh.material = this.materials[a.state === 'Tracked' && b.state === 'Tracked' ? 'Tracked' : 'Inferred'];
+  end() {
+    this.mesh.instanceMatrix.needsUpdate = true;
+    this.mesh.instanceColor.needsUpdate = true;
   }
 }
 
-/// All fused bodies; keeps one object per body id.
+/// All fused bodies, each person in a colour of its own: solid bones, joints as balls, inferred parts paler, left limbs darker.
 export class FusedView {
   constructor() {
-    this.object = new THREE.Group();
-    this.bodies = new Map();
     this.material = new THREE.MeshStandardMaterial({ color: 0xffffff, roughness: 0.35 });
-    this.inferred = new THREE.MeshStandardMaterial({ color: 0x8b98a8, roughness: 0.8 });
+    this.bones = new Instances(new THREE.CylinderGeometry(0.022, 0.022, 1, 8), this.material, MOST_BODIES * BONES.length);
+    this.joints = new Instances(new THREE.SphereGeometry(0.03, 12, 8), this.material, MOST_BODIES * 25);
+    this.object = new THREE.Group();
+    this.object.add(this.bones.mesh, this.joints.mesh);
+    this.guessed = GUESSED.dark;
   }
+
+  theme(theme) { this.guessed = GUESSED[theme]; }
 
   /// Lets through what is inside the bodies: the ellipsoids are often smaller than a bone.
   veil(on) {
-    for (const material of [this.material, this.inferred]) {
-      if (material.transparent === on) continue;
-      Object.assign(material, { transparent: on, opacity: on ? 0.25 : 1, depthWrite: !on, needsUpdate: true });
-    }
+    if (this.material.transparent === on) return;
+    Object.assign(this.material, { transparent: on, opacity: on ? 0.25 : 1, depthWrite: !on, needsUpdate: true });
   }
 
+  colour(body, name, tracked) {
+    const color = new THREE.Color(colourOf(body.bodyId));
+    if (left(name)) color.multiplyScalar(LEFT_DARKER);
+    return tracked ? color : color.lerp(this.guessed, INFERRED_PALER);
+  }
+
+  /// Returns how many joints are drawn.
   show(bodies) {
-    const present = new Set(bodies.map((body) => body.bodyId));
-    for (const [id, view] of this.bodies) {
-      if (present.has(id)) continue;
-      this.object.remove(view.object);
-      this.bodies.delete(id);
+    this.bones.begin();
+    this.joints.begin();
+    for (const body of bodies) this.showBody(body);
+    this.bones.end();
+    this.joints.end();
+    return this.joints.mesh.count;
+  }
+
+  showBody(body) {
+    const matrix = new THREE.Matrix4();
+    for (const [name, joint] of Object.entries(body.joints ?? {})) {
+      if (!seen(joint)) continue;
+      const scale = name === 'Head' ? HEAD_RADIUS / 0.03 : 1;
+      matrix.makeScale(scale, scale, scale).setPosition(joint.x, joint.y, joint.z);
+      this.joints.add(matrix, this.colour(body, name, joint.state === 'Tracked'));
     }
-    let drawn = 0;
-    for (const body of bodies) {
-      if (!this.bodies.has(body.bodyId)) {
-        const view = new FusedBody(this.material, this.inferred);
-        this.bodies.set(body.bodyId, view);
-        this.object.add(view.object);
-      }
-      drawn += this.bodies.get(body.bodyId).show(body.joints);
-    }
-    return drawn;
+    for (const [parent, child] of BONES) this.showBone(body, parent, child);
+  }
+
+  showBone(body, parent, child) {
+    const [a, b] = [body.joints?.[parent], body.joints?.[child]];
+    if (!seen(a) || !seen(b)) return;
+    const from = at(a);
+    const along = at(b).sub(from);
+    const length = along.length();
+    if (length < 1e-6) return;
+    const middle = from.addScaledVector(along, 0.5);
+    const turn = new THREE.Quaternion().setFromUnitVectors(UP, along.divideScalar(length));
+    const tracked = a.state === 'Tracked' && b.state === 'Tracked';
+    this.bones.add(new THREE.Matrix4().compose(middle, turn, new THREE.Vector3(1, length, 1)), this.colour(body, child, tracked));
   }
 }
 
-const MOST_ELLIPSOIDS = 64 * 25;
+const TRAIL_S = 10;
+const TRAIL_EVERY_MS = 100;
+const MOST_TRAIL_ENDS = MOST_BODIES * 2 * ((1000 * TRAIL_S) / TRAIL_EVERY_MS);
+
+/// Where people went in the last seconds, as lines on the floor in their colours.
+export class TrailView {
+  constructor() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * MOST_TRAIL_ENDS), 3));
+    geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(3 * MOST_TRAIL_ENDS), 3));
+    this.object = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.7 }));
+    this.object.frustumCulled = false;
+    this.clear();
+  }
+
+  clear() {
+    this.paths = new Map();
+    this.last = -Infinity;
+    this.object.geometry.setDrawRange(0, 0);
+  }
+
+  /// `now`: [ms] of any steady clock.
+  show(bodies, now) {
+    if (now - this.last < TRAIL_EVERY_MS) return;
+    this.last = now;
+    for (const { bodyId, joints } of bodies) {
+      if (!seen(joints?.SpineBase)) continue;
+      this.paths.set(bodyId, [...(this.paths.get(bodyId) ?? []), { x: joints.SpineBase.x, z: joints.SpineBase.z, now }]);
+    }
+    for (const [id, path] of this.paths) {
+      while (path.length > 0 && now - path[0].now > 1000 * TRAIL_S) path.shift();
+      if (path.length === 0) this.paths.delete(id);
+    }
+    this.fill();
+  }
+
+  fill() {
+    const { position, color } = this.object.geometry.attributes;
+    let end = 0;
+    for (const [id, path] of this.paths) {
+      const own = new THREE.Color(colourOf(id));
+      for (let i = 1; i < path.length && end + 2 <= MOST_TRAIL_ENDS; i += 1) {
+        for (const { x, z } of [path[i - 1], path[i]]) {
+          position.setXYZ(end, x, 0.01, z);
+          color.setXYZ(end, own.r, own.g, own.b);
+          end += 1;
+        }
+      }
+    }
+    position.needsUpdate = true;
+    color.needsUpdate = true;
+    this.object.geometry.setDrawRange(0, end);
+  }
+}
+
+const MOST_ELLIPSOIDS = MOST_BODIES * 25;
 
 /// Where each fused joint is with 95 % probability, as ellipsoids.  One mesh for all, because there may be 1600 of them.
 export class EllipsoidView {

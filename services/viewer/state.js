@@ -106,7 +106,7 @@ function ofTheRegistration({ session, sensors = {}, awaits = [], verdict, propos
   if (placed === 0) {
     return { tone: 'warn', sentence: 'It is not known yet where the sensors stand.', next: awaits.at(-1) ?? 'Walk through the room.' };
   }
-  if (proposal) return { tone: 'warn', sentence: 'New places wait for your decision.', next: 'Accept them, or keep the old ones: under Registration.' };
+  if (proposal) return { tone: 'warn', sentence: 'New places wait for your decision.', next: 'Accept them, or keep the old ones: under Register.' };
   if (verdict === 'Good') return null;
   return { tone: 'warn', sentence: '', next: '' };
 }

@@ -1,142 +1,142 @@
-// The room as the fusion server knows it: each sensor's raw skeletons (faint), the fused ones (strong), frusta, floor.
-// Polls only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration.
-import * as THREE from 'three';
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-
-import { Resource, clock, follow, link } from './poll.js';
-import { EllipsoidView, FusedView, RawView, frustum } from './skeleton_view.js';
+// The cockpit: the room as the fusion server knows it, and everything that an operator does to it.
+// Uses only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration, /recordings/.
 import { jointLines } from './certainty.js';
-import { showCoverage } from './coverage.js';
-import { framing, roomOf } from './framing.js';
-import { offerOrigin, watchOrigin } from './origin.js';
-import { offerDecision, showProposal } from './proposal.js';
-import { showFused, showPeople, showRegistration, showSensors, showState } from './panel.js';
+import { Cockpit, drawerOfKey, wantedDrawer } from './panels/cockpit.js';
+import { html, render } from './panels/html.js';
+import { watchOrigin } from './origin.js';
+import { Resource, clock, follow, link } from './poll.js';
 import { Readout } from './readout.js';
+import { askFor, takeToken, tokenInUse } from './request.js';
+import { Room } from './room.js';
 import { OutputRate, OwnDelay, freshness, stateOf } from './state.js';
 
-const COLORS = [0x4cc9f0, 0xf2b84b, 0x80ed99, 0xf28482, 0xb892ff, 0xffd6a5, 0x2ec4b6, 0xff9f1c, 0xa0c4ff, 0xcaffbf];
-const MOVED = 0x7d3b38; // a sensor that does not stand where it was registered
-const DEAD = 0x4a5260;
 const RAW_EVERY_MS = 66;
 const STATE_EVERY_MS = 200;
 const base = new URL(new URLSearchParams(location.search).get('server') ?? '../', location.href);
 const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
 
 /// What the page has shown so far, for tests and for curious people.
-const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sensors: 0, errors: 0 };
+const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sensors: 0, errors: 0, pictures: 0 };
 window.chorusViewer = shown;
 
-// ---- the scene -----------------------------------------------------------------------------------------------
-const canvas = document.getElementById('scene');
-const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-const scene = new THREE.Scene();
-scene.background = new THREE.Color(0x0d1117);
-scene.fog = new THREE.Fog(0x0d1117, 9, 22);
-const camera = new THREE.PerspectiveCamera(45, 1, 0.05, 60);
-const controls = new OrbitControls(camera, canvas);
-controls.enableDamping = true;
+takeToken(location, history);
+const room = new Room(document.getElementById('scene'));
 
-scene.add(new THREE.HemisphereLight(0xffffff, 0x30363d, 1.6));
-const sun = new THREE.DirectionalLight(0xffffff, 1.8);
-sun.position.set(2, 5, 3);
-scene.add(sun);
-const grid = new THREE.GridHelper(12, 12, 0x55606e, 0x262d36);
-scene.add(grid, new THREE.AxesHelper(0.4));
+/// All facts that the panels show.
+const known = {
+  frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '',
+  state: { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' }, shownFrame: null, shownRate: NaN, age: NaN,
+  drawer: null, dialog: null, asking: null,
+  switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false },
+};
 
-const fused = new FusedView();
-const ellipsoids = new EllipsoidView();
-scene.add(fused.object, ellipsoids.object);
+// ---- the panels ----------------------------------------------------------------------------------------------
+const root = document.getElementById('cockpit');
+root.replaceChildren();
 
-/// Looks at the middle of the room once the sensors' places are known; people may turn the view afterwards.
-function frameRoom(places) {
-  const { centre, reach } = roomOf(places);
-  controls.target.set(centre.x, 0.9, centre.z);
-  camera.position.set(centre.x + reach * 1.15, 2.3 + reach * 0.45, centre.z + reach * 1.65);
-  grid.position.set(Math.round(centre.x), 0, Math.round(centre.z));
+function change(facts) {
+  Object.assign(known, facts);
+  render(html`<${Cockpit} known=${known} act=${act} />`, root);
 }
-frameRoom([]);
 
-// ---- sensors -------------------------------------------------------------------------------------------------
-const sensors = new Map();
-
-function sensorView(id) {
-  if (sensors.has(id)) return sensors.get(id);
-  const color = COLORS[sensors.size % COLORS.length];
-  const view = { id, color, raw: new RawView(color), place: new THREE.Group(), wedge: frustum(color), live: false };
-  view.place.visible = false;
-  view.place.add(view.wedge, view.raw.object);
-  scene.add(view.place);
-  sensors.set(id, view);
-  follow(resource(`sensors/${id}/frame`), RAW_EVERY_MS, (frame) => showRaw(view, frame), () => view.raw.show([]));
-  return view;
+/// The panels leave the scene its part of the window; in a narrow one they stand below it (viewer.css).
+function fit() {
+  const box = (selector) => root.querySelector(selector).getBoundingClientRect();
+  const beside = getComputedStyle(root.querySelector('#left')).position === 'fixed';
+  room.fit(beside ? { left: box('#left').right, right: window.innerWidth - box('#right').left,
+    top: box('header').bottom, bottom: window.innerHeight - box('#drawer').top } : {});
 }
+
+function setTheme(theme) {
+  document.documentElement.dataset.theme = theme;
+  room.paintGround(theme);
+}
+const themeNow = () => document.documentElement.dataset.theme ?? 'dark';
+
+function openDrawer(drawer) {
+  change({ drawer: known.drawer === drawer ? null : drawer });
+  if (known.drawer === 'record') followRecordings();
+}
+
+const act = {
+  resource: (path) => new URL(path, base).href,
+  colorOf: (id) => room.colorOf(id),
+  token: tokenInUse,
+  onDrawer: openDrawer,
+  onDialog: (dialog) => change({ dialog }),
+  onClose: () => change({ dialog: null }),
+  onTheme: () => setTheme(themeNow() === 'dark' ? 'light' : 'dark'),
+  onSwitch: (key, on) => change({ switches: { ...known.switches, [key]: on } }),
+  onView: (from, which) => room.view(from, which),
+  onPicture: () => {
+    const download = document.createElement('a');
+    Object.assign(download, { href: room.picture(), download: `chorus-${new Date().toISOString().replaceAll(':', '')}.png` });
+    download.click();
+  },
+};
+
+askFor((reason) => new Promise((resolve) => {
+  change({ asking: { reason, answer: (token) => { change({ asking: null }); resolve(token); } } });
+}));
+
+const typing = (target) => target instanceof HTMLElement && target.matches('input:not([type=checkbox]), select, textarea');
+window.addEventListener('keydown', (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target) || document.querySelector('dialog[open]')) return;
+  const drawer = drawerOfKey(event.key);
+  if (drawer) openDrawer(drawer);
+  else if (event.key === 'u') act.onSwitch('uncertainty', !known.switches.uncertainty);
+  else if (event.key === 'a') act.onView('above');
+  else if (event.key === 'h') act.onView('room');
+  else if (event.key === 't') act.onTheme();
+  else if (event.key === '?') act.onDialog('keys');
+  else if (event.key === 'Escape' && known.drawer) openDrawer(known.drawer);
+});
+
+// ---- following the server ------------------------------------------------------------------------------------
+const outputRate = new OutputRate();
+const failed = () => { shown.errors += 1; };
+const followed = new Set();
 
 function showRaw(view, frame) {
   shown.rawBones[view.id] = view.raw.show(view.live ? frame.bodies ?? [] : []);
 }
 
-/// A sensor that delivers nothing is drawn in grey.
-function paint(view, { state, alarm }) {
-  const color = state === 'live' ? view.color : DEAD;
-  view.wedge.traverse((part) => part.material?.color?.setHex(alarm ? MOVED : color));
-}
-
-let framedVersion = null;
-function placeSensors(registration) {
-  const places = Object.entries(registration.sensors ?? {}).filter(([, sensor]) => sensor.polled !== false);
-  for (const view of sensors.values()) view.place.visible = false; // one that lost its place is drawn nowhere
-  for (const [id, pose] of places) {
-    const view = sensorView(id);
-    view.place.position.set(pose.x, pose.y, pose.z);
-    view.place.quaternion.set(pose.qx, pose.qy, pose.qz, pose.qw);
-    view.place.visible = true;
-  }
-  if (places.length > 0 && framedVersion === null) {
-    framedVersion = registration.version;
-    frameRoom(places.map(([, pose]) => pose));
-  }
-}
-
-// ---- following the server ------------------------------------------------------------------------------------
-const known = { frame: null, rate: NaN, sensors: null, registration: null };
-
-const outputRate = new OutputRate();
-
-function failed() {
-  shown.errors += 1;
+function followRaw(id) {
+  if (followed.has(id)) return;
+  followed.add(id);
+  const view = room.sensor(id);
+  follow(resource(`sensors/${id}/frame`), RAW_EVERY_MS, (frame) => showRaw(view, frame), () => view.raw.show([]));
 }
 
 follow(resource('frame', 10), 0, (frame) => {
   known.frame = frame;
   known.rate = outputRate.after(frame);
-  shown.fusedJoints = fused.show(frame.bodies ?? []);
+  shown.fusedJoints = room.fused.show(frame.bodies ?? []);
+  room.trails.show(frame.bodies ?? [], performance.now());
+  room.follow(frame.bodies ?? []);
   shown.fusedFrames += 1;
   watchOrigin(frame);
 }, failed);
 
 follow(resource('sensors/'), 1000, ({ sensors: all }) => {
-  known.sensors = all ?? {};
-  for (const [id, state] of Object.entries(known.sensors)) {
-    const view = sensorView(id);
+  for (const [id, state] of Object.entries(all ?? {})) {
+    const view = room.sensor(id);
     view.live = state.state === 'live';
-    paint(view, state);
+    room.paint(view, state);
     if (!view.live) showRaw(view, { bodies: [] });
+    followRaw(id);
   }
-  shown.sensors = sensors.size;
-  showSensors(known.sensors, (id) => sensorView(id).color);
+  shown.sensors = room.sensors.size;
+  change({ sensors: all ?? {} });
 }, failed);
 
 follow(resource('registration'), 1000, (registration) => {
-  known.registration = registration;
-  placeSensors(registration);
-  showRegistration(registration);
-  showProposal(registration.proposal);
+  room.place(registration);
+  const wanted = wantedDrawer(registration);
+  const opens = wanted && !wantedDrawer(known.registration);
+  change({ registration, ...(opens ? { drawer: wanted } : {}) });
   followSession(registration).catch(failed);
 }, failed);
-
-offerDecision((path) => new URL(path, base).href);
-offerOrigin((path) => new URL(path, base).href);
 
 /// The map of the walk, while a session runs.
 let session = null;
@@ -148,49 +148,54 @@ async function followSession(registration) {
   const asked = session;
   const told = asked && await asked.resource.next();
   if (asked !== session || (asked && !told)) return; // the session has ended, or there is nothing new
-  showCoverage(document.getElementById('coverage'), document.getElementById('pairs'), told, registration.sensors);
+  change({ told });
+}
+
+/// The recordings, while somebody looks at them.
+let recordingsFollowed = false;
+async function followRecordings() {
+  if (recordingsFollowed) return;
+  recordingsFollowed = true;
+  const list = resource('recordings/?limit=1000');
+  while (known.drawer === 'record') {
+    const told = await list.next().catch((error) => ({ problem: `There are no recordings here: ${error.message}` }));
+    if (told?.problem) change({ recordingsProblem: told.problem });
+    else if (told) change({ recordings: Array.isArray(told.recordings) ? told.recordings : Object.values(told.recordings ?? {}), recordingsProblem: '' });
+    await new Promise((resolve) => { setTimeout(resolve, 1000); });
+  }
+  recordingsFollowed = false;
 }
 
 /// Checks the clock too, because frames that no longer arrive cannot say so themselves.
 const ownDelay = new OwnDelay(STATE_EVERY_MS);
+const ageOf = (frame) => clock.now() - Date.parse(frame.captured);
 setInterval(() => {
   const held = ownDelay.late();
   const age = known.frame ? ageOf(known.frame) : NaN;
   const now = { ...known, link: link.state(), frameAge: age, held };
   const fresh = freshness(now);
-  showState(stateOf(now), fresh);
-  showPeople(switches.uncertainty.checked ? known.frame?.bodies ?? [] : []);
-  showFused(fresh === 'gone' ? null : known.frame, fresh === 'live' ? known.rate : NaN, age);
+  const state = stateOf(now);
+  document.body.dataset.fresh = fresh;
+  document.title = state.tone === 'good' || state.tone === 'calm' ? 'Chorus cockpit' : `${state.sentence} – Chorus cockpit`;
   shown.fresh = fresh;
+  change({ state, age, shownFrame: fresh === 'gone' ? null : known.frame, shownRate: fresh === 'live' ? known.rate : NaN });
   if (fresh === 'gone' && known.frame) forget();
 }, STATE_EVERY_MS);
 
 /// Shows nothing of a server that no longer answers, except that its sensors exist.
 function forget() {
-  known.frame = null;
-  shown.fusedJoints = fused.show([]);
-  for (const view of sensors.values()) {
+  shown.fusedJoints = room.fused.show([]);
+  room.trails.clear();
+  for (const view of room.sensors.values()) {
     view.live = false;
     showRaw(view, { bodies: [] });
   }
   const unknown = Object.keys(known.sensors ?? {}).map((id) => [id, { state: 'unknown' }]);
-  showSensors(Object.fromEntries(unknown), (id) => sensorView(id).color);
-  showRegistration({});
-  showProposal(null);
+  change({ frame: null, sensors: Object.fromEntries(unknown), registration: null, told: null });
 }
 
 // ---- drawing -------------------------------------------------------------------------------------------------
-const switches = {
-  raw: document.getElementById('show-raw'),
-  frusta: document.getElementById('show-frusta'),
-  fused: document.getElementById('show-fused'),
-  uncertainty: document.getElementById('show-uncertainty'),
-};
-window.addEventListener('keydown', (event) => {
-  if (event.key === 'u' && !event.ctrlKey && !event.metaKey && !event.altKey) switches.uncertainty.click();
-});
-const ageOf = (frame) => clock.now() - Date.parse(frame.captured);
-const readout = new Readout(canvas, camera, document.getElementById('joint'),
+const readout = new Readout(room.canvas, room.camera, document.getElementById('joint'),
   (body, name) => jointLines(body, name, ageOf(known.frame)));
 
 /// Where a joint of the first person is on the screen [px].
@@ -201,30 +206,20 @@ shown.where = (name) => {
 
 /// Ellipsoids and read-out of the newest frame, while somebody wants them.
 function showUncertainty() {
-  const bodies = switches.uncertainty.checked ? known.frame?.bodies ?? [] : [];
-  fused.veil(switches.uncertainty.checked);
-  shown.ellipsoids = ellipsoids.show(bodies);
+  const bodies = known.switches.uncertainty ? known.frame?.bodies ?? [] : [];
+  room.fused.veil(known.switches.uncertainty);
+  shown.ellipsoids = room.ellipsoids.show(bodies);
   readout.show(bodies);
 }
 
-function fit() {
-  renderer.setSize(window.innerWidth, window.innerHeight, false);
-  camera.aspect = window.innerWidth / window.innerHeight;
-  const { fov, left, top } = framing(window.innerWidth, window.innerHeight);
-  camera.fov = fov;
-  camera.setViewOffset(window.innerWidth, window.innerHeight, -left, -top, window.innerWidth, window.innerHeight);
-  camera.updateProjectionMatrix();
-}
 window.addEventListener('resize', fit);
+setTheme(window.matchMedia('(prefers-color-scheme: light)').matches ? 'light' : 'dark');
+change({});
+new ResizeObserver(fit).observe(root.querySelector('#drawer'));
 fit();
 
-renderer.setAnimationLoop(() => {
-  for (const view of sensors.values()) {
-    view.raw.object.visible = switches.raw.checked;
-    view.wedge.visible = switches.frusta.checked;
-  }
-  fused.object.visible = switches.fused.checked;
+room.renderer.setAnimationLoop(() => {
   showUncertainty();
-  controls.update();
-  renderer.render(scene, camera);
+  room.draw(known.switches);
+  shown.pictures += 1;
 });

@@ -4,7 +4,7 @@ import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
 import { extname, join, normalize } from 'node:path';
 
-const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css' };
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.css': 'text/css' };
 // Left is +x: the person looks along +z, away from sensor s1 and towards s2.
 const STANDING = {
   SpineBase: [0, 0.95, 0], SpineMid: [0, 1.2, 0], SpineShoulder: [0, 1.42, 0], Neck: [0, 1.5, 0], Head: [0, 1.66, 0],
@@ -77,15 +77,19 @@ export async function startFakeFusion(files, world = usualWorld()) {
     '/sensors/s1/frame': () => frame(sequence, SENSORS.s1),
     '/sensors/s2/frame': () => frame(sequence, SENSORS.s2),
     '/registration': () => world.registration,
+    '/registration/sessions/7': () => world.session ?? {},
+    '/recordings/': () => ({ recordings: world.recordings ?? [] }),
   };
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
-    if (request.method === 'POST') {
+    if (request.method === 'POST' || request.method === 'DELETE') {
       let text = '';
       for await (const part of request) text += part;
       world.bodies = [...(world.bodies ?? []), text];
       const allowed = !world.token || request.headers.authorization === `Bearer ${world.token}`;
-      world.posted = [...(world.posted ?? []), `${pathname} ${allowed ? 200 : 401}`];
+      const asked = request.method === 'POST' ? pathname : `DELETE ${pathname}`;
+      world.posted = [...(world.posted ?? []), `${asked} ${allowed ? 200 : 401}`];
+      if (allowed) world.after?.(asked, text);
       if (allowed) delete world.registration.proposal;
       response.writeHead(allowed ? 200 : 401, { 'Content-Type': 'application/json' });
       return response.end(JSON.stringify(allowed ? world.registration : { detail: 'a token is needed' }));

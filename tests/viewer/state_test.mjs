@@ -200,14 +200,13 @@ test('a joint is told with its size, its sensors and its age; what is not stated
 
 test('the room is drawn in the part of the window that the panel leaves free', () => {
   const across = ({ fov }, height, pixels) => (2 * Math.atan((Math.tan((fov * Math.PI) / 360) * pixels) / height) * 180) / Math.PI;
-  const wide = framing(1280, 800);
+  const wide = framing(1280, 800, { left: 360 });
   assert.deepEqual({ ...wide, fov: Math.round(wide.fov) }, { fov: 45, left: 180, top: 0 });
-  const phone = framing(420, 800);
-  assert.deepEqual([phone.left, phone.top], [0, 180], 'below the panel');
-  assert.ok(Math.abs(across(phone, 800, 420) - 45) < 0.1, 'as much of the room as a wide window shows');
-  const half = framing(700, 700);
-  assert.equal(half.left, 180);
-  assert.ok(Math.abs(across(half, 700, 340) - 45) < 0.1);
+  const below = framing(420, 800, { top: 360 });
+  assert.deepEqual([below.left, below.top], [0, 180], 'below the panel');
+  assert.ok(Math.abs(across(below, 800, 420) - 45) < 0.1, 'as much of the room as a wide window shows');
+  const between = framing(1280, 800, { left: 260, right: 260, bottom: 200 });
+  assert.deepEqual([between.left, between.top], [0, -100], 'between the panels, above the drawer');
   assert.ok(framing(1, 1).fov <= 120 && framing(0, 0).fov > 0, 'whatever a window may be');
 });
 

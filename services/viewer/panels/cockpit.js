@@ -1,0 +1,56 @@
+// The whole page beside the scene: top, sensors, people, and one drawer at a time.
+import { html } from './html.js';
+import { Keys, Phone, Token } from './dialogs.js';
+import { Look } from './look.js';
+import { People, Tracker } from './people.js';
+import { Record } from './record.js';
+import { Register, Verdict } from './register.js';
+import { Sensors } from './sensors.js';
+import { Top } from './top.js';
+import { World } from './world.js';
+
+const DRAWERS = [['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'], ['view', 'View', 'v']];
+export const drawerOfKey = (key) => DRAWERS.find(([, , own]) => own === key)?.[0] ?? null;
+
+/// The drawer that opens by itself: where somebody has to decide or to walk.  Pure.
+export function wantedDrawer(registration) {
+  const session = registration?.session?.state;
+  return registration?.proposal || session === 'collecting' || session === 'solving' ? 'register' : null;
+}
+
+function Drawer({ open, known, act }) {
+  if (open === 'register') return html`<${Register} registration=${known.registration} told=${known.told} resource=${act.resource} />`;
+  if (open === 'world') return html`<${World} resource=${act.resource} />`;
+  if (open === 'record') return html`<${Record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} />`;
+  if (open === 'view') return html`<${Look} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
+  return null;
+}
+
+function Dialogs({ known, act }) {
+  if (known.asking) return html`<${Token} reason=${known.asking.reason} onToken=${known.asking.answer} />`;
+  if (known.dialog === 'keys') return html`<${Keys} onClose=${act.onClose} />`;
+  if (known.dialog === 'phone') return html`<${Phone} href=${location.href} token=${act.token()} onClose=${act.onClose} />`;
+  return null;
+}
+
+/// `known`: facts; `act`: what can be done.
+export function Cockpit({ known, act }) {
+  return html`
+    <${Top} state=${known.state} alarms=${known.registration?.alarms} onKeys=${() => act.onDialog('keys')} onTheme=${act.onTheme} onPhone=${() => act.onDialog('phone')} />
+    <main>
+      <aside id="left" aria-label="sensors">
+        <${Sensors} sensors=${known.sensors} registration=${known.registration} colorOf=${act.colorOf} onLook=${(id) => act.onView('sensor', id)} />
+      </aside>
+      <aside id="right" aria-label="people">
+        <${People} frame=${known.shownFrame} onLook=${(id) => act.onView('person', id)} />
+        <${Tracker} frame=${known.shownFrame} rate=${known.shownRate} age=${known.age} />
+      </aside>
+      <section id="drawer" aria-label="operate">
+        <div role="tablist" aria-label="drawers">${DRAWERS.map(([key, label, letter]) => html`
+          <button key=${key} type="button" role="tab" id="tab-${key}" aria-selected=${String(known.drawer === key)} aria-controls="drawer-body"
+            title=${`key ${letter}`} onClick=${() => act.onDrawer(key)}>${label}${key === 'register' ? html` <${Verdict} registration=${known.registration} />` : ''}</button>`)}</div>
+        <div id="drawer-body" role="tabpanel" tabindex="-1">${known.drawer && html`<${Drawer} open=${known.drawer} known=${known} act=${act} />`}</div>
+      </section>
+    </main>
+    <${Dialogs} known=${known} act=${act} />`;
+}

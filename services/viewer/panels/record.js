@@ -1,0 +1,56 @@
+// The drawer "Record": start, stop, and what there is.
+import { Action, Said, html, size, useState } from './html.js';
+import { request } from '../request.js';
+
+/// Newest first, at most so many.  Pure.
+export function newest(recordings, most = 20) {
+  return [...(recordings ?? [])].sort((a, b) => String(b.started ?? '').localeCompare(String(a.started ?? ''))).slice(0, most);
+}
+
+/// What is asked of the server, without what was left empty.  Pure.
+export function wish({ name, seconds, raw, fused }) {
+  return { ...(name ? { name } : {}), ...(Number(seconds) > 0 ? { seconds: Number(seconds) } : {}), raw, fused };
+}
+
+function Start({ resource, say }) {
+  const [asked, setAsked] = useState({ name: '', seconds: '', raw: true, fused: true });
+  const change = (key) => (event) => setAsked({ ...asked, [key]: event.target.type === 'checkbox' ? event.target.checked : event.target.value });
+  return html`<div class="row">
+    <label>name <input id="record-name" maxlength="64" pattern="[A-Za-z0-9_\\-]*" placeholder="the time" value=${asked.name} onInput=${change('name')} /></label>
+    <label>seconds <input id="record-seconds" type="number" min="1" placeholder="until stopped" value=${asked.seconds} onInput=${change('seconds')} /></label>
+    <label><input type="checkbox" checked=${asked.raw} onChange=${change('raw')} /> sensors</label>
+    <label><input type="checkbox" checked=${asked.fused} onChange=${change('fused')} /> fused</label>
+    <${Action} id="record" kind="primary" label="Record" run=${() => request(resource('recordings/'), wish(asked))} say=${say} />
+  </div>`;
+}
+
+function Running({ recording, resource, say }) {
+  return html`<div class="row">
+    <p class="bad">● recording <strong>${recording.name}</strong>: ${recording.frames} frames, ${size(recording.bytes)}${recording.dropped > 0 ? `, ${recording.dropped} dropped` : ''}</p>
+    <${Action} id="stop" kind="primary" label="Stop" run=${() => request(resource(`recordings/${encodeURIComponent(recording.name)}`), null, 'DELETE')} say=${say} />
+  </div>`;
+}
+
+function Row({ recording }) {
+  const files = recording.download ? [recording.download] : recording.files ?? [];
+  const state = [recording.state, ...(recording.reasons ?? [])].join(': ');
+  return html`<tr>
+    <td>${recording.name}</td><td class=${recording.state === 'failed' || recording.state === 'interrupted' ? 'bad' : ''}>${state}</td>
+    <td>${recording.frames}</td><td>${size(recording.bytes)}</td>
+    <td>${recording.state === 'stopping' ? 'being written' : files.map((file, i) => html`<a key=${file} href=${`..${file}`} download>${files.length > 1 ? `part ${i + 1}` : 'download'}</a> `)}</td>
+  </tr>`;
+}
+
+export function Record({ recordings, problem, resource }) {
+  const [said, say] = useState('');
+  if (problem) return html`<p>${problem}</p>`;
+  const running = (recordings ?? []).find(({ state }) => state === 'recording');
+  return html`<div>
+    ${running ? html`<${Running} recording=${running} resource=${resource} say=${say} />` : html`<${Start} resource=${resource} say=${say} />`}
+    <${Said} id="record-said" text=${said} />
+    ${(recordings ?? []).length > 0 && html`<table aria-label="recordings, newest first">
+      <thead><tr><th>name</th><th>state</th><th>frames</th><th>size</th><th>file</th></tr></thead>
+      <tbody id="recordings">${newest(recordings).map((recording) => html`<${Row} key=${recording.name} recording=${recording} />`)}</tbody>
+    </table>`}
+  </div>`;
+}
