@@ -87,4 +87,14 @@ Result<CellRecording> read_cell(const fs::path& path, const CellQuery& query) {
   return read_cell(*files, query);
 }
 
+std::vector<std::string> notes_of(const CellRecording& cell) {
+  std::vector<std::string> notes = cell.damage;
+  for (const auto& recording : cell.sensors) {
+    const auto left_out = recording.notes.find("left_out");
+    if (left_out != recording.notes.end())
+      notes.push_back(recording.sensor.str() + ": left out " + left_out->second);
+  }
+  return notes;
+}
+
 }  // namespace chorus::record

@@ -52,4 +52,7 @@ struct CellQuery {
                                             const std::filesystem::path& name,
                                             const CellQuery& query = {});
 
+/// One line for each thing that reading left out: damage first, then notes per sensor.
+[[nodiscard]] std::vector<std::string> notes_of(const CellRecording& cell);
+
 }  // namespace chorus::record

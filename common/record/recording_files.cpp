@@ -70,6 +70,20 @@ Result<std::vector<fs::path>> recording_files(const fs::path& path) {
   return files;
 }
 
+Result<std::vector<fs::path>> find_recordings(const std::vector<fs::path>& inputs) {
+  std::vector<fs::path> all;
+  for (const fs::path& input : inputs) {
+    std::error_code ignored;
+    if (!fs::exists(input, ignored))
+      return fail(ErrorCode::NotFound, input.string(), "there is no such file or folder.");
+    const auto found = recording_files(input);
+    if (!found) return pass(found);
+    all.insert(all.end(), found->begin(), found->end());
+  }
+  if (all.empty()) return fail(ErrorCode::InvalidArgument, "recordings", "none were named.");
+  return all;
+}
+
 std::vector<fs::path> in_log_order(std::vector<fs::path> files) {
   using Dated = std::pair<std::optional<std::uint64_t>, fs::path>;
   std::vector<Dated> dated;

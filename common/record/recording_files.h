@@ -12,6 +12,11 @@ namespace chorus::record {
 [[nodiscard]] Result<std::vector<std::filesystem::path>> recording_files(
     const std::filesystem::path& path);
 
+/// The files that are named, and those in the folders that are named, sorted by name within each
+/// folder.  Errors: an input does not exist or cannot be read, or there is no file.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
+    const std::vector<std::filesystem::path>& inputs);
+
 /// Orders files by the log time of their first message; files without messages come first.
 [[nodiscard]] std::vector<std::filesystem::path> in_log_order(
     std::vector<std::filesystem::path> files);

@@ -13,7 +13,8 @@ namespace chorus::server {
 namespace {
 
 bool configured(const LiveSettings& live, const SensorId& sensor) {
-  return std::ranges::find(live.sensors, sensor, &poll::PolledSensor::id) != live.sensors.end();
+  return std::ranges::find(live.sensors, sensor, &client::FollowedService::id) !=
+         live.sensors.end();
 }
 
 struct OwnPort {
@@ -53,7 +54,7 @@ void compare_ports(const StartSettings& config, service::Concerns& all) {
 
 void look_for_own_url(const FusionSettings& settings, service::Concerns& all) {
   const http::ServerConfig& own = settings.at_start.http;
-  for (const poll::PolledSensor& sensor : settings.live.sensors) {
+  for (const client::FollowedService& sensor : settings.live.sensors) {
     const auto url = http::parse_url(sensor.url);
     if (!url || own.port == 0 || url->port != own.port) continue;
     const bool here = url->host == "localhost" || url->host.starts_with("127.") ||

@@ -28,9 +28,9 @@
 namespace chorus::server {
 namespace {
 
-std::vector<SensorId> ids_of(const std::vector<poll::PolledSensor>& sensors) {
+std::vector<SensorId> ids_of(const std::vector<client::FollowedService>& sensors) {
   std::vector<SensorId> ids;
-  for (const poll::PolledSensor& sensor : sensors) ids.push_back(sensor.id);
+  for (const client::FollowedService& sensor : sensors) ids.push_back(sensor.id);
   return ids;
 }
 
@@ -45,7 +45,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   core.watch = live.watch;
   const bool places_are_given = !settings.at_start.registration_file.empty();
   if (places_are_given) core.session.automatic = false;
-  for (const poll::PolledSensor& sensor : live.sensors) core.sensors.insert(sensor.id);
+  for (const client::FollowedService& sensor : live.sensors) core.sensors.insert(sensor.id);
   return core;
 }
 
@@ -115,13 +115,15 @@ void report_start(const FusionSettings& settings, std::uint16_t port) {
   }
 }
 
-record::RawFrame raw_frame(const poll::PolledFrame& polled) {
-  record::ClockModel clock{polled.frame.captured - polled.raw->captured, Duration{0}, {}};
-  if (polled.clock) {
-    clock.ours_minus_theirs = polled.clock->ours_minus_theirs;
-    clock.uncertainty = polled.clock->uncertainty;
+using RawArrival = client::Arrived<resource::FrameResource>;
+
+record::RawFrame raw_frame(const RawArrival& arrived, const SensorFrame& placed) {
+  record::ClockModel clock{placed.captured - arrived.document->captured, Duration{0}, {}};
+  if (arrived.clock) {
+    clock.ours_minus_theirs = arrived.clock->ours_minus_theirs;
+    clock.uncertainty = arrived.clock->uncertainty;
   }
-  return {polled.frame.sensor, polled.raw, polled.frame.received, polled.frame.floor, clock};
+  return {placed.sensor, arrived.document, placed.received, placed.floor, clock};
 }
 
 }  // namespace
@@ -136,7 +138,7 @@ struct FusionServer::Impl {
 
   std::shared_ptr<http::Router> make_router();
   LoopOptions loop_options(InitialRegistration initial);
-  void start_polling();
+  void follow(const std::vector<client::FollowedService>& sensors);
   void take_status(const Status& next);
   [[nodiscard]] Status status_now() const {
     const std::scoped_lock lock(mutex);
@@ -161,7 +163,7 @@ struct FusionServer::Impl {
   std::optional<RecordingTap> tap;
   std::unique_ptr<http::Server> http;
   std::unique_ptr<PipelineLoop> loop;
-  std::unique_ptr<poll::Poller> poller;
+  std::unique_ptr<client::Followers> followers;
 };
 
 std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
@@ -241,23 +243,19 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   options.on_status = [this](const Status& next) { take_status(next); };
   options.on_amended = [this](const Snapshot& snapshot) { frame_sink->amend(snapshot); };
   options.poll_reports = [this] {
-    return poller ? poller->reports() : std::vector<poll::PollReport>{};
+    return followers ? followers->reports() : std::vector<client::FollowReport>{};
   };
   return options;
 }
 
-void FusionServer::Impl::start_polling() {
-  poll::PollerOptions options;
-  options.timings = config.at_start.poll;
-  options.clock = clock;
-  options.deliver = [this](poll::PolledFrame polled) {
-    tap->raw(raw_frame(polled));
-    sensors->floor(polled.frame.sensor, polled.frame.floor);
-    sensors->relay(polled.frame.sensor, std::move(polled.raw));
-    loop->give(std::move(polled.frame));
-  };
-  poller = std::make_unique<poll::Poller>(std::move(options));
-  poller->poll(config.live.sensors);
+void FusionServer::Impl::follow(const std::vector<client::FollowedService>& all) {
+  followers->follow<resource::FrameResource>(client::kFrames, all, [this](RawArrival arrived) {
+    SensorFrame frame = client::place_in_time(arrived);
+    tap->raw(raw_frame(arrived, frame));
+    sensors->floor(frame.sensor, frame.floor);
+    sensors->relay(frame.sensor, std::move(arrived.document));
+    loop->give(std::move(frame));
+  });
 }
 
 Result<std::unique_ptr<FusionServer>> FusionServer::make(const FusionSettings& settings) {
@@ -301,7 +299,9 @@ Result<void> FusionServer::start() {
 
   s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*initial)));
   if (auto bound = s.http->start(); !bound) return bound;
-  s.start_polling();
+  s.followers = std::make_unique<client::Followers>(
+      client::FollowOptions{.timings = s.config.at_start.poll, .clock = s.clock});
+  s.follow(s.config.live.sensors);
   s.status_at = std::chrono::steady_clock::now();
   s.loop->start();
   report_start(s.config, s.http->port());
@@ -317,7 +317,7 @@ void FusionServer::take(const LiveSettings& live) {
     s.config.live = live;
   }
   s.loop->ask(core_config(s.config));
-  s.poller->poll(live.sensors);
+  s.follow(live.sensors);
   s.http->set_tokens(live.tokens);
   if (live.identity) s.http->set_identity(*live.identity);
 }
@@ -332,7 +332,7 @@ void FusionServer::stop() {
   Impl& s = *impl_;
   // Requests end first, then frames, then the pipeline.
   if (s.http) s.http->stop();
-  if (s.poller) s.poller->stop();
+  if (s.followers) s.followers->stop();
   s.loop.reset();
   s.sinks.clear();
 }

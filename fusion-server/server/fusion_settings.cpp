@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/config_reader.h"
+#include "common/client/follow_config.h"
 #include "common/sensor/limits.h"
 #include "common/service/http_config.h"
 #include "fusion-server/learn/error_file.h"
@@ -33,56 +34,35 @@ void read_errors(ConfigReader& reader, fusion::SharedPredictor& out) {
   out = std::move(*predictor);
 }
 
-void read_sensor(ConfigReader& reader, LiveSettings& out, std::set<SensorId>& known) {
-  std::string name;
-  poll::PolledSensor sensor;
-  reader.read("id", name);
-  reader.read("url", sensor.url);
-  reader.read("token", sensor.token);
-  auto id = SensorId::parse(name);
-  if (!id) return reader.complain("id", id.error().message);
-  if (!known.insert(*id).second) return reader.complain("id", "is the id of another sensor too");
-  if (auto url = http::parse_url(sensor.url); !url) {
-    return reader.complain("url", url.error().message);
-  }
-  sensor.id = *id;
+struct SensorReading {
+  LiveSettings& out;
+  const tls::Trust& trust;
+  std::set<SensorId> known = {};
+};
+
+void read_sensor(ConfigReader& reader, SensorReading& reading) {
+  LiveSettings& out = reading.out;
+  auto sensor = client::read_followed(reader, reading.trust);
+  if (!sensor) return;
+  const SensorId id = sensor->id;
+  if (!reading.known.insert(id).second)
+    return reader.complain("id", "is the id of another sensor too");
   if (reader.has("noise")) {
     fusion::NoiseModel noise = out.pipeline.fusion.noise;
     ConfigReader child = reader.child("noise");
     read_noise(child, noise);
-    out.pipeline.fusion.sensor_noise[*id] = noise;
+    out.pipeline.fusion.sensor_noise[id] = noise;
   }
-  if (reader.has("errors")) read_errors(reader, out.pipeline.fusion.sensor_errors[*id]);
-  out.sensors.push_back(std::move(sensor));
+  if (reader.has("errors")) read_errors(reader, out.pipeline.fusion.sensor_errors[id]);
+  out.sensors.push_back(std::move(*sensor));
 }
 
-void read_sensors(ConfigReader& root, LiveSettings& out) {
-  std::set<SensorId> known;
-  for (ConfigReader& reader : root.items("sensors")) read_sensor(reader, out, known);
+void read_sensors(ConfigReader& root, const tls::Trust& trust, LiveSettings& out) {
+  SensorReading reading{out, trust};
+  for (ConfigReader& reader : root.items("sensors")) read_sensor(reader, reading);
   if (out.sensors.size() > kMaxSensors) {
     root.complain("sensors", "at most " + std::to_string(kMaxSensors) + " are possible");
   }
-}
-
-/// The authorities for all sensors, because these are hosts of one workshop.
-tls::Trust read_trust(ConfigReader poll) {
-  std::string file;
-  poll.read("ca", file);
-  auto trust = tls::Trust::load(file);
-  if (trust) return *trust;
-  poll.complain("ca", to_string(trust.error()));
-  return {};
-}
-
-void read_poll(ConfigReader reader, poll::PollTimings& out) {
-  reader.read_s("wait_s", out.wait, std::chrono::seconds(1), std::chrono::seconds(30));
-  reader.read_ms("answer_slack_ms", out.answer_slack, milliseconds(50), std::chrono::seconds(30));
-  reader.read_ms("min_interval_ms", out.min_interval, milliseconds(1), std::chrono::seconds(1));
-  reader.read_ms("first_backoff_ms", out.first_backoff, milliseconds(10), std::chrono::seconds(10));
-  reader.read_ms("max_backoff_ms", out.max_backoff, milliseconds(100), std::chrono::seconds(600));
-  reader.read("stream", out.stream);
-  reader.read_s("floor_interval_s", out.floor_interval, std::chrono::seconds(1),
-                std::chrono::seconds(3600));
 }
 
 void read_output(ConfigReader reader, FusionSettings& out) {
@@ -305,7 +285,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   live.identity = std::exchange(at_start.http.identity, {});
   at_start.secure = live.identity.has_value();
   service::read_log(root.child("log"), live.log);
-  read_poll(root.child("poll"), at_start.poll);
+  client::read_timings(root.child("poll"), at_start.poll);
   read_output(root.child("output"), settings);
   read_align(root.child("align"), live.pipeline.align);
   read_quality(root.child("quality"), live.pipeline.quality);
@@ -314,9 +294,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   ConfigReader fusion = root.child("fusion");
   read_smoothing(fusion.child("smoothing"), live.pipeline.smoothing);
   read_fusion(std::move(fusion), live.pipeline.fusion);
-  read_sensors(root, live);
-  const tls::Trust trust = read_trust(root.child("poll"));
-  for (poll::PolledSensor& sensor : live.sensors) sensor.trust = trust;
+  read_sensors(root, client::read_trust(root.child("poll")), live);
   read_registration(root.child("registration"), settings);
   outputs::read_outputs(root.child("outputs"), at_start.outputs);
   root.read("state_dir", at_start.state_dir);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/client/followers.h"
 #include "common/http/server.h"
 #include "common/service/log_config.h"
 #include "common/service/recordings.h"
@@ -13,7 +14,6 @@
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/outputs/outputs.h"
 #include "fusion-server/pipeline/pipeline.h"
-#include "fusion-server/poll/poller.h"
 #include "fusion-server/registration/registration.h"
 #include "fusion-server/watch/watch_config.h"
 
@@ -24,7 +24,7 @@ struct LiveSettings {
   service::LogConfig log;
   std::vector<http::Token> tokens;        ///< From the section http.
   std::optional<tls::Identity> identity;  ///< From the section http.
-  std::vector<poll::PolledSensor> sensors;
+  std::vector<client::FollowedService> sensors;
   core::TickConfig output;
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;
@@ -39,7 +39,7 @@ struct StartSettings {
   std::string title = "Chorus fusion server";
   http::ServerConfig http = {.port = 8080};  ///< Without tokens and identity.
   bool secure = false;                       ///< True if there is an identity.
-  poll::PollTimings poll;
+  client::PollTimings poll;
   Duration history = std::chrono::seconds(10);  ///< How far back /frames/{seq} and ?at= reach.
   outputs::OutputsConfig outputs;
   /// A file with given extrinsics; empty: the sensors are registered from a walk.

@@ -10,13 +10,13 @@ namespace {
 
 /// Logs which sensors have no place in the registration, and which of its sensors are not polled.
 void report_fit(const Registration& registration, const LiveSettings& live) {
-  for (const poll::PolledSensor& sensor : live.sensors) {
+  for (const client::FollowedService& sensor : live.sensors) {
     if (!registration.sensors.contains(sensor.id)) {
       log::warn("sensor has no place in the registration", {{"sensor", sensor.id.str()}});
     }
   }
   for (const auto& [sensor, place] : registration.sensors) {
-    if (std::ranges::find(live.sensors, sensor, &poll::PolledSensor::id) == live.sensors.end())
+    if (std::ranges::find(live.sensors, sensor, &client::FollowedService::id) == live.sensors.end())
       log::warn("registration knows a sensor that is not polled", {{"sensor", sensor.str()}});
   }
 }

@@ -257,28 +257,30 @@ void PipelineLoop::take_solutions() {
   }
 }
 
-SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp now) const {
+SensorStatus PipelineLoop::status_of(const client::FollowReport& report, Timestamp now) const {
   SensorStatus status;
-  status.id = report.sensor.id;
-  status.url = report.sensor.url;
-  const auto walked = core_.walked_clocks().of(report.sensor.id);
+  status.id = report.service.id;
+  status.url = report.service.url;
+  const auto walked = core_.walked_clocks().of(report.service.id);
   if (report.newest)
-    status.age = now - *report.newest - core_.walked_clocks().added_to(report.sensor.id);
-  const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
-  status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
+    status.age = now - *report.newest - core_.walked_clocks().added_to(report.service.id);
+  const bool silent =
+      report.state == client::SensorState::Live && status.age && *status.age > kStale;
+  status.state = client::name_of(silent ? client::SensorState::Lost : report.state);
   status.last_error = report.last_error;
-  if (status.last_error.empty()) status.last_error = core_.fates().complaint(report.sensor.id, now);
+  if (status.last_error.empty())
+    status.last_error = core_.fates().complaint(report.service.id, now);
   status.streaming = report.streaming;
   status.rate_hz = report.rate_hz;
   status.frames = report.frames;
   status.missed = report.missed;
   status.failures = report.failures;
-  status.fates = core_.fates().of(report.sensor.id);
+  status.fates = core_.fates().of(report.service.id);
   status.fates.early += report.early;
   status.fates.stale += report.stale;
   status.refused = refused(status.fates);
-  const bool lost = silent || report.state == poll::SensorState::Lost;
-  const core::Share share = lost ? core::Share{} : core_.share(report.sensor.id);
+  const bool lost = silent || report.state == client::SensorState::Lost;
+  const core::Share share = lost ? core::Share{} : core_.share(report.service.id);
   status.share = share.in_time;
   status.share_afterwards = share.afterwards;
   status.awaited = share.awaited;
@@ -293,17 +295,17 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
     status.walked_sigma = walked->sigma;
     status.guessed_from_age = core_.registration().clocks.size() == 1;
   }
-  const auto latency = core_.registration().latencies.find(report.sensor.id);
+  const auto latency = core_.registration().latencies.find(report.service.id);
   if (latency != core_.registration().latencies.end()) status.latency = latency->second;
   status.host = report.host;
   const auto& reports = core_.reports();
   const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {
-    return r.sensor == report.sensor.id;
+    return r.sensor == report.service.id;
   });
   if (own != reports.end() && core_.uses_weights()) status.weight = own->weight;
-  status.bodies = core_.bodies(report.sensor.id, now);
-  status.shift = core_.guard().shift_of(report.sensor.id);
-  status.alarm = core_.alarm_text(report.sensor.id, now);
+  status.bodies = core_.bodies(report.service.id, now);
+  status.shift = core_.guard().shift_of(report.service.id);
+  status.alarm = core_.alarm_text(report.service.id, now);
   return status;
 }
 
@@ -331,7 +333,7 @@ void PipelineLoop::publish_status(Timestamp now) {
   status_at_ = now;
   keeper_.people(worker_, core_.next_person());
   Status status;
-  for (const poll::PollReport& report : options_.poll_reports()) {
+  for (const client::FollowReport& report : options_.poll_reports()) {
     status.sensors.push_back(status_of(report, now));
     complain(status.sensors.back());
   }

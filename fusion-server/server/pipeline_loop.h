@@ -12,11 +12,11 @@
 
 #include "common/base/handover.h"
 #include "common/base/rate_report.h"
+#include "common/client/followers.h"
 #include "common/time/clock.h"
 #include "fusion-server/core/fusion_core.h"
 #include "fusion-server/flow/registration.h"
 #include "fusion-server/flow/snapshot.h"
-#include "fusion-server/poll/poller.h"
 #include "fusion-server/server/state_keeper.h"
 #include "fusion-server/server/worker.h"
 #include "fusion-server/sink.h"
@@ -65,7 +65,7 @@ struct LoopOptions {
   std::vector<Sink*> sinks;  ///< Must outlive the loop.
   /// Called on the pipeline's thread, a few times a second and after each command and each solve.
   std::function<void(const Status&)> on_status;
-  std::function<std::vector<poll::PollReport>()> poll_reports;
+  std::function<std::vector<client::FollowReport>()> poll_reports;
   /// Called on the pipeline's thread with an earlier snapshot that was fused again with late
   /// frames.
   std::function<void(const Snapshot&)> on_amended;
@@ -100,7 +100,7 @@ class PipelineLoop {
   void publish_status(Timestamp now);
   void note_displaced();
   void complain(const SensorStatus& sensor);
-  [[nodiscard]] SensorStatus status_of(const poll::PollReport& report, Timestamp now) const;
+  [[nodiscard]] SensorStatus status_of(const client::FollowReport& report, Timestamp now) const;
 
   LoopOptions options_;
   core::FusionCore core_;

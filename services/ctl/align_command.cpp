@@ -12,15 +12,15 @@
 
 #include "common/base/units.h"
 #include "common/body/bones.h"
+#include "common/client/service_client.h"
 #include "common/geometry/rotation.h"
 #include "common/importers/text_rows.h"
-#include "fusion-server/client/fused_frames.h"
-#include "fusion-server/client/service_client.h"
 #include "fusion-server/server/registration_store.h"
 #include "fusion-server/wire/registration_file.h"
 #include "services/ctl/alignment_report.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/fused_samples.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/recorded_cell.h"
 #include "services/ctl/reference_file.h"
@@ -145,8 +145,7 @@ std::optional<Eigen::Quaterniond> axes_of(const Skeleton<WorldSpace>& body) {
 }
 
 /// The person whom nearly all frames show, or the one who is asked for.
-Result<PersonId> chosen_person(const AlignArguments& arguments,
-                               const client::FusedSamples& samples) {
+Result<PersonId> chosen_person(const AlignArguments& arguments, const FusedSamples& samples) {
   if (arguments.person) return PersonId{*arguments.person};
   constexpr double kNearlyAll = 0.8;
   std::map<PersonId, std::size_t> counts;
@@ -167,7 +166,7 @@ Result<Trace> our_trace(const AlignArguments& arguments) {
   if (is_address(arguments.source))
     std::cerr << fmt::format("listening for {} s: walk through the room\n", arguments.seconds);
   const auto listen = std::chrono::milliseconds(std::llround(arguments.seconds * 1e3));
-  const auto frames = client::read_fused_frames(arguments.source, listen);
+  const auto frames = read_fused_frames(arguments.source, listen);
   if (!frames) return pass(frames);
   for (const std::string& note : frames->notes) std::cerr << "note: " << note << '\n';
   const auto person = chosen_person(arguments, frames->samples);

@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include "fusion-server/client/recordings.h"
+#include "common/record/cell_reader.h"
 #include "fusion-server/pipeline/offline.h"
 #include "services/ctl/characterise_report.h"
 #include "services/ctl/command.h"
@@ -207,7 +207,7 @@ Result<SensorReport> measured(const CharacteriseArguments& arguments,
                               const pipeline::OfflineConfig& config) {
   const auto known = known_of(arguments);
   if (!known) return pass(known);
-  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  const auto files = record::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   auto cell = RecordedCell::open(*files);
   if (!cell) return pass(cell);

@@ -11,9 +11,10 @@
 
 #include "common/base/duration.h"
 #include "common/exporters/export_formats.h"
-#include "fusion-server/client/fused_frames.h"
 #include "services/ctl/command.h"
 #include "services/ctl/fused_file.h"
+#include "services/ctl/fused_frames.h"
+#include "services/ctl/fused_samples.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/server_option.h"
 #include "services/ctl/text_file.h"
@@ -107,7 +108,7 @@ std::chrono::milliseconds listening(const ExportArguments& arguments) {
 struct Lines {
   std::size_t frames = 0;
   std::size_t with_bodies = 0;
-  client::Notes notes;
+  record::Notes notes;
 };
 
 Result<Lines> write_lines(const ExportArguments& arguments) {
@@ -122,7 +123,7 @@ Result<Lines> write_lines(const ExportArguments& arguments) {
     if (!kept.bodies.empty()) ++lines.with_bodies;
     return file->add(kept);
   };
-  auto notes = client::each_fused_frame(arguments.source, listening(arguments), take);
+  auto notes = each_fused_frame(arguments.source, listening(arguments), take);
   if (!notes) return pass(notes);
   lines.notes = std::move(*notes);
   if (lines.with_bodies == 0)
@@ -156,7 +157,7 @@ Result<int> run_lines(const ExportArguments& arguments) {
 Result<int> run_export(const ExportArguments& arguments) {
   if (auto ok = may_write(arguments.out, {arguments.source}); !ok) return pass(ok);
   if (arguments.format == kFrames) return run_lines(arguments);
-  auto source = client::read_fused_frames(arguments.source, listening(arguments));
+  auto source = read_fused_frames(arguments.source, listening(arguments));
   if (!source) return pass(source);
   exporters::TakeOptions options;
   options.rate_hz = arguments.rate_hz;

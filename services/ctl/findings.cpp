@@ -17,11 +17,11 @@
 #include "common/base/file.h"
 #include "common/base/json.h"
 #include "common/base/version.h"
+#include "common/client/service_client.h"
 #include "common/http/client.h"
 #include "common/http/status.h"
 #include "common/tls/certificate.h"
 #include "common/tls/credentials.h"
-#include "fusion-server/client/service_client.h"
 
 namespace chorus::ctl {
 namespace {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/geometry/error_radius.h"
-#include "fusion-server/client/recordings.h"
+#include "common/record/cell_reader.h"
 #include "fusion-server/fusion/methods.h"
 #include "fusion-server/pipeline/offline.h"
 #include "fusion-server/wire/registration_file.h"
@@ -169,7 +169,7 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   auto config = offline_config(arguments.options);
   if (!config) return pass(config);
   config->smooth = arguments.smooth;
-  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  const auto files = record::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
   auto cell = RecordedCell::open(*files);

@@ -9,7 +9,7 @@
 
 #include "common/base/file.h"
 #include "common/record/cell_writer.h"
-#include "fusion-server/client/fused_frames.h"
+#include "common/record/fused_frames.h"
 #include "fusion-server/wire/registration_file.h"
 #include "fusion-server/wire/snapshot_resource.h"
 #include "services/ctl/text_file.h"
@@ -105,7 +105,7 @@ class FrameLines::Impl {
     return judged();
   }
   Result<void> add(const resource::FrameResource& frame) {
-    stream() << client::frame_line(frame);
+    stream() << record::frame_line(frame);
     return judged();
   }
   Result<void> finish() {

@@ -14,9 +14,9 @@
 #include "common/importers/formats.h"
 #include "common/record/frame_recording.h"
 #include "common/record/frame_schema.h"
+#include "common/record/fused_frames.h"
 #include "common/record/recording_stream.h"
 #include "common/resource/frame_resource.h"
-#include "fusion-server/client/fused_frames.h"
 #include "fusion-server/server/registration_store.h"
 #include "fusion-server/wire/registration_file.h"
 #include "services/ctl/command.h"
@@ -113,7 +113,7 @@ Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set
     frame.space = resource::SpaceKind::World;
     for (; truth != set.truth.end() && truth->index + 1 == frame.sequence; ++truth)
       frame.bodies.push_back(truth_body(*truth, frame.captured));
-    text += client::frame_line(frame);
+    text += record::frame_line(frame);
   }
   return write_text(file.string(), text);
 }

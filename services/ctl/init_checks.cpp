@@ -5,10 +5,10 @@
 #include <set>
 
 #include "common/base/file.h"
+#include "common/client/service_client.h"
 #include "common/net/asio.h"
 #include "common/service/http_config.h"
 #include "common/tls/certificate.h"
-#include "fusion-server/client/service_client.h"
 
 namespace chorus::ctl {
 namespace {

@@ -10,8 +10,8 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/strong_id.h"
+#include "common/client/service_client.h"
 #include "common/net/host_name.h"
-#include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/discovery.h"
 #include "services/ctl/init_checks.h"

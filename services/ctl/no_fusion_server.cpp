@@ -1,6 +1,6 @@
 #include "services/ctl/no_fusion_server.h"
 
-#include "fusion-server/client/service_client.h"
+#include "common/client/service_client.h"
 #include "services/ctl/console.h"
 
 namespace chorus::ctl {

@@ -12,8 +12,8 @@
 
 #include "common/base/units.h"
 #include "common/body/bones.h"
+#include "common/client/service_client.h"
 #include "common/geometry/rotation.h"
-#include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/marked_points.h"

@@ -7,10 +7,10 @@
 
 #include "common/base/duration.h"
 #include "common/base/json.h"
+#include "common/client/live_poll.h"
+#include "common/client/service_client.h"
 #include "common/http/client.h"
 #include "common/time/timestamp.h"
-#include "fusion-server/client/live_poll.h"
-#include "fusion-server/client/service_client.h"
 
 namespace chorus::ctl {
 namespace {

@@ -9,10 +9,10 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include "fusion-server/client/live_recording.h"
-#include "fusion-server/client/service_client.h"
+#include "common/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/live_recording.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/server_option.h"
 #include "services/ctl/text_file.h"
@@ -41,8 +41,7 @@ enum class End { Asked, TimeIsUp, Gone };
 /// Checks a few times a second whether the recording is over, while the sensors are polled.
 class RecordingWatch {
  public:
-  RecordingWatch(asio::io_context& io, const client::LiveRecording& live,
-                 const RecordArguments& arguments)
+  RecordingWatch(asio::io_context& io, const LiveRecording& live, const RecordArguments& arguments)
       : io_(io),
         live_(live),
         arguments_(arguments),
@@ -82,7 +81,7 @@ class RecordingWatch {
   }
 
   asio::io_context& io_;
-  const client::LiveRecording& live_;
+  const LiveRecording& live_;
   const RecordArguments& arguments_;
   net::Timer timer_;
   asio::signal_set signals_;
@@ -100,7 +99,7 @@ nlohmann::json stream_json(const client::StreamCount& count) {
   return json;
 }
 
-nlohmann::json summary_of(const client::LiveRecording& live, const record::RecordingReport& report,
+nlohmann::json summary_of(const LiveRecording& live, const record::RecordingReport& report,
                           const std::string& file) {
   nlohmann::json streams = nlohmann::json::object();
   for (const auto& [topic, count] : live.counts()) streams[topic] = stream_json(count);
@@ -138,7 +137,7 @@ void print_summary(const nlohmann::json& summary, bool json) {
 }
 
 /// The streams that the service announced but that never delivered a frame.
-std::vector<std::string> silent_streams(const client::LiveRecording& live) {
+std::vector<std::string> silent_streams(const LiveRecording& live) {
   std::vector<std::string> silent;
   for (const auto& [topic, count] : live.counts()) {
     if (count.frames == 0) silent.push_back(topic);
@@ -146,7 +145,7 @@ std::vector<std::string> silent_streams(const client::LiveRecording& live) {
   return silent;
 }
 
-Result<int> judge(const client::LiveRecording& live, const record::RecordingReport& report, End end,
+Result<int> judge(const LiveRecording& live, const record::RecordingReport& report, End end,
                   const RecordArguments& arguments) {
   if (report.state != record::RecordingState::Finished) {
     return fail(ErrorCode::Io, arguments.out,
@@ -179,13 +178,13 @@ Result<int> run_record(const RecordArguments& arguments) {
     return fail(ErrorCode::InvalidArgument, "--out",
                 "a recording is an .mcap file, and is found in a folder by that ending; name it " +
                     arguments.out + ".mcap");
-  client::LiveRecordingOptions options;
+  LiveRecordingOptions options;
   options.service = *url;
   options.file = arguments.out;
   options.raw = arguments.raw || !arguments.fused;  // with neither option: both
   options.fused = arguments.fused || !arguments.raw;
   asio::io_context io{1};
-  const auto live = client::LiveRecording::start(io, options);
+  const auto live = LiveRecording::start(io, options);
   if (!live) return pass(live);
   const End end = RecordingWatch(io, **live, arguments).run();
   const auto report = (*live)->stop();

@@ -3,7 +3,7 @@
 #include <system_error>
 #include <utility>
 
-#include "fusion-server/client/recordings.h"
+#include "common/record/cell_reader.h"
 #include "fusion-server/wire/registration_file.h"
 
 namespace chorus::ctl {
@@ -75,7 +75,7 @@ RecordedCell::Told RecordedCell::told() {
   for (const auto& stream : streams_) {
     const record::CellRecording cell = stream->finish();
     told.sensors += cell.sensors.size();
-    for (std::string& note : client::notes_of(cell)) told.notes.push_back(std::move(note));
+    for (std::string& note : record::notes_of(cell)) told.notes.push_back(std::move(note));
   }
   return told;
 }

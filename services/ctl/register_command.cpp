@@ -13,7 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/units.h"
-#include "fusion-server/client/service_client.h"
+#include "common/client/service_client.h"
 #include "fusion-server/wire/session_limits.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"

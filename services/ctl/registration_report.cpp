@@ -10,8 +10,8 @@
 #include <Eigen/Geometry>
 
 #include "common/base/units.h"
+#include "common/client/service_client.h"
 #include "common/geometry/rotation.h"
-#include "fusion-server/client/service_client.h"
 #include "services/ctl/console.h"
 
 namespace chorus::ctl {

@@ -12,8 +12,8 @@
 
 #include "common/net/listen.h"
 #include "common/record/cell_outline.h"
+#include "common/record/cell_reader.h"
 #include "common/time/clock.h"
-#include "fusion-server/client/recordings.h"
 #include "services/ctl/child_processes.h"
 #include "services/ctl/command.h"
 #include "services/ctl/number_range.h"
@@ -153,7 +153,7 @@ Result<int> play(const std::vector<Part>& parts, const std::optional<Round>& rou
 }
 
 Result<int> run_replay(const ReplayArguments& arguments) {
-  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  const auto files = record::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = may_write(arguments.save_registration, *files); !ok) return pass(ok);
   const auto lines = record::cell_lines(*files);

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "common/base/units.h"
-#include "fusion-server/client/service_client.h"
+#include "common/client/service_client.h"
 
 namespace chorus::ctl {
 namespace {

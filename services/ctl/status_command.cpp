@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "common/client/service_client.h"
 #include "common/http/client.h"
 #include "common/http/status.h"
-#include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/no_fusion_server.h"

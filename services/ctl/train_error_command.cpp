@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/duration.h"
-#include "fusion-server/client/fused_frames.h"
-#include "fusion-server/client/recordings.h"
+#include "common/record/cell_reader.h"
 #include "fusion-server/learn/error_file.h"
 #include "fusion-server/learn/fit_errors.h"
 #include "services/ctl/command.h"
+#include "services/ctl/fused_samples.h"
 #include "services/ctl/offline_options.h"
 #include "services/ctl/recorded_cell.h"
 #include "services/ctl/recorded_places.h"
@@ -133,7 +133,7 @@ Result<void> check_output(const TrainArguments& arguments,
 
 Result<int> learn_from(const TrainArguments& arguments, RecordedCell& cell, const Places& places,
                        const pipeline::OfflineConfig& config) {
-  auto truth = client::read_fused_frames(arguments.truth, std::chrono::milliseconds(0));
+  auto truth = read_fused_frames(arguments.truth, std::chrono::milliseconds(0));
   if (!truth) return pass(truth);
   const auto gathered =
       gather(cell, *places.registration, config, TrueBodies(std::move(truth->samples)));
@@ -159,7 +159,7 @@ Result<int> learn_from(const TrainArguments& arguments, RecordedCell& cell, cons
 Result<int> run_train_error(const TrainArguments& arguments) {
   const auto config = offline_config(arguments.options);
   if (!config) return pass(config);
-  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  const auto files = record::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = check_output(arguments, *files); !ok) return pass(ok);
   auto cell = RecordedCell::open(*files);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "fusion-server/client/service_client.h"
+#include "common/client/service_client.h"
 
 namespace chorus::ctl {
 

@@ -64,8 +64,14 @@ class BrokenRules(unittest.TestCase):
             messages_for({"fusion-server/registration/a.cpp": '#include "fusion-server/align/aligner.h"\n'}), [])
 
     def test_judge_feeds_the_judged(self):
-        for room in ("fusion", "pipeline", "poll", "rest", "server"):
+        for room in ("fusion", "pipeline", "core", "rest", "server"):
             self.assert_caught(f"fusion-server/{room}/a.cpp", '#include "common/synthetic/scene.h"\n', "judges")
+
+    def test_the_client_stands_below_every_service(self):
+        for above in ("common/exporters/take.h", "common/record/recorder.h", "fusion-server/wire/registration_file.h"):
+            self.assert_caught("common/client/a.cpp", f'#include "{above}"\n', "below or beside")
+        self.assertEqual(messages_for({"services/sensor/a.cpp": '#include "common/client/followers.h"\n'}), [])
+        self.assert_caught("fusion-server/core/a.cpp", '#include "common/client/followers.h"\n', "no socket")
 
     def test_stage_with_side_effects(self):
         for header in ("<boost/asio/post.hpp>", "<serd/serd.h>", "<nlohmann/json.hpp>", "<thread>", "<mutex>",

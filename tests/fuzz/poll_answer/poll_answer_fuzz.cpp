@@ -9,10 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "common/client/answer.h"
+#include "common/client/frames.h"
 #include "common/http/client.h"
 #include "common/http/event_reader.h"
 #include "common/net/asio.h"
-#include "fusion-server/poll/answer.h"
 
 namespace {
 
@@ -82,13 +83,18 @@ void check_answer(std::string_view bytes) {
   const auto response = ask(bytes);
   if (!response) return;
   const SensorId sensor = SensorId::parse("s1").value();
-  const auto answer = poll::read_frame_answer(*response, sensor);
-  if (answer.frame) {
-    const auto frame = poll::place_in_time(*answer.frame, sensor, Timestamp{}, {}, {});
+  const auto answer = client::read_answer(*response, client::kFrames, sensor);
+  if (answer.document.value) {
+    const auto frame = client::place_in_time(
+        {sensor,
+         std::static_pointer_cast<const resource::FrameResource>(answer.document.value),
+         Timestamp{},
+         {},
+         {}});
     require(frame.bodies.size() <= kMaxBodies);
   }
-  (void)poll::read_floor_answer(*response);
-  (void)poll::exchange_of(*response);
+  (void)client::read_floor_answer(*response);
+  (void)client::exchange_of(*response);
 }
 
 /// However the stream is split, it gives the same events.

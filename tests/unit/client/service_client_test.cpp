@@ -1,4 +1,4 @@
-#include "fusion-server/client/service_client.h"
+#include "common/client/service_client.h"
 
 #include <cstdlib>
 

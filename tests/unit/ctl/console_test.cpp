@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "fusion-server/client/service_client.h"
+#include "common/client/service_client.h"
 #include "services/ctl/registration_report.h"
 
 namespace chorus::ctl {

@@ -1,5 +1,5 @@
 // `chorus record` with a fusion server some of whose resources fail.
-#include "fusion-server/client/live_recording.h"
+#include "services/ctl/live_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,8 +22,6 @@ namespace {
 using chorus::testing::IsOk;
 using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
-using client::LiveRecording;
-using client::LiveRecordingOptions;
 using ::testing::HasSubstr;
 
 std::string frame_of(const std::string& source, int sequence) {

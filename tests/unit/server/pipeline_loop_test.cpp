@@ -47,7 +47,7 @@ TEST(PipelineLoop, GoesOnAfterASinkHasThrownAndCountsIt) {
   options.clock = std::make_shared<SystemClock>();
   options.sinks.push_back(&sink);
   options.on_amended = [](const Snapshot&) {};
-  options.poll_reports = [] { return std::vector<poll::PollReport>{}; };
+  options.poll_reports = [] { return std::vector<client::FollowReport>{}; };
   options.on_status = [&](const Status& status) {
     const std::scoped_lock lock(mutex);
     counters = status.counters;
@@ -71,13 +71,13 @@ std::string said_of_old_frames(double rate_hz, const std::optional<ClockEstimate
   LoopOptions options;
   options.clock = std::make_shared<SystemClock>();
   options.poll_reports = [&, clock = options.clock] {
-    poll::PollReport report;
-    report.sensor.id = chorus::testing::sensor_id("cam1");
-    report.state = poll::SensorState::Live;
+    client::FollowReport report;
+    report.service.id = chorus::testing::sensor_id("cam1");
+    report.state = client::SensorState::Live;
     report.newest = clock->now() - std::chrono::milliseconds(5936);
     report.rate_hz = rate_hz;
     report.clock = offset;
-    return std::vector<poll::PollReport>{report};
+    return std::vector<client::FollowReport>{report};
   };
   options.on_status = [&](const Status& status) {
     if (!std::exchange(done, true)) said.set_value(status.sensors.at(0).last_error);
