@@ -1,8 +1,6 @@
 #include "services/ctl/board_pictures.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -11,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/calibration/board_finder.h"
+#include "services/ctl/photo_files.h"
 #include "services/sensor/device/camera/video.h"
 
 namespace chorus::ctl {
@@ -21,36 +20,6 @@ namespace fs = std::filesystem;
 // Time between the examined pictures of a video [s]; a hand moves the board far enough in it.
 constexpr double kEvery = 0.25;
 constexpr std::size_t kMaxViews = 2000;
-
-/// Photos in HEIC count, although they cannot be read: the error says what to do about them.
-bool is_photo(const fs::path& file) {
-  constexpr std::array kEndings{".jpg",  ".jpeg", ".png",  ".bmp", ".tif",
-                                ".tiff", ".webp", ".heic", ".heif"};
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
-}
-
-/// The sources, with each folder replaced by the photos in it, ordered by name.
-Result<std::vector<std::string>> files_of(const std::vector<std::string>& sources) {
-  std::vector<std::string> files;
-  for (const std::string& source : sources) {
-    std::error_code failed;
-    if (!fs::is_directory(source, failed)) {
-      files.push_back(source);
-      continue;
-    }
-    const std::size_t before = files.size();
-    for (const auto& entry : fs::directory_iterator(source, failed)) {
-      if (is_photo(entry.path())) files.push_back(entry.path().string());
-    }
-    if (files.size() == before)
-      return fail(ErrorCode::NotFound, source, "holds no photos (.jpg, .png, .bmp, .tif, .webp)");
-    std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
-  }
-  return files;
-}
 
 class Search {
  public:
@@ -166,7 +135,7 @@ class Search {
 }  // namespace
 
 Result<BoardViews> look_for_board(const BoardSearch& search) {
-  const auto files = files_of(search.sources);
+  const auto files = photo_files(search.sources);
   if (!files) return pass(files);
   auto found = Search(search).run(*files);
   if (found && found->pictures == 0)

@@ -84,6 +84,17 @@ constexpr std::array kRecordingCommands{
             "Exit code 0: they fit; 1: they do not, and why is printed.  More: "
             "docs/guide/align.md.",
             &add_align},
+    Command{
+        "scan", "Makes a hand's skeleton from a scan or photo of the open hand",
+        "Examples:\n"
+        "  chorus scan hand.png --out hand.bvh                     a scan whose file states its "
+        "density\n"
+        "  chorus scan hand.jpg --paper a4 --out hand.bvh          on a whole sheet of A4\n"
+        "  chorus scan one.png two.png three.png --out hand.bvh    one hand: the median\n"
+        "  chorus scan photos/ --card --out hands                  each picture on its own\n"
+        "  chorus scan hand.png --method paper --json              Madaras et al., section 4\n"
+        "Exit code 0: a hand is found; 1: none, and why is printed.  More: docs/guide/hands.md.",
+        &add_scan},
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 // Finds people in images: images come in on standard input, landmarks go out on standard output (proto/runner.md).
-//   runner.mjs [--model movenet|blazepose-lite|blazepose-full] [--check]
+//   runner.mjs [--model movenet|blazepose-lite|blazepose-full|hands] [--check]
 import { parseArgs } from 'node:util';
 
 import { MODELS, warmUp } from './catalogue.js';
@@ -21,8 +21,10 @@ const say = (message) => process.stdout.write(`${JSON.stringify(message)}\n`);
 async function answer(network, { header, pixels }) {
   const began = performance.now();
   const time = Number(header.captured) / NANOSECONDS;
-  const bodies = await network.bodies({ width: header.width, height: header.height, pixels }, time);
-  say({ type: 'frame', sequence: header.sequence, captured: header.captured, bodies, milliseconds: Number((performance.now() - began).toFixed(1)) });
+  const image = { width: header.width, height: header.height, pixels };
+  const bodies = await network.bodies(image, time);
+  const hands = await network.hands?.(image); // undefined is left out of the line
+  say({ type: 'frame', sequence: header.sequence, captured: header.captured, bodies, hands, milliseconds: Number((performance.now() - began).toFixed(1)) });
 }
 
 async function run() {

@@ -15,7 +15,7 @@ ROWS = [
     ["common/sensor", "common/layout", "common/posture"],
     ["common/motion", "common/resource", "common/ergonomics"],
     ["common/record", "common/client"],
-    ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration",
+    ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration", "common/hand",
      "common/characteristics"],
     ["fusion-server/flow"],
     ["fusion-server/status", "fusion-server/sink.h"],
