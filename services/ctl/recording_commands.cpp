@@ -95,6 +95,15 @@ constexpr std::array kRecordingCommands{
         "  chorus scan hand.png --method paper --json              Madaras et al., section 4\n"
         "Exit code 0: a hand is found; 1: none, and why is printed.  More: docs/guide/hands.md.",
         &add_scan},
+    Command{"report", "Says how good a recording is, and what to do about it",
+            "Examples:\n"
+            "  chorus report cell.mcap --out report.html --out report.json\n"
+            "  chorus report fused.mcap rec              fused offline, with the sensors' own "
+            "recordings\n"
+            "  chorus report http://127.0.0.1:8080/ --seconds 60\n"
+            "Exit code 0: usable, perhaps with care; 1: not usable as it is, and why is printed.  "
+            "What each figure means: docs/guide/report.md.",
+            &add_report},
 };
 
 }  // namespace

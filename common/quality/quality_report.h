@@ -1,0 +1,36 @@
+// The figures of a recording as a report: what each means, its limit, and what to do.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/base/strong_id.h"
+#include "common/quality/fused_quality.h"
+#include "common/quality/sensor_quality.h"
+#include "common/report/report.h"
+
+namespace chorus::quality {
+
+struct RecordingQuality {
+  std::string name;  ///< File or address.
+  FusedQuality fused;
+  std::map<SensorId, SensorQuality> sensors;  ///< Empty: only fused frames were recorded.
+  std::string verdict;                        ///< Of the registration; empty: unknown.
+  std::vector<std::string> notes;             ///< What was left out while reading.
+};
+
+/// A fault that the figures show, worst first.
+struct Finding {
+  report::Judgement judgement = report::Judgement::Doubtful;
+  std::string what;    ///< "s3 stands 60 mm from where it was registered"
+  std::string advice;  ///< "run chorus register"
+};
+
+/// What the figures show to be wrong; empty: nothing.
+[[nodiscard]] std::vector<Finding> findings_of(const RecordingQuality& quality);
+
+/// The whole report; its verdict names the findings.
+[[nodiscard]] report::Report report_of(const RecordingQuality& quality);
+
+}  // namespace chorus::quality
