@@ -1,0 +1,72 @@
+// The task file: what is asked about a recording (loads, grips), for the whole of it or for phases.
+//
+//   {"title": "Battery", "cycleSeconds": 60, "stance": {"fromSeconds": 0, "toSeconds": 2},
+//    "loadKg": 0, "shock": false, ...,
+//    "phases": [{"name": "lift", "fromSeconds": 4, "toSeconds": 9, "loadKg": 12}],
+//    "lifts": [{"fromSeconds": 4, "toSeconds": 6, "loadKg": 12, "perMinute": 0.5, "hours": 1,
+//    "coupling": "fair"}], "eawsPoints": {"secondsPerMinute": [3, 4.5], "points": {"standing":
+//    [0.7, 1]}}}
+//
+// Seconds count from the first frame of the recording.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/ergonomics/asked.h"
+
+namespace chorus::ergonomics {
+
+struct Span {
+  double from = 0.0;  ///< [s]
+  double to = 0.0;    ///< [s], not included
+
+  [[nodiscard]] bool holds(double at) const { return at >= from && at < to; }
+};
+
+struct Phase {
+  std::string name;
+  Span span;
+  Asked asked;
+};
+
+struct TaskLift {
+  Span span;  ///< From taking the load up to putting it down.
+  double load_kg = 0.0;
+  double per_minute = 0.2;
+  double hours = 1.0;
+  Coupling coupling = Coupling::Good;
+};
+
+/// The points of the user's own sheet: a row for each class, a column for each duration.
+struct ClassPoints {
+  std::vector<double> seconds_per_minute;
+  std::map<std::string, std::vector<double>> points;
+};
+
+struct Task {
+  std::string title;
+  std::optional<double> cycle = {};  ///< [s]
+  std::optional<Span> stance = {};   ///< Where the person stands upright on request.
+  Asked asked;                       ///< Outside phases, and inside for what they leave open.
+  std::vector<Phase> phases;         ///< In the order of time, without overlap.
+  std::vector<TaskLift> lifts;
+  std::optional<ClassPoints> points = {};
+
+  [[nodiscard]] Asked asked_at(double at) const;
+  /// The phase's index; none between phases.
+  [[nodiscard]] std::optional<std::size_t> phase_at(double at) const;
+};
+
+/// InvalidArgument names the key: unknown ones (with the nearest known), phases that overlap or end
+/// before they begin, loads that look like newtons.
+[[nodiscard]] Result<Task> read_task(std::string_view text, const std::string& file);
+
+/// Refuses phases, lifts and stances that reach beyond a recording of `seconds`.
+[[nodiscard]] Result<void> fits(const Task& task, double seconds, const std::string& file);
+
+}  // namespace chorus::ergonomics
