@@ -104,6 +104,14 @@ constexpr std::array kRecordingCommands{
             "Exit code 0: usable, perhaps with care; 1: not usable as it is, and why is printed.  "
             "What each figure means: docs/guide/report.md.",
             &add_report},
+    Command{"score", "Scores postures by REBA, RULA, OWAS and others, and says how sure it is",
+            "Examples:\n"
+            "  chorus score fused.mcap                                 a summary\n"
+            "  chorus score fused.mcap --method reba,owas --task task.json --out scores.csv\n"
+            "  chorus score fused.mcap --task task.json --sheet sheet.html --language de\n"
+            "  chorus score http://localhost:8090 --seconds 60 --sheet sheet.html\n"
+            "A screening, not a certified assessment.  The task file: docs/guide/ergonomics.md.",
+            &add_score},
 };
 
 }  // namespace
