@@ -1,0 +1,217 @@
+#include "tests/bench/ergonomics/posture_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/ergonomics/all_methods.h"
+#include "common/ergonomics/summary.h"
+
+namespace chorus::bench {
+namespace {
+
+using ergonomics::BodyAt;
+using ergonomics::Codes;
+using ergonomics::Method;
+using ergonomics::Observation;
+using ergonomics::Observer;
+using ergonomics::Side;
+
+constexpr double kNinety = 0.9;
+constexpr Duration kWindow = std::chrono::seconds(20);
+
+/// The stance as medians over a stretch, upright or not: the protocol of the recordings says when
+/// it is.
+std::optional<posture::Neutral> stance_over(const std::vector<BodyAt>& bodies,
+                                            std::pair<Timestamp, Timestamp> stretch) {
+  std::array<std::vector<double>, posture::kMeasures> values;
+  for (const BodyAt& body : bodies) {
+    if (body.at < stretch.first || body.at > stretch.second) continue;
+    const auto measures = posture::posture_of(body.body).measures;
+    for (std::size_t m = 0; m < posture::kMeasures; ++m) {
+      if (!std::isnan(measures.values[m])) values[m].push_back(measures.values[m]);
+    }
+  }
+  posture::Neutral neutral;
+  bool any = false;
+  for (std::size_t m = 0; m < posture::kMeasures; ++m) {
+    if (values[m].empty()) continue;
+    std::ranges::sort(values[m]);
+    neutral.stance.values[m] = values[m][values[m].size() / 2];
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  return neutral;
+}
+
+std::vector<Observation> observed(const std::vector<BodyAt>& bodies, const PostureOptions& options,
+                                  const std::optional<std::pair<Timestamp, Timestamp>>& stance) {
+  Observer observer({.held = options.held});
+  if (options.stance && stance) {
+    if (auto neutral = stance_over(bodies, *stance)) observer.stance(*neutral);
+  }
+  std::vector<Observation> all;
+  for (const BodyAt& body : bodies) all.push_back(observer.observe(body));
+  return all;
+}
+
+int person_score(const Method& method, const Observation& seen) {
+  if (seen.reason != ergonomics::Unscored::None) return 0;
+  const auto asked = empty_hands();
+  const auto left = score_of(method, codes_of(method, seen.seen, Side::Left, asked));
+  if (!method.sided) return left.high;
+  return worse(left, score_of(method, codes_of(method, seen.seen, Side::Right, asked))).high;
+}
+
+void add_codes(const Observation& found, const Observation& truth, PostureAgreement& sum) {
+  const auto asked = empty_hands();
+  const auto pair = [&](const Method& method, std::size_t input, Side side, std::size_t figure) {
+    const int a = codes_of(method, found.seen, side, asked)[input];
+    const int b = codes_of(method, truth.seen, side, asked)[input];
+    if (a > 0 && b > 0) sum.of[figure].add(a, b);
+  };
+  for (const Side side : posture::kSides) pair(ergonomics::kReba, 3, side, 2);
+  pair(ergonomics::kReba, 0, Side::Left, 3);
+  pair(ergonomics::kReba, 1, Side::Left, 4);
+  pair(ergonomics::kReba, 2, Side::Left, 5);
+  for (std::size_t i = 0; i < 3; ++i) pair(ergonomics::kOwas, i, Side::Left, 6 + i);
+}
+
+void add_doubt(const Observation& found, int truth, PostureAgreement& sum) {
+  const auto score = score_of(ergonomics::kReba, found, empty_hands());
+  const auto set = set_of(score, kNinety);
+  sum.covered += set.from <= truth && truth <= set.to ? 1.0 : 0.0;
+  sum.width += set.width();
+  sum.within_one += std::abs(score.score.high - truth) <= 1 ? 1.0 : 0.0;
+  for (int s = 1; s <= ergonomics::kMaxScore; ++s) {
+    if (score.high[static_cast<std::size_t>(s)] <= kNinety) continue;
+    sum.sure += 1.0;
+    sum.sure_right += s == truth ? 1.0 : 0.0;
+  }
+}
+
+/// Of each window, whether the stated interval of each level's share holds the true share.
+void add_zones(const ScoredTake& take, const std::vector<Observation>& truth,
+               const PostureOptions& options,
+               const std::optional<std::pair<Timestamp, Timestamp>>& stance,
+               PostureAgreement& sum) {
+  const std::vector<const Method*> methods{&ergonomics::kReba, &ergonomics::kOwas};
+  ergonomics::Task task;
+  task.asked = empty_hands();
+  std::optional<posture::Neutral> neutral;
+  if (options.stance && stance) neutral = stance_over(take.found, *stance);
+  const ergonomics::ScoringInput input{take.found, methods, task, take.found.front().at, neutral};
+  const auto person = score_person(input);
+  for (std::size_t first = 0; first < take.found.size();) {
+    std::size_t last = first;
+    while (last < take.found.size() && take.found[last].at - take.found[first].at < kWindow) ++last;
+    if (last == take.found.size()) break;
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      const auto summary = summary_of(person, input, m, {first, last});
+      std::vector<double> share(methods[m]->levels.size(), 0.0);
+      double count = 0.0;
+      for (std::size_t i = first; i < last; ++i) {
+        const int score = person_score(*methods[m], truth[i]);
+        if (score == 0) continue;
+        share[level_of(*methods[m], score)] += 1.0;
+        count += 1.0;
+      }
+      for (std::size_t l = 0; l < share.size() && count > 0.0; ++l) {
+        const auto& zone = summary.levels[l];
+        sum.zones += 1.0;
+        sum.zone_width += zone.high - zone.low;
+        const double is = share[l] / count;
+        sum.zones_held += zone.low - 1e-9 <= is && is <= zone.high + 1e-9 ? 1.0 : 0.0;
+      }
+    }
+    first = last;
+  }
+}
+
+}  // namespace
+
+double Agreement::weighted(bool squares) const {
+  if (pairs_.empty()) return kNoRatio;
+  std::array<double, 16> rows{};
+  std::array<double, 16> columns{};
+  const double n = static_cast<double>(pairs_.size());
+  const auto weight = [&](int a, int b) {
+    return squares ? static_cast<double>((a - b) * (a - b)) : a == b ? 0.0 : 1.0;
+  };
+  double seen = 0.0;
+  for (const auto& [a, b] : pairs_) {
+    rows[static_cast<std::size_t>(a)] += 1.0 / n;
+    columns[static_cast<std::size_t>(b)] += 1.0 / n;
+    seen += weight(a, b) / n;
+  }
+  double expected = 0.0;
+  for (int a = 0; a < 16; ++a) {
+    for (int b = 0; b < 16; ++b)
+      expected +=
+          weight(a, b) * rows[static_cast<std::size_t>(a)] * columns[static_cast<std::size_t>(b)];
+  }
+  return expected > 0.0 ? 1.0 - seen / expected : kNoRatio;
+}
+
+ergonomics::Asked empty_hands() {
+  ergonomics::Asked asked;
+  asked.load_kg = 0.0;
+  asked.coupling = ergonomics::Coupling::Good;
+  asked.wrist = ergonomics::Wrist::Straight;
+  asked.shock = asked.wrist_twisted = asked.arm_supported = false;
+  asked.held_over_minute = asked.repeated = asked.unstable = false;
+  return asked;
+}
+
+void compare_postures(const ScoredTake& take, const PostureOptions& options,
+                      PostureAgreement& sum) {
+  auto stance = take.stance;
+  if (!stance) {
+    if (const auto neutral = ergonomics::stance_in(take.found))
+      stance = std::pair{neutral->from, neutral->until};
+  }
+  const auto found = observed(take.found, options, stance);
+  const auto truth = observed(take.truth, options, stance);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const int exact = person_score(ergonomics::kReba, truth[i]);
+    if (exact == 0) continue;
+    sum.asked += 1.0;
+    const int score = person_score(ergonomics::kReba, found[i]);
+    if (score == 0) continue;
+    sum.scored += 1.0;
+    sum.of[0].add(score, exact);
+    const auto level = [](int s) { return static_cast<int>(level_of(ergonomics::kReba, s)); };
+    sum.of[1].add(level(score), level(exact));
+    add_codes(found[i], truth[i], sum);
+    const int owas = person_score(ergonomics::kOwas, found[i]);
+    const int owas_exact = person_score(ergonomics::kOwas, truth[i]);
+    if (owas > 0 && owas_exact > 0) sum.of[9].add(owas, owas_exact);
+    const int posture = person_score(ergonomics::kEaws, found[i]);
+    const int posture_exact = person_score(ergonomics::kEaws, truth[i]);
+    if (posture > 0 && posture_exact > 0) sum.of[10].add(posture, posture_exact);
+    add_doubt(found[i], exact, sum);
+  }
+  if (options.held && !take.found.empty()) add_zones(take, truth, options, stance, sum);
+}
+
+void report_agreement(Report& report, const std::string& name, const PostureAgreement& sum) {
+  for (std::size_t f = 0; f < kPostureFigures.size(); ++f) {
+    const std::string figure = kPostureFigures[f];
+    report.row(name, figure + "_kappa", sum.of[f].kappa(), "");
+    report.row(name, figure + "_weighted_kappa", sum.of[f].weighted_kappa(), "");
+  }
+  report.row(name, "scored_percent", 100.0 * sum.scored / std::max(1.0, sum.asked), "%");
+}
+
+void report_doubt(Report& report, const std::string& name, const PostureAgreement& sum) {
+  const double n = std::max(1.0, sum.scored);
+  report.row(name, "covered_percent", 100.0 * sum.covered / n, "%", "score +-1",
+             sum.covered / std::max(1.0, sum.within_one));
+  report.row(name, "set_width", sum.width / n, "scores", "score +-1", sum.width / n / 3.0);
+  report.row(name, "sure_percent", 100.0 * sum.sure / n, "%");
+  report.row(name, "sure_right_percent", 100.0 * sum.sure_right / std::max(1.0, sum.sure), "%");
+  if (sum.zones == 0.0) return;
+  report.row(name, "zones_held_percent", 100.0 * sum.zones_held / sum.zones, "%");
+  report.row(name, "zone_width_points", 100.0 * sum.zone_width / sum.zones, "points");
+}
+
+}  // namespace chorus::bench
