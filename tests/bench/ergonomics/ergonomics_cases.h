@@ -1,6 +1,9 @@
 // The cases of chorus-bench ergonomics.
 #pragma once
 
+#include <random>
+
+#include "common/body/skeleton.h"
 #include "tests/bench/report/report.h"
 
 namespace chorus::bench {
@@ -17,5 +20,8 @@ namespace chorus::bench {
 [[nodiscard]] Result<void> posture_simulated(Report& report);
 /// Six people, four methods, with doubt.
 [[nodiscard]] Result<void> posture_cost(Report& report);
+
+/// A person in the middle whose joints were moved at random, the limbs far.
+[[nodiscard]] Skeleton<WorldSpace> drawn_body(std::mt19937_64& random);
 
 }  // namespace chorus::bench

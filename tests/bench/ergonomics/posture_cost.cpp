@@ -1,6 +1,7 @@
 // What scoring costs: six people, four methods, with doubt.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <random>
 
 #include "common/ergonomics/all_methods.h"
@@ -8,23 +9,23 @@
 #include "tests/bench/ergonomics/ergonomics_cases.h"
 #include "tests/bench/ergonomics/posture_agreement.h"
 #include "tests/judge/statistics.h"
-#include "tests/support/builders.h"
 
 namespace chorus::bench {
 namespace {
 
 constexpr std::size_t kPeople = 6;
 constexpr double kFramesHz = 30.0;
+constexpr Timestamp kBegin{};
 
 ergonomics::BodyAt moving_body(std::size_t person, std::size_t frame) {
   const double t = static_cast<double>(frame) / kFramesHz;
-  auto body =
-      testing::standing_person({static_cast<double>(person), 0.0, 0.3 * std::sin(t)}, 0.2 * t);
+  std::mt19937_64 random(person);
+  auto body = drawn_body(random);
   for (Joint& joint : body.joints) {
     joint.position += 0.02 * Eigen::Vector3d(std::sin(3 * t), std::cos(2 * t), std::sin(5 * t));
     joint.covariance = Covariance(Eigen::Matrix3d::Identity() * 4e-4);
   }
-  return {testing::kStart + Duration(std::llround(1e9 * t)), body};
+  return {kBegin + Duration(std::llround(1e9 * t)), body};
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ Result<void> posture_cost(Report& report) {
   ergonomics::Task task;
   task.asked = empty_hands();
   const auto begin = std::chrono::steady_clock::now();
-  const auto person = score_person({bodies, methods, task, testing::kStart, {}});
+  const auto person = score_person({bodies, methods, task, kBegin, {}});
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() * 18'000.0 /
       static_cast<double>(ten_minutes);

@@ -96,47 +96,6 @@ std::pair<int, int> look_ups() {
   return right_of;
 }
 
-/// A person whose joints were moved at random.
-Skeleton<WorldSpace> drawn_body(std::mt19937_64& random) {
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(random() >> 11U) / 9007199254740992.0);
-  };
-  const auto direction = [&](const Eigen::Vector3d& mean, double spread) {
-    return Eigen::Vector3d(
-        (mean + spread * Eigen::Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)))
-            .normalized());
-  };
-  using enum JointId;
-  Skeleton<WorldSpace> body;
-  const auto put = [&](JointId id, const Eigen::Vector3d& at) {
-    body[id].position = at;
-    body[id].state = JointState::Tracked;
-  };
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitY();
-  const Eigen::Vector3d hips(0, 0.95, 0);
-  const Eigen::Vector3d left = direction(Eigen::Vector3d::UnitX(), 0.2);
-  const Eigen::Vector3d trunk = direction(up, 0.9);
-  const Eigen::Vector3d chest = direction(left, 0.5);
-  put(SpineBase, hips);
-  put(SpineShoulder, hips + 0.5 * trunk);
-  put(Head, hips + 0.5 * trunk + 0.25 * direction(trunk, 0.7));
-  for (const Side side : posture::kSides) {
-    const bool is_left = side == Side::Left;
-    const double sign = is_left ? 1.0 : -1.0;
-    put(is_left ? HipLeft : HipRight, hips + sign * 0.1 * left);
-    put(is_left ? ShoulderLeft : ShoulderRight, hips + 0.5 * trunk + sign * 0.18 * chest);
-    const Eigen::Vector3d shoulder = body[is_left ? ShoulderLeft : ShoulderRight].position;
-    put(is_left ? ElbowLeft : ElbowRight, shoulder + 0.3 * direction(-up, 1.5));
-    put(is_left ? WristLeft : WristRight,
-        body[is_left ? ElbowLeft : ElbowRight].position + 0.25 * direction(-up, 1.5));
-    put(is_left ? KneeLeft : KneeRight,
-        body[is_left ? HipLeft : HipRight].position + 0.42 * direction(-up, 0.7));
-    put(is_left ? AnkleLeft : AnkleRight,
-        body[is_left ? KneeLeft : KneeRight].position + 0.42 * direction(-up, 0.7));
-  }
-  return body;
-}
-
 Skeleton<WorldSpace> mirrored_body(const Skeleton<WorldSpace>& body) {
   Skeleton<WorldSpace> out = body;
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -214,6 +173,46 @@ int wrong_limits() {
 }
 
 }  // namespace
+
+Skeleton<WorldSpace> drawn_body(std::mt19937_64& random) {
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random() >> 11U) / 9007199254740992.0);
+  };
+  const auto direction = [&](const Eigen::Vector3d& mean, double spread) {
+    return Eigen::Vector3d(
+        (mean + spread * Eigen::Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)))
+            .normalized());
+  };
+  using enum JointId;
+  Skeleton<WorldSpace> body;
+  const auto put = [&](JointId id, const Eigen::Vector3d& at) {
+    body[id].position = at;
+    body[id].state = JointState::Tracked;
+  };
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d hips(0, 0.95, 0);
+  const Eigen::Vector3d left = direction(Eigen::Vector3d::UnitX(), 0.2);
+  const Eigen::Vector3d trunk = direction(up, 0.9);
+  const Eigen::Vector3d chest = direction(left, 0.5);
+  put(SpineBase, hips);
+  put(SpineShoulder, hips + 0.5 * trunk);
+  put(Head, hips + 0.5 * trunk + 0.25 * direction(trunk, 0.7));
+  for (const Side side : posture::kSides) {
+    const bool is_left = side == Side::Left;
+    const double sign = is_left ? 1.0 : -1.0;
+    put(is_left ? HipLeft : HipRight, hips + sign * 0.1 * left);
+    put(is_left ? ShoulderLeft : ShoulderRight, hips + 0.5 * trunk + sign * 0.18 * chest);
+    const Eigen::Vector3d shoulder = body[is_left ? ShoulderLeft : ShoulderRight].position;
+    put(is_left ? ElbowLeft : ElbowRight, shoulder + 0.3 * direction(-up, 1.5));
+    put(is_left ? WristLeft : WristRight,
+        body[is_left ? ElbowLeft : ElbowRight].position + 0.25 * direction(-up, 1.5));
+    put(is_left ? KneeLeft : KneeRight,
+        body[is_left ? HipLeft : HipRight].position + 0.42 * direction(-up, 0.7));
+    put(is_left ? AnkleLeft : AnkleRight,
+        body[is_left ? KneeLeft : KneeRight].position + 0.42 * direction(-up, 0.7));
+  }
+  return body;
+}
 
 Result<void> posture_tables(Report& report) {
   const Cells golden = golden_cells();
