@@ -12,7 +12,9 @@
 #                                   whose runner finds the person in its pictures, and the fusion server makes
 #                                   bodies of their rays, with the published extrinsics
 #   --register                      with --recording: finds the extrinsics from the person alone
-#   --port N                        the fusion server's port (8080); the sensors use the ports after it
+#   --port N                        the fusion server's port (8080); the sensors use the ports after it, live posture scores
+#                                   the port 20 after it
+#   --sheet FILE                    with --seconds: writes filled assessment sheets of the last half of the run
 #   --set PATH=VALUE                is passed to chorus-fusion; may be repeated
 #   --bin DIR                       uses the programs in DIR; installs and builds nothing
 #
@@ -31,7 +33,7 @@ usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 step() { printf '\n== %s\n' "$*"; }
 fail() { printf '\ndemo: %s\n' "$*" >&2; exit 1; }
 
-seconds='' recording='' cameras='' register='' port=8080 overrides=() bin=build/release/bin build=yes
+sheet='' seconds='' recording='' cameras='' register='' port=8080 overrides=() bin=build/release/bin build=yes
 read_arguments() {
   while (( $# > 0 )); do
     case $1 in
@@ -40,6 +42,7 @@ read_arguments() {
         recording=$bundled_recording
         if [[ -n "${2:-}" && "${2:0:2}" != -- ]]; then recording=$2; shift; fi ;;
       --cameras) cameras=yes ;;
+      --sheet) sheet=${2:?--sheet needs a file}; shift ;;
       --register) register=yes ;;
       --port) port=${2:?--port needs a number}; shift ;;
       --set) overrides+=(--set "${2:?--set needs PATH=VALUE}"); shift ;;
@@ -57,11 +60,13 @@ read_arguments() {
   [[ -z "$recording" || -d "$recording" ]] || fail "there is no folder '$recording'"
   [[ -z "$recording" || -z "$cameras" ]] || fail "--cameras and --recording are two demos: choose one"
   [[ -n "$recording" || -z "$register" ]] || fail "--register goes with --recording"
+  [[ -z "$sheet" || -n "$seconds" ]] || fail "--sheet goes with --seconds"
+  [[ -z "$sheet" || "$sheet" = /* ]] || sheet=$called_from/$sheet
 }
 
 # --- what we started, and stopping it -------------------------------------------------------------
 
-children=() sensor_processes=0
+children=() sensor_processes=0 scores_pid='' sheet_pid=''
 # start NAME COMMAND...: runs it in the background, with its log in NAME.log. The process ends with this script.
 start() {
   local name=$1; shift
@@ -73,6 +78,8 @@ start() {
 stop_all() {
   trap - EXIT
   trap '' INT TERM
+  local extra
+  for extra in $scores_pid $sheet_pid; do kill -TERM "$extra" 2>/dev/null || true; done
   (( ${#children[@]} > 0 )) || return 0
   local i
   # The fusion server was started last and stops first, so that it need not see its sensors vanish.
@@ -118,7 +125,7 @@ build() {
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake --preset release "${launcher[@]}" --log-level=WARNING > "$logs/configure.out"
-  cmake --build build/release -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-fusion chorus
+  cmake --build build/release -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-fusion chorus chorus-ergonomics
 }
 
 # install_modules FOLDER: installs what its package-lock.json names, unless that is already there.
@@ -210,6 +217,28 @@ start_fusion() {
   start fusion "$bin/chorus-fusion" --config "$config" "${options[@]}" "${overrides[@]}"
 }
 
+# Live posture scores, and the sheet.  The tracker does without them, so nobody waits for them.
+start_scores() {
+  local p=$(( port + 20 ))
+  if [[ -x $bin/chorus-ergonomics ]] && ! (exec 3<> "/dev/tcp/127.0.0.1/$p") 2>/dev/null; then
+    setpriv --pdeathsig TERM "$bin/chorus-ergonomics" --tracker "$base/" --set "http.port=$p" > "$logs/ergonomics.out" 2> "$logs/ergonomics.log" &
+    scores_pid=$!
+  fi
+  [[ -n "$sheet" ]] || return 0
+  (sleep $(( seconds / 2 )); exec "$bin/chorus" score "$base/" --seconds $(( seconds / 2 > 3 ? seconds / 2 - 2 : 1 )) --sheet "$sheet" --out "$logs/scores.json") \
+    > "$logs/score.out" 2> "$logs/score.log" &
+  sheet_pid=$!
+}
+
+# Ends what start_scores began; the sheet first.
+finish_scores() {
+  if [[ -n "$sheet_pid" ]]; then
+    if wait "$sheet_pid"; then echo "posture sheets: $sheet"; else echo "no posture sheets: $(tail -n 1 "$logs/score.log")"; fi
+    sheet_pid=''
+  fi
+  [[ -z "$scores_pid" ]] || kill -TERM "$scores_pid" 2>/dev/null || true
+}
+
 # --- main -----------------------------------------------------------------------------------------
 
 read_arguments "$@"
@@ -243,8 +272,10 @@ ${#sensors[@]} sensors at $(( port + 1 ))..$(( port + ${#sensors[@]} )), fusion 
   try:     curl -s $base/frame
            curl -s -H 'Accept: application/json' $base/frame
            curl -s -H 'Accept: application/json' $base/registration
+  scores:  curl -s -H 'Accept: application/json' http://127.0.0.1:$(( port + 20 ))/ergonomics/
 
 TEXT
+start_scores
 [[ -n "$seconds" ]] || echo "Ctrl-C stops everything."
 
 watcher=(python3 -B deploy/watch_tracker.py --base "$base")
@@ -266,7 +297,7 @@ while true; do
   children=("${alive[@]}")
   verdict=0 ended=''
   wait -n -p ended "${children[@]}" || verdict=$?
-  if [[ "$ended" == "$watch_pid" ]]; then exit "$verdict"; fi
+  if [[ "$ended" == "$watch_pid" ]]; then finish_scores; exit "$verdict"; fi
   if ! kill -0 "$fusion_pid" 2>/dev/null; then
     show_logs
     fail "the fusion server ended by itself with code $verdict; logs in $logs/"

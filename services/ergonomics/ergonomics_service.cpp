@@ -1,0 +1,161 @@
+#include <nlohmann/json.hpp>
+
+#include "common/base/json.h"
+#include "common/base/parse.h"
+#include "common/time/timestamp.h"
+#include "services/ergonomics/ergonomics_host.h"
+#include "services/ergonomics/score_nodes.h"
+
+namespace chorus::ergonomics_service {
+
+using http::PathParams;
+using http::Request;
+
+namespace {
+
+Result<std::uint64_t> person_of(const PathParams& params) {
+  const std::string& text = params.at("person");
+  const auto id = parse_name_number(text);
+  if (!id) return fail(ErrorCode::NotFound, text, "is nobody; a person's name is a number");
+  return *id;
+}
+
+Result<const PersonScores*> person_in(const ScoreFrame& frame, std::uint64_t id) {
+  for (const PersonScores& each : frame.persons) {
+    if (each.person == id) return &each;
+  }
+  return fail(ErrorCode::NotFound, "person " + std::to_string(id), "is not in the frame");
+}
+
+}  // namespace
+
+ErgonomicsService::ErgonomicsService(Scoring scoring, service::Serving serving)
+    : scoring_(std::move(scoring)), methods_(scoring_.methods()), serving_(std::move(serving)) {}
+
+void ErgonomicsService::take(const resource::FrameResource& frame) {
+  std::shared_ptr<const ScoreFrame> scores;
+  {
+    const std::lock_guard lock(mutex_);
+    const std::uint64_t before = scoring_.latest().sequence;
+    const ScoreFrame& latest = scoring_.take(frame);
+    if (latest.sequence == before) return;
+    scores = std::make_shared<const ScoreFrame>(latest);
+  }
+  live_->publish_lazily([scores, this] {
+    http::DocumentOptions options;
+    options.version = serving_.run + "-" + std::to_string(scores->sequence);
+    options.captured = scores->captured;
+    return resource::document_of(scores_node(*scores, methods_), std::move(options),
+                                 serving_.place("ergonomics/"));
+  });
+}
+
+bool ErgonomicsService::scored_any() const {
+  const std::lock_guard lock(mutex_);
+  return scoring_.latest().sequence != 0;
+}
+
+ErgonomicsService::Answer ErgonomicsService::person(const Request& request,
+                                                    const PathParams& params) const {
+  const auto id = person_of(params);
+  if (!id) return pass(id);
+  const std::lock_guard lock(mutex_);
+  const ScoreFrame* frame = &scoring_.latest();
+  if (const auto at = request.query.find("at"); at != request.query.end()) {
+    const auto instant = parse_iso8601(at->second);
+    if (!instant) return fail(ErrorCode::InvalidArgument, "at", instant.error().message);
+    frame = scoring_.at(*instant);
+    if (frame == nullptr)
+      return fail(ErrorCode::NotFound, at->second, "is not among the scores of the last 30 s");
+  }
+  const auto scores = person_in(*frame, *id);
+  if (!scores) return pass(scores);
+  http::DocumentOptions options;
+  options.version = serving_.run + "-" + std::to_string(frame->sequence);
+  options.captured = frame->captured;
+  return resource::document_of(person_node(**scores, methods_, ""), std::move(options),
+                               serving_.place("ergonomics/" + std::to_string(*id)));
+}
+
+Result<http::ActionResult> ErgonomicsService::stance(const PathParams& params) {
+  const auto id = person_of(params);
+  if (!id) return pass(id);
+  const std::lock_guard lock(mutex_);
+  if (auto ok = scoring_.ask_stance(*id); !ok) return pass(ok);
+  return http::ActionResult{202, nullptr, ""};
+}
+
+http::DocumentPtr ErgonomicsService::asked_document() const {
+  const ergonomics::Asked& asked = scoring_.asked();
+  resource::Node node{"", {"PostureAnswers"}, {}};
+  if (asked.load_kg) node.properties.emplace_back("loadKg", resource::Decimal{*asked.load_kg, 2});
+  const auto flag = [&](const char* key, const std::optional<bool>& answer) {
+    if (answer) node.properties.emplace_back(key, *answer);
+  };
+  flag("shock", asked.shock);
+  flag("wristTwisted", asked.wrist_twisted);
+  flag("armSupported", asked.arm_supported);
+  flag("heldOverMinute", asked.held_over_minute);
+  flag("repeated", asked.repeated);
+  flag("unstable", asked.unstable);
+  http::DocumentOptions options;
+  options.version = serving_.run + "-asked-" + std::to_string(asked_version_);
+  return resource::document_of(std::move(node), std::move(options), serving_.place("asked"));
+}
+
+Result<http::ActionResult> ErgonomicsService::ask(const Request& request) {
+  const auto fields = parse_json(request.body);
+  if (!fields) return pass(fields);
+  if (!fields->is_object()) return fail(ErrorCode::Malformed, "body", "must be a JSON object");
+  for (const auto& [key, value] : fields->items()) {
+    if (!ergonomics::is_asked_field(key))
+      return fail(ErrorCode::InvalidArgument, key, "is nothing that is asked");
+  }
+  auto asked = ergonomics::read_asked(*fields, "body");
+  if (!asked) return pass(asked);
+  const std::lock_guard lock(mutex_);
+  scoring_.ask(std::move(*asked));
+  ++asked_version_;
+  return http::ActionResult{200, asked_document(), ""};
+}
+
+service::Self ErgonomicsService::description() const {
+  service::Self self;
+  self.title = "Chorus ergonomics";
+  self.description = "Posture scores of the people of a tracker, with their doubt; a screening.";
+  self.type = "PostureService";
+  self.resources = {{"ergonomics/", "postureScores", "everybody's scores, live"},
+                    {"methods/", "postureMethods", "the methods, their inputs and levels"},
+                    {"asked", "", "what no tracker sees: the load, the grip, ...; PUT changes it"}};
+  return self;
+}
+
+void ErgonomicsService::add_methods(http::Router& router) {
+  http::DocumentOptions options;
+  options.version = serving_.run + "-methods";
+  const auto document =
+      resource::document_of(methods_node(methods_), std::move(options), serving_.place("methods/"));
+  router.get("/methods/",
+             [document](const Request&, const PathParams&) -> Answer { return document; });
+}
+
+void ErgonomicsService::add_routes(http::Router& router) {
+  router.get("/", [this](const Request&, const PathParams&) -> Answer {
+    return service::self_document(description(), serving_, "plain");
+  });
+  router.live("/ergonomics/", live_);
+  router.get("/ergonomics/{person}", [this](const Request& request, const PathParams& params) {
+    return person(request, params);
+  });
+  router.action(http::Method::Post, "/ergonomics/{person}/stance",
+                [this](const Request&, const PathParams& params) { return stance(params); });
+  router.get("/asked", [this](const Request&, const PathParams&) -> Answer {
+    const std::lock_guard lock(mutex_);
+    return asked_document();
+  });
+  router.action(http::Method::Put, "/asked",
+                [this](const Request& request, const PathParams&) { return ask(request); });
+  add_methods(router);
+}
+
+}  // namespace chorus::ergonomics_service
