@@ -100,7 +100,7 @@ void add_zones(const ScoredTake& take, const std::vector<Observation>& truth,
   std::optional<posture::Neutral> neutral;
   if (options.stance && stance) neutral = stance_over(take.found, *stance);
   const ergonomics::ScoringInput input{take.found, methods, task, take.found.front().at, neutral};
-  const auto person = score_person(input);
+  const auto person = ergonomics::score_person(input);
   for (std::size_t first = 0; first < take.found.size();) {
     std::size_t last = first;
     while (last < take.found.size() && take.found[last].at - take.found[first].at < kWindow) ++last;

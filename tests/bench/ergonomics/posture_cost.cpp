@@ -62,7 +62,7 @@ Result<void> posture_cost(Report& report) {
   ergonomics::Task task;
   task.asked = empty_hands();
   const auto begin = std::chrono::steady_clock::now();
-  const auto person = score_person({bodies, methods, task, kBegin, {}});
+  const auto person = ergonomics::score_person({bodies, methods, task, kBegin, {}});
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() * 18'000.0 /
       static_cast<double>(ten_minutes);

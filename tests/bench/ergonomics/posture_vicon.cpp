@@ -14,7 +14,6 @@
 namespace chorus::bench {
 namespace {
 
-using fusion::Method;
 using importers::ImportedSet;
 
 constexpr double kViewsHz = 30.0;  // [Hz]
@@ -53,7 +52,7 @@ struct Cameras {
   std::size_t count = 0;
 };
 
-Result<ScoredTake> fused_take(const ImportedSet& set, Method method, Cameras cameras) {
+Result<ScoredTake> fused_take(const ImportedSet& set, fusion::Method method, Cameras cameras) {
   pipeline::OfflineConfig config;
   config.rate_hz = kViewsHz;
   config.pipeline.fusion.method = method;
@@ -98,8 +97,8 @@ struct ViewSet {
 };
 
 /// All takes, fused in one way and compared.
-Result<PostureAgreement> compared(const std::vector<ViewSet>& sets, bool rays, Method method,
-                                  const PostureOptions& options) {
+Result<PostureAgreement> compared(const std::vector<ViewSet>& sets, bool rays,
+                                  fusion::Method method, const PostureOptions& options) {
   PostureAgreement sum;
   for (const ViewSet& set : sets) {
     const ImportedSet& used = rays ? set.rays : set.points;
@@ -116,7 +115,7 @@ Result<PostureAgreement> best_camera(const std::vector<ViewSet>& sets) {
   for (std::size_t camera = 0; camera < sets.front().points.recordings.size(); ++camera) {
     PostureAgreement sum;
     for (const ViewSet& set : sets) {
-      const auto take = fused_take(set.points, Method::BodyFilter, {camera, 1});
+      const auto take = fused_take(set.points, fusion::Method::BodyFilter, {camera, 1});
       if (!take) return pass(take);
       compare_postures(*take, {}, sum);
     }
@@ -168,14 +167,15 @@ Result<void> posture_real_vicon(Report& report) {
   struct Way {
     const char* name;
     bool rays;
-    Method method;
+    fusion::Method method;
     PostureOptions options;
   };
-  const std::array ways{Way{"real-vicon", true, Method::BodyFilter, {}},
-                        Way{"real-vicon-instant", true, Method::BodyFilter, {.held = false}},
-                        Way{"real-vicon-no-stance", true, Method::BodyFilter, {.stance = false}},
-                        Way{"real-vicon-mean", false, Method::Mean, {}},
-                        Way{"real-vicon-best-view", false, Method::BestView, {}}};
+  const std::array ways{
+      Way{"real-vicon", true, fusion::Method::BodyFilter, {}},
+      Way{"real-vicon-instant", true, fusion::Method::BodyFilter, {.held = false}},
+      Way{"real-vicon-no-stance", true, fusion::Method::BodyFilter, {.stance = false}},
+      Way{"real-vicon-mean", false, fusion::Method::Mean, {}},
+      Way{"real-vicon-best-view", false, fusion::Method::BestView, {}}};
   for (const Way& way : ways) {
     const auto sum = compared(sets, way.rays, way.method, way.options);
     if (!sum) return pass(sum);
