@@ -14,7 +14,7 @@ ROWS = [
     ["common/body", "common/inertial"],
     ["common/sensor", "common/layout", "common/posture"],
     ["common/motion", "common/resource", "common/ergonomics"],
-    ["common/record", "common/client"],
+    ["common/record", "common/client", "common/evaluation"],
     ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration", "common/hand",
      "common/characteristics", "common/assessment", "common/quality"],
     ["fusion-server/flow"],
@@ -43,7 +43,7 @@ NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "nat
 
 # Each entry: the rooms, what they must not include, and why.
 FORBIDDEN_ROOMS = [
-    (FUSION_SERVER, {"common/synthetic"}, "what judges an algorithm must not feed it"),
+    (FUSION_SERVER | {"common/inertial", "common/evaluation"}, {"common/synthetic"}, "what judges an algorithm must not feed it"),
     (STAGES, {"common/net", "common/http", "common/resource", "common/record", "common/service", "common/rdf"},
      "stages know values, not their wire forms"),
     (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow only"),

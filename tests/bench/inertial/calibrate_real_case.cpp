@@ -1,0 +1,245 @@
+// Calibration from a short window of a real take, judged on the rest of it: ours, the paper's, and
+// OpenCV's.  And the time shift between sensors and cameras, injected and found.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <opencv2/calib3d.hpp>
+
+#include "common/base/units.h"
+#include "common/evaluation/calibrate.h"
+#include "common/evaluation/park.h"
+#include "common/geometry/rotation.h"
+#include "tests/bench/inertial/inertial_cases.h"
+#include "tests/bench/inertial/real_takes.h"
+#include "tests/judge/statistics.h"
+
+namespace chorus::bench {
+namespace {
+
+using evaluation::OrientationPair;
+using evaluation::OrientationPairs;
+using evaluation::ParkCalibration;
+
+constexpr double kWindows[] = {2.0, 5.0, 10.0};  // [s]
+constexpr double kStride = 1.0;                  // between windows [s]
+constexpr double kChi95 = 1.614;  // 95 % of a three-dimensional normal, in its root mean square
+
+/// Median angle between what a calibration predicts and the truth, over `rest`; with the share of
+/// instants below `bound`.
+struct Judged {
+  double median_deg = 0.0;
+  double within = 0.0;
+};
+
+template <class Predict>
+Judged judge(const OrientationPairs& rest, double bound, const Predict& predict) {
+  std::vector<double> off;
+  double within = 0.0;
+  for (const OrientationPair& pair : rest) {
+    off.push_back(to_deg(angular_distance(pair.tracked.world_from_limb, predict(pair))));
+    within += off.back() <= to_deg(bound) ? 1.0 : 0.0;
+  }
+  const double share = within / static_cast<double>(std::max<std::size_t>(1, rest.size()));
+  return {percentile(std::move(off), 0.5), share};
+}
+
+auto predicted_by(const ParkCalibration& found) {
+  return [found](const OrientationPair& pair) {
+    return found.world_from_inertial * pair.inertial_from_sensor *
+           found.limb_from_sensor.conjugate();
+  };
+}
+
+cv::Mat matrix_of(const Eigen::Quaterniond& q) {
+  const Eigen::Matrix3d r = q.toRotationMatrix();
+  cv::Mat out(3, 3, CV_64F);
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) out.at<double>(i, k) = r(i, k);
+  return out;
+}
+
+/// OpenCV's calibrateHandEye (Park): gripper = limb in the world, target = the inertial world seen
+/// from the sensor; it returns limb_from_sensor.  It takes every pair of poses, so at most 60.
+std::optional<ParkCalibration> by_opencv(const OrientationPairs& pairs) {
+  constexpr std::size_t kMostPoses = 60;
+  const std::size_t step = std::max<std::size_t>(1, pairs.size() / kMostPoses);
+  std::vector<cv::Mat> world_from_limb, sensor_from_inertial, zeros;
+  for (std::size_t i = 0; i < pairs.size(); i += step) {
+    world_from_limb.push_back(matrix_of(pairs[i].tracked.world_from_limb));
+    sensor_from_inertial.push_back(matrix_of(pairs[i].inertial_from_sensor.conjugate()));
+    zeros.push_back(cv::Mat::zeros(3, 1, CV_64F));
+  }
+  cv::Mat rotation, translation;
+  try {
+    cv::calibrateHandEye(world_from_limb, zeros, sensor_from_inertial, zeros, rotation, translation,
+                         cv::CALIB_HAND_EYE_PARK);
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+  Eigen::Matrix3d r;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) r(i, k) = rotation.at<double>(i, k);
+  if (!r.allFinite()) return std::nullopt;
+  ParkCalibration out;
+  out.limb_from_sensor = normalised_or_identity(Eigen::Quaterniond(r));
+  // q^G as the mean over the window of q^T q^L conj(q^I).
+  std::vector<Eigen::Quaterniond> each;
+  for (const auto& pair : pairs)
+    each.push_back(pair.tracked.world_from_limb * out.limb_from_sensor *
+                   pair.inertial_from_sensor.conjugate());
+  out.world_from_inertial = weighted_lerp(each, std::vector<double>(each.size(), 1.0));
+  return out;
+}
+
+struct Columns {
+  std::vector<double> ours, park, opencv, answered;
+  double within = 0.0, judged = 0.0, windows = 0.0, refused = 0.0, bad = 0.0;
+};
+
+void judge_window(const OrientationPairs& window, const OrientationPairs& rest, Columns& out) {
+  out.windows += 1.0;
+  const auto nothing = std::nan("");
+  const auto park = evaluation::park_calibration(window);
+  out.park.push_back(park ? judge(rest, 0, predicted_by(*park)).median_deg : nothing);
+  const auto opencv = by_opencv(window);
+  out.opencv.push_back(opencv ? judge(rest, 0, predicted_by(*opencv)).median_deg : nothing);
+  const auto fit = evaluation::fit_calibration(window);
+  if (!fit) return out.ours.push_back(nothing);
+  const auto& found = fit->calibration;
+  const double bound = kChi95 * std::hypot(found.prediction_sigma, fit->sigma * std::sqrt(3.0));
+  const Judged ours = judge(rest, bound, [&](const OrientationPair& pair) {
+    return inertial::predicted_limb(found, pair.inertial_from_sensor);
+  });
+  out.ours.push_back(ours.median_deg);
+  if (!evaluation::calibrate_sensor(window, "sensor", inertial::Limb::Pelvis)) {
+    out.refused += 1.0;
+    return;
+  }
+  out.answered.push_back(ours.median_deg);
+  out.bad += ours.median_deg > 15.0 ? 1.0 : 0.0;
+  out.within += ours.within;
+  out.judged += 1.0;
+}
+
+Columns judge_take(const RealTake& take, double length) {
+  Columns out;
+  for (const RealSensor& sensor : take.sensors) {
+    const OrientationPairs all = pairs_of(sensor);
+    if (all.empty()) continue;
+    for (double begin = all.front().time; begin + length < all.back().time; begin += kStride) {
+      OrientationPairs window, rest;
+      for (const OrientationPair& pair : all) {
+        const bool in = pair.time >= begin && pair.time < begin + length;
+        (in ? window : rest).push_back(pair);
+      }
+      judge_window(window, rest, out);
+    }
+  }
+  return out;
+}
+
+void report_columns(Report& report, const std::string& name, const Columns& found) {
+  const double ours = percentile(found.ours, 0.9);
+  report.row(name, "p90_deg", ours, "deg", "park", ours / percentile(found.park, 0.9));
+  report.row(name, "p90_deg_park", percentile(found.park, 0.9), "deg");
+  report.row(name, "p90_deg_opencv", percentile(found.opencv, 0.9), "deg");
+  report.row(name, "median_deg", percentile(found.ours, 0.5), "deg");
+  report.row(name, "accepted_p90_deg", percentile(found.answered, 0.9), "deg");
+  report.row(name, "refused_percent", 100.0 * found.refused / found.windows, "%");
+  report.row(name, "accepted_over_15_deg", found.bad, "");
+  report.row(name, "coverage_percent", 100.0 * found.within / std::max(1.0, found.judged), "%");
+}
+
+constexpr double kHalfWindow = 0.03;  // of the angular rate [s]
+
+struct Shifts {
+  std::vector<double> rate, acceleration;  ///< |found - injected| of each sensor [ms]
+  std::vector<double> joint, joint_over_sigma;
+};
+
+Result<evaluation::TimeShift> shifted(const std::vector<evaluation::SignalPair>& pairs, double by) {
+  std::vector<evaluation::SignalPair> moved = pairs;
+  for (auto& pair : moved)
+    for (auto& each : pair.inertial) each.time -= by;
+  return evaluation::find_time_shift(moved);
+}
+
+double ms_off(const Result<evaluation::TimeShift>& found, double injected) {
+  return found ? 1e3 * std::abs(found->shift - injected) : std::nan("");
+}
+
+}  // namespace
+
+Result<void> run_calibrate_real(Report& report) {
+  const auto takes = real_takes();
+  if (!takes) return pass(takes);
+  for (const RealTake& take : *takes) {
+    for (const double length : kWindows) {
+      const Columns found = judge_take(take, length);
+      if (found.windows > 0)
+        report_columns(
+            report, "calibrate-real-" + take.name + "-" + std::to_string(int(length)) + "s", found);
+    }
+  }
+  report.note(
+      "calibrate-real: each limb and window (every second) is one value, the median angle on the "
+      "rest of the take; p90 over them, refused ones included. Coverage: instants of the rest "
+      "within the stated 95 %, of accepted windows.");
+  return {};
+}
+
+Result<void> run_time_real(Report& report) {
+  const auto takes = real_takes();
+  if (!takes) return pass(takes);
+  for (const RealTake& take : *takes) {
+    std::vector<evaluation::SignalPair> rates, forces;
+    for (const RealSensor& sensor : take.sensors) {
+      rates.push_back({evaluation::angular_rates(sensor.optical, kHalfWindow),
+                       evaluation::angular_rates(sensor.inertial, kHalfWindow)});
+      forces.push_back(
+          {evaluation::accelerations(sensor.places, kHalfWindow), sensor.acceleration});
+    }
+    // What the set itself is off by, for each sensor and jointly: the reference of injected shifts.
+    const auto own = evaluation::find_time_shift(rates);
+    if (!own) return pass(own);
+    report.row("time-real-" + take.name, "own_shift_ms", 1e3 * own->shift, "ms");
+    report.row("time-real-" + take.name, "own_sigma_ms", 1e3 * own->sigma, "ms");
+    Shifts found;
+    std::vector<double> each_own, each_own_force;
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const auto one = evaluation::find_time_shift({rates[i]});
+      each_own.push_back(one ? one->shift : std::nan(""));
+      const auto force = evaluation::find_time_shift({forces[i]}, {2.0, 0.005, 0.0});
+      each_own_force.push_back(force ? force->shift : std::nan(""));
+    }
+    report.row("time-real-" + take.name, "sensor_own_low_ms", 1e3 * percentile(each_own, 0.0),
+               "ms");
+    report.row("time-real-" + take.name, "sensor_own_high_ms", 1e3 * percentile(each_own, 1.0),
+               "ms");
+    for (const double by : {-0.5, -0.217, -0.063, 0.031, 0.148, 0.5}) {
+      const auto joint = shifted(rates, by);
+      found.joint.push_back(ms_off(joint, by + own->shift));
+      for (std::size_t i = 0; i < rates.size(); ++i)
+        found.rate.push_back(ms_off(shifted({rates[i]}, by), by + each_own[i]));
+    }
+    report.row("time-real-" + take.name, "time_ms", percentile(found.joint, 1.0), "ms");
+    report.row("time-real-" + take.name, "sensor_time_ms", percentile(found.rate, 1.0), "ms");
+    double spread = 0.0, spread_force = 0.0;
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      if (!std::isnan(each_own[i]))
+        spread = std::max(spread, 1e3 * std::abs(each_own[i] - own->shift));
+      if (!std::isnan(each_own_force[i]))
+        spread_force = std::max(spread_force, 1e3 * std::abs(each_own_force[i] - own->shift));
+    }
+    report.row("time-real-" + take.name, "sensor_from_joint_ms", spread, "ms", "acceleration",
+               spread / spread_force);
+    report.row("time-real-" + take.name, "sensor_from_joint_ms_acceleration", spread_force, "ms");
+  }
+  report.note(
+      "time-real: worst of six injected shifts to 500 ms against what the set is off by itself "
+      "(own_shift); sensor_from_joint: how far one sensor alone lies from all jointly.");
+  return {};
+}
+
+}  // namespace chorus::bench

@@ -1,0 +1,32 @@
+// The cases of `chorus-bench inertial`, one function each.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "tests/bench/report/report.h"
+
+namespace chorus::bench {
+
+struct InertialCase {
+  std::string_view name;
+  Result<void> (*run)(Report&);
+};
+
+/// Orientation filters on BROAD: $CHORUS_BROAD, or the two trials of ../shared/data.
+[[nodiscard]] Result<void> run_filter(Report& report);
+
+/// Calibration from windows of real takes, judged on their rest.
+[[nodiscard]] Result<void> run_calibrate_real(Report& report);
+
+/// Shifts between sensors and cameras of real takes.
+[[nodiscard]] Result<void> run_time_real(Report& report);
+
+/// Errors injected into real takes, and found.
+[[nodiscard]] Result<void> run_detect_real(Report& report);
+
+/// The folder of recordings from outside the project: $CHORUS_SHARED/data or ../shared/data.
+[[nodiscard]] std::filesystem::path shared_recordings();
+
+}  // namespace chorus::bench
