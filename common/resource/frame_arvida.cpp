@@ -4,11 +4,9 @@
 // translation is the joint's position in the source.  No document specifies this direction; we
 // follow a published client.
 #include <algorithm>
-#include <array>
 
 #include "common/body/bones.h"
-#include "common/resource/frame_parts.h"
-#include "common/resource/pen.h"
+#include "common/resource/frame_pen.h"
 
 namespace chorus::resource {
 namespace {
@@ -29,9 +27,7 @@ constexpr std::size_t kJointText = 2048;  // Bytes of the longest joint, without
 class ArvidaFrame {
  public:
   ArvidaFrame(const FrameResource& frame, const Place& place)
-      : frame_(frame),
-        names_(place.up() + place.names),
-        pen_(2048 + frame.bodies.size() * 32 * 1024) {}
+      : frame_(frame), names_(place.up() + place.names), pen_(frame, 2 * frame.bodies.size()) {}
 
   std::string run() {
     put_frame();
@@ -45,12 +41,10 @@ class ArvidaFrame {
  private:
   void put_frame() {
     pen_.need(kJointText + 2 * names_.size() + frame_.source.size() * 6);
-    put(kArvidaPrefixes, "\n<", names_, "frame> a ch:Frame, core:Container ;\n  ch:sequence ");
-    pen_.put_integer(frame_.sequence);
-    put(" ;\n  ch:captured \"", time_.of(frame_.captured),
-        "\"^^xsd:dateTime ;\n  ch:capturedNanoseconds ");
-    pen_.put_integer(to_unix_ns(frame_.captured));
-    put(" ;\n  ch:source ", in_quotes(frame_.source), " ;\n  ch:space ch:", name_of(frame_.space));
+    put(kArvidaPrefixes, "\n<", names_, "frame> a ch:Frame, core:Container");
+    pen_.put_sequence();
+    pen_.put_times(frame_.captured);
+    pen_.put_origin();
     std::string_view before = " ;\n  core:member <";
     for (const BodyResource& body : frame_.bodies) {
       pen_.need(kJointText + names_.size());
@@ -71,22 +65,7 @@ class ArvidaFrame {
     pen_.put(body_name_);
     pen_.put("> a skel:Skeleton ;\n  ch:bodyId ");
     pen_.put_integer(body.id);
-    if (body.slot) {
-      pen_.put(" ;\n  ch:slot ");
-      pen_.put_integer(*body.slot);
-    }
-    if (body.sides_confidence) {
-      pen_.put(" ;\n  ch:sidesConfidence ");
-      pen_.put_decimal<kConfidenceDecimals>(writable_confidence(*body.sides_confidence));
-    }
-    if (body.carried_for) {
-      pen_.put(" ;\n  ch:carriedFor ");
-      pen_.put_decimal<kTimeDecimals>(writable_time(*body.carried_for));
-    }
-    if (body.smoothed_over) {
-      pen_.put(" ;\n  ch:smoothedOver ");
-      pen_.put_decimal<kTimeDecimals>(writable_time(*body.smoothed_over));
-    }
+    pen_.put_fields(BodyFields{}, body);
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);
@@ -99,12 +78,13 @@ class ArvidaFrame {
 
   void put_joint(const BodyResource& body, std::size_t index) {
     const std::string_view name = kJointNames[index];
-    const WritableJoint joint = writable(body.joints[index]);
+    const JointResource& joint = body.joints[index];
+    const JointState state = writable_state(joint);
     pen_.need(kJointText + 5 * (names_.size() + 64));
     pen_.put("\n<");
     put_joint_name(name);
     put("> a skel:Joint, spatial:SpatialRelationship, core:Output, core:Pull ;\n",
-        "  ch:jointName \"", name, "\" ;\n  ch:state ch:", name_of(joint.state),
+        "  ch:jointName \"", name, "\" ;\n  ch:state ch:", name_of(state),
         " ;\n  spatial:sourceCoordinateSystem <", names_,
         "frame#space> ;\n  spatial:targetCoordinateSystem <");
     put_joint_name(name);
@@ -112,8 +92,7 @@ class ArvidaFrame {
     put_joint_name(name);
     pen_.put(">");
     put_timestamp(body.captured);
-    if (joint.state != JointState::NotTracked && !joint.ray) put_translation(joint.position);
-    if (joint.has_orientation) put_rotation(joint.orientation);
+    if (state != JointState::NotTracked) put_place(joint);
     pen_.put(" .\n\n<");
     put_joint_name(name);
     pen_.put("-space> a maths:RightHandedCartesianCoordinateSystem3D .\n");
@@ -128,32 +107,30 @@ class ArvidaFrame {
     pen_.put("\"^^xsd:unsignedLong ; vom:unit vom:NanoSecond ] ]");
   }
 
-  void put_translation(const Eigen::Vector3d& p) {
-    pen_.put(
-        " ;\n  spatial:translation [ a spatial:Translation3D ; vom:quantityKind vom:Length ; "
-        "vom:quantityValue [ a maths:Vector3D");
-    put_number<kPositionDecimals>(" ; maths:x \"", p.x());
-    put_number<kPositionDecimals>(" ; maths:y \"", p.y());
-    put_number<kPositionDecimals>(" ; maths:z \"", p.z());
-    pen_.put(" ; vom:unit vom:meter ] ]");
+  void put_place(const JointResource& joint) {
+    if (const auto p = Position::get(joint)) {
+      pen_.put(
+          " ;\n  spatial:translation [ a spatial:Translation3D ; vom:quantityKind vom:Length ; "
+          "vom:quantityValue [ a maths:Vector3D");
+      put_numbers<Position>(*p);
+      pen_.put(" ; vom:unit vom:meter ] ]");
+    }
+    if (const auto q = Orientation::get(joint)) {
+      pen_.put(
+          " ;\n  spatial:rotation [ a spatial:Rotation3D ; vom:quantityKind vom:Angle ; "
+          "vom:quantityValue [ a maths:Quaternion, maths:Vector4D");
+      put_numbers<Orientation>(*q);
+      pen_.put(" ] ]");
+    }
   }
 
-  void put_rotation(const Eigen::Quaterniond& q) {
-    pen_.put(
-        " ;\n  spatial:rotation [ a spatial:Rotation3D ; vom:quantityKind vom:Angle ; "
-        "vom:quantityValue [ a maths:Quaternion, maths:Vector4D");
-    put_number<kQuaternionDecimals>(" ; maths:x \"", q.x());
-    put_number<kQuaternionDecimals>(" ; maths:y \"", q.y());
-    put_number<kQuaternionDecimals>(" ; maths:z \"", q.z());
-    put_number<kQuaternionDecimals>(" ; maths:w \"", q.w());
-    pen_.put(" ] ]");
-  }
-
-  template <int kDecimals, class Text>
-  void put_number(const Text& before, double value) {
-    pen_.put(before);
-    pen_.put_decimal<kDecimals>(value);
-    pen_.put(kDouble);
+  template <class Field, std::size_t kSize>
+  void put_numbers(const FieldValues<kSize>& values) {
+    for (std::size_t i = 0; i < kSize; ++i) {
+      put(" ; maths:", Field::kNames[i].axis, " \"");
+      pen_.template put_decimal<Field::kRow.decimals>(values[i]);
+      put(kDouble);
+    }
   }
 
   [[nodiscard]] std::string body_name(const BodyResource& body) const {
@@ -164,14 +141,13 @@ class ArvidaFrame {
 
   template <class... Text>
   void put(const Text&... text) {
-    (pen_.put(text), ...);
+    pen_.puts(text...);
   }
 
   const FrameResource& frame_;
   const std::string names_;
   std::string body_name_;  ///< Of the body that was begun last.
-  TimeText time_;
-  Pen pen_;
+  FramePen<Style::Turtle> pen_;
 };
 
 }  // namespace

@@ -37,80 +37,69 @@ Result<Timestamp> time_of(const SubjectFacts& subject) {
   return exact;
 }
 
-std::optional<double> number(const SubjectFacts& subject, Number which) {
-  return subject.numbers[static_cast<std::size_t>(which)];
+std::string between_limits(const Row& row) {
+  const auto number = [](double value) { return std::to_string(static_cast<long long>(value)); };
+  const std::string unit = row.unit == "M2" ? " m^2" : row.unit == "SEC" ? " s" : "";
+  return "is not between " + number(row.least) + " and " + number(row.most) + unit;
 }
 
-/// True if all `count` numbers from `first` on are given, false if none is; anything else is
-/// refused.
-Result<bool> has_all(const SubjectFacts& joint, Number first, std::size_t count) {
+template <class Field>
+tl::unexpected<Error> refuse(const SubjectFacts& subject) {
+  constexpr const Row& kRow = Field::kRow;
+  return refuse(subject, Field::kNames[Field::kNames.size() == 4 ? 3 : 0].name,
+                kRow.refusal.empty() ? between_limits(kRow) : std::string(kRow.refusal));
+}
+
+template <class Field>
+std::optional<double> number(const SubjectFacts& subject, std::size_t i) {
+  return subject.numbers[kNumberNames.index_of(Field::kNames[i].name)];
+}
+
+/// Reads a field's numbers, which are all given or none.
+template <class Field, class Owner>
+Result<void> read_numbers(const SubjectFacts& facts, Owner& owner) {
+  FieldValues<Field::kNames.size()> values;
   std::size_t given = 0;
-  std::size_t missing = 0;
-  for (std::size_t i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(first) + count;
-       ++i) {
-    if (joint.numbers[i]) {
+  std::string_view missing;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (const auto value = number<Field>(facts, i)) {
+      values[i] = *value;
       ++given;
     } else {
-      missing = i;
+      missing = Field::kNames[i].name;
     }
   }
-  if (given == 0) return false;
-  if (given < count) return refuse(joint, kNumberNames[missing], "is missing beside the others");
-  return true;
+  if (given == 0) return {};
+  if (given < values.size()) return refuse(facts, missing, "is missing beside the others");
+  if (Field::set(owner, values)) return {};
+  return refuse<Field>(facts);
 }
 
-Result<void> read_ray(const SubjectFacts& facts, JointResource& joint) {
-  if (number(facts, Number::X)) return refuse(facts, "rayX", "a joint has a position or a ray");
-  joint.measurement = Measurement::Ray;
-  joint.position = {*number(facts, Number::RayX), *number(facts, Number::RayY),
-                    *number(facts, Number::RayZ)};
-  if (!(std::abs(joint.position.norm() - 1.0) <= kRayTolerance)) {
-    return refuse(facts, "rayX", "the ray does not have length 1");
+template <class Field, class Owner>
+Result<void> read_field(const SubjectFacts& facts, Owner& owner) {
+  if constexpr (Field::kKind == FieldKind::Numbers) {
+    return read_numbers<Field>(facts, owner);
+  } else if constexpr (Field::kKind == FieldKind::Whole) {
+    const auto& value = facts.wholes[kWholeNames.index_of(Field::kNames[0].name)];
+    if (value && !Field::set(owner, *value)) return refuse<Field>(facts);
+  } else if constexpr (Field::kKind == FieldKind::Name) {
+    const auto& value = facts.names[kNameNames.index_of(Field::kNames[0].name)];
+    if (!value) return {};
+    if (!is_name(*value)) return refuse(facts, Field::kNames[0].name, "is no name of letters");
+    Field::set(owner, *value);
   }
   return {};
 }
 
-Result<void> read_position(const SubjectFacts& facts, JointResource& joint) {
-  const auto ray = has_all(facts, Number::RayX, 3);
-  if (!ray) return pass(ray);
-  if (*ray) return read_ray(facts, joint);
-  const auto given = has_all(facts, Number::X, 3);
-  if (!given) return pass(given);
-  if (!*given) return refuse(facts, "x", "a joint that is tracked or inferred has a position");
-  joint.position = {*number(facts, Number::X), *number(facts, Number::Y),
-                    *number(facts, Number::Z)};
-  if (joint.position.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-    return refuse(facts, "x", "a coordinate beyond 10000 m is not believed");
-  }
-  return {};
-}
-
-Result<void> read_orientation(const SubjectFacts& facts, JointResource& joint) {
-  const auto given = has_all(facts, Number::Qx, 4);
-  if (!given) return pass(given);
-  if (!*given) return {};
-  const Eigen::Quaterniond q(*number(facts, Number::Qw), *number(facts, Number::Qx),
-                             *number(facts, Number::Qy), *number(facts, Number::Qz));
-  const double norm = q.norm();
-  if (norm == 0.0) return {};
-  if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
-    return refuse(facts, "qw", "the quaternion does not have length 1");
-  }
-  joint.orientation = q;
-  return {};
-}
-
-Result<void> read_covariance(const SubjectFacts& facts, JointResource& joint) {
-  const auto given = has_all(facts, Number::Cxx, Covariance::kTerms);
-  if (!given) return pass(given);
-  if (!*given) return {};
-  std::array<double, Covariance::kTerms> upper{};
-  for (std::size_t i = 0; i < upper.size(); ++i)
-    upper[i] = *facts.numbers[static_cast<std::size_t>(Number::Cxx) + i];
-  joint.covariance = Covariance(upper);
-  const bool bounded = joint.covariance.matrix().cwiseAbs().maxCoeff() <= kMaxCoordinate;
-  if (bounded && joint.covariance.plausible()) return {};
-  return refuse(facts, "cxx", "the covariance has a negative variance, or one beyond 10000");
+/// Reads all fields of a table that the facts have.
+template <class Table, class Owner>
+Result<void> read_fields(const SubjectFacts& facts, Owner& owner) {
+  Result<void> result;
+  Table::all([&]<class Field>() {
+    result = read_field<Field>(facts, owner);
+    return result.has_value();
+  });
+  return result;
 }
 
 Result<void> read_contributors(const SubjectFacts& facts, const std::vector<std::string>& sensors,
@@ -138,10 +127,6 @@ Result<void> read_shares(const SubjectFacts& facts, const Sensors& sensors, Join
     return refuse(facts, "shares", "has not one share for each contributor, or they do not make 1");
   }
   joint.shares = *shares;
-  joint.age = number(facts, Number::Age);
-  if (joint.age && !(*joint.age >= 0.0 && *joint.age <= kLongestCarry)) {
-    return refuse(facts, "age", "is not between 0 and 3600 s");
-  }
   return {};
 }
 
@@ -150,20 +135,14 @@ Result<JointResource> read_joint(const SubjectFacts& facts, const Sensors& senso
   if (!facts.state) return refuse(facts, "state", "is missing: Tracked, Inferred or NotTracked");
   joint.state = *facts.state;
   if (joint.state == JointState::NotTracked) return joint;
-  if (auto ok = read_position(facts, joint); !ok) return pass(ok);
-  if (auto ok = read_orientation(facts, joint); !ok) return pass(ok);
-  joint.variance = number(facts, Number::Variance);
-  if (joint.variance && !(*joint.variance >= 0.0 && *joint.variance <= kMaxCoordinate)) {
-    return refuse(facts, "variance", "is not between 0 and 10000 m^2");
-  }
-  if (auto ok = read_covariance(facts, joint); !ok) return pass(ok);
+  const bool point = number<Position>(facts, 0).has_value();
+  const bool ray = number<Ray>(facts, 0).has_value();
+  if (point && ray) return refuse(facts, "rayX", "a joint has a position or a ray");
+  if (auto ok = read_fields<JointFields>(facts, joint); !ok) return pass(ok);
+  if (!point && !ray)
+    return refuse(facts, "x", "a joint that is tracked or inferred has a position");
   if (auto ok = read_shares(facts, sensors, joint); !ok) return pass(ok);
   return joint;
-}
-
-/// True if the number is given and is no time that a body may state.
-bool no_time(const std::optional<double>& value) {
-  return value && !(*value >= 0.0 && *value <= kLongestCarry);
 }
 
 Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
@@ -171,20 +150,7 @@ Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
   BodyResource body;
   if (!subject.body_id) return refuse(subject, "bodyId", "is missing");
   body.id = *subject.body_id;
-  if (subject.slot && *subject.slot >= kMaxBodies) {
-    return refuse(subject, "slot", "is above " + std::to_string(kMaxBodies - 1));
-  }
-  if (subject.slot) body.slot = static_cast<std::size_t>(*subject.slot);
-  body.sides_confidence = number(subject, Number::SidesConfidence);
-  if (body.sides_confidence && !(*body.sides_confidence >= 0.0 && *body.sides_confidence <= 1.0)) {
-    return refuse(subject, "sidesConfidence", "is not between 0 and 1");
-  }
-  body.carried_for = number(subject, Number::CarriedFor);
-  if (no_time(body.carried_for))
-    return refuse(subject, "carriedFor", "is not between 0 and 3600 s");
-  body.smoothed_over = number(subject, Number::SmoothedOver);
-  if (no_time(body.smoothed_over))
-    return refuse(subject, "smoothedOver", "is not between 0 and 3600 s");
+  if (auto ok = read_fields<BodyFields>(subject, body); !ok) return pass(ok);
   const auto captured = time_of(subject);
   if (!captured) return pass(captured);
   body.captured = *captured;
@@ -217,6 +183,7 @@ Result<FrameResource> read_head(const SubjectFacts& subject) {
   frame.source = *subject.source;
   if (!subject.space) return refuse(subject, "space", "is missing: SensorSpace or WorldSpace");
   frame.space = *subject.space;
+  if (auto ok = read_fields<FrameFields>(subject, frame); !ok) return pass(ok);
   if (subject.sensors.size() > kMaxSensors)
     return refuse(subject, "sensor", "more than 64 sensors");
   for (const std::string& name : subject.sensors) {

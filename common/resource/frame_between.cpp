@@ -3,9 +3,19 @@
 #include <algorithm>
 
 #include "common/body/interpolate.h"
+#include "common/resource/frame_body_fields.h"
 
 namespace chorus::resource {
 namespace {
+
+/// Sets the fields of a table; `share`: how far the instant is on the way from a to b.
+template <class Table, class Owner>
+void mix_fields(Owner& out, const Owner& a, const Owner& b, double share) {
+  Table::all([&]<class Field>() {
+    if constexpr (requires { Field::mix(out, a, b, share); }) Field::mix(out, a, b, share);
+    return true;
+  });
+}
 
 Shares shares_between(const JointResource& a, const JointResource& b, double s) {
   const auto unknown = [](const JointResource& joint) {
@@ -35,7 +45,7 @@ JointResource joint_between(const JointResource& a, const JointResource& b, cons
   const double s = apart.after / (apart.after + apart.before);
   JointResource out{interpolate(a, b, s), std::nullopt, 0};
   if (!out.given()) return out;
-  if (a.variance && b.variance) out.variance = std::max(*a.variance, *b.variance);
+  mix_fields<JointFields>(out, a, b, s);
   out.contributors = a.contributors | b.contributors;
   if (out.contributors == 0) {
     out.age = age_between(a, b, apart);
@@ -63,10 +73,7 @@ FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp 
     BodyResource& mixed = out.bodies.emplace_back();
     mixed.id = body.id;
     mixed.captured = instant;
-    mixed.slot = body.slot;
-    mixed.sides_confidence = body.sides_confidence;
-    mixed.carried_for = body.carried_for;
-    if (later->smoothed_over) mixed.smoothed_over = body.smoothed_over;
+    mix_fields<BodyFields>(mixed, body, *later, after / span);
     for (std::size_t j = 0; j < kJointCount; ++j) {
       mixed.joints[j] = joint_between(body.joints[j], later->joints[j], {after, span - after});
     }

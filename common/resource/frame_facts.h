@@ -12,58 +12,41 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/resource/frame_resource.h"
+#include "common/resource/frame_body_fields.h"
 
 namespace chorus::resource {
 
-/// The numbers of a joint, then those of a body; kNumberNames has their names in the same order.
-enum class Number : std::uint8_t {
-  X,
-  Y,
-  Z,
-  Qx,
-  Qy,
-  Qz,
-  Qw,
-  Variance,
-  RayX,
-  RayY,
-  RayZ,
-  Cxx,
-  Cxy,
-  Cxz,
-  Cyy,
-  Cyz,
-  Czz,
-  Age,
-  SidesConfidence,
-  CarriedFor,
-  SmoothedOver
-};
-inline constexpr std::array<std::string_view, 21> kNumberNames{"x",
-                                                               "y",
-                                                               "z",
-                                                               "qx",
-                                                               "qy",
-                                                               "qz",
-                                                               "qw",
-                                                               "variance",
-                                                               "rayX",
-                                                               "rayY",
-                                                               "rayZ",
-                                                               "cxx",
-                                                               "cxy",
-                                                               "cxz",
-                                                               "cyy",
-                                                               "cyz",
-                                                               "czz",
-                                                               "age",
-                                                               "sidesConfidence",
-                                                               "carriedFor",
-                                                               "smoothedOver"};
+/// The names of all fields of one kind, in the tables' order; those of joints and bodies may be the
+/// same.
+struct NameList {
+  std::array<std::string_view, 64> names{};
+  std::size_t size = 0;
 
-/// How far the length of a quaternion may be from 1; all zero is allowed too and means "not given".
-inline constexpr double kUnitTolerance = 0.1;
+  [[nodiscard]] constexpr std::size_t index_of(std::string_view name) const {
+    std::size_t i = 0;
+    while (i < size && names[i] != name) ++i;
+    return i;
+  }
+  constexpr void add(std::string_view name) {
+    if (index_of(name) == size) names[size++] = name;
+  }
+};
+
+template <FieldKind kKind>
+constexpr NameList names_of() {
+  NameList list;
+  const auto add = [&list]<class Field>() {
+    if constexpr (Field::kKind == kKind) {
+      for (const FieldName& each : Field::kNames) list.add(each.name);
+    }
+    return true;
+  };
+  JointFields::all(add) && BodyFields::all(add) && FrameFields::all(add);
+  return list;
+}
+inline constexpr NameList kNumberNames = names_of<FieldKind::Numbers>();
+inline constexpr NameList kWholeNames = names_of<FieldKind::Whole>();
+inline constexpr NameList kNameNames = names_of<FieldKind::Name>();
 
 /// Everything that may be said about a subject, whatever its kind.
 struct SubjectFacts {
@@ -71,14 +54,15 @@ struct SubjectFacts {
   bool is_frame = false;
   std::optional<std::uint64_t> sequence;
   std::optional<std::uint64_t> body_id;
-  std::optional<std::uint64_t> slot;
   std::optional<Timestamp> captured;
   std::optional<std::int64_t> captured_ns;
   std::optional<std::string> source;
   std::optional<SpaceKind> space;
   std::optional<JointState> state;
   std::optional<std::string> joint_name;
-  std::array<std::optional<double>, kNumberNames.size()> numbers;
+  std::array<std::optional<double>, kNumberNames.size> numbers;
+  std::array<std::optional<std::uint64_t>, kWholeNames.size> wholes;
+  std::array<std::optional<std::string>, kNameNames.size> names;
   std::vector<std::string> sensors;
   std::vector<std::string> contributors;
   std::optional<std::vector<double>> shares;  ///< As listed (frame_shares.h).

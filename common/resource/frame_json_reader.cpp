@@ -25,6 +25,7 @@ class Reading {
       complain(frame, "@type", "is not \"Frame\"");
     facts_[frame].is_frame = true;
     read_common(frame, root);
+    read_fields<FrameFields>(frame, root);
     list(frame, root, "sensors", facts_[frame].sensors);
     read_bodies(frame, root);
     if (error_) return tl::unexpected<Error>(*error_);
@@ -47,7 +48,6 @@ class Reading {
   void read_common(std::size_t at, const json& object) {
     integer(at, object, "sequence", facts_[at].sequence);
     integer(at, object, "bodyId", facts_[at].body_id);
-    integer(at, object, "slot", facts_[at].slot);
     integer(at, object, "capturedNanoseconds", facts_[at].captured_ns);
     text(at, object, "source", facts_[at].source);
     named(at, object, "space", facts_[at].space, {space_named, kNoSpace});
@@ -71,11 +71,7 @@ class Reading {
       const std::size_t body = add_subject(object, "a body");
       facts_[frame].bodies.push_back(body);
       read_common(body, object);
-      for (const Number each :
-           {Number::SidesConfidence, Number::CarriedFor, Number::SmoothedOver}) {
-        const auto i = static_cast<std::size_t>(each);
-        number(body, object, kNumberNames[i], facts_[body].numbers[i]);
-      }
+      read_fields<BodyFields>(body, object);
       read_joints(body, object);
     }
   }
@@ -93,10 +89,26 @@ class Reading {
       read_common(joint, value);
       list(joint, value, "contributors", facts_[joint].contributors);
       numbers(joint, value, "shares", facts_[joint].shares);
-      for (std::size_t i = 0; i < kNumberNames.size(); ++i) {
-        number(joint, value, kNumberNames[i], facts_[joint].numbers[i]);
-      }
+      read_fields<JointFields>(joint, value);
     }
+  }
+
+  /// The fields of a table that this object has.
+  template <class Table>
+  void read_fields(std::size_t at, const json& object) {
+    Table::all([&]<class Field>() {
+      if constexpr (Field::kKind == FieldKind::Numbers) {
+        for (const FieldName& each : Field::kNames)
+          number(at, object, each.name, facts_[at].numbers[kNumberNames.index_of(each.name)]);
+      } else if constexpr (Field::kKind == FieldKind::Whole) {
+        const std::string_view name = Field::kNames[0].name;
+        integer(at, object, name, facts_[at].wholes[kWholeNames.index_of(name)]);
+      } else if constexpr (Field::kKind == FieldKind::Name) {
+        const std::string_view name = Field::kNames[0].name;
+        text(at, object, name, facts_[at].names[kNameNames.index_of(name)]);
+      }
+      return true;
+    });
   }
 
   /// Reads a JSON number, or a string that spells it, as JSON-LD and large integers need.

@@ -9,11 +9,6 @@
 namespace chorus::resource {
 namespace {
 
-/// A quaternion whose length differs from 1 by more than this is normalised before it is written.
-constexpr double kWrittenTolerance = 0.05;
-constexpr double kMinNorm = 1e-6;  // A shorter quaternion counts as "not given".
-constexpr double kMaxVariance = 1e4;
-
 bool plausible(const JointResource& joint) {
   const Eigen::Vector3d& p = joint.position;
   if (!p.allFinite()) return false;
@@ -21,35 +16,13 @@ bool plausible(const JointResource& joint) {
   return p.cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
-/// True when readers accept this covariance.  plausible() tolerates the rounding on the wire.
-bool writable(const Covariance& covariance) {
-  return covariance.known() && covariance.plausible() &&
-         covariance.matrix().cwiseAbs().maxCoeff() <= kMaxVariance;
-}
-
 }  // namespace
 
-double writable_confidence(double value) { return value > 0.0 ? std::min(value, 1.0) : 0.0; }
-
-double writable_time(double value) { return value > 0.0 ? std::min(value, kLongestCarry) : 0.0; }
-
-WritableJoint writable(const JointResource& joint) {
-  WritableJoint out;
-  if (joint.state == JointState::NotTracked || !plausible(joint)) return out;
-  out.state = joint.state;
-  out.ray = joint.measurement == Measurement::Ray;
-  out.position = joint.position;
-  if (writable(joint.covariance)) out.covariance = joint.covariance;
-  const double norm = joint.orientation.norm();
-  if (std::isfinite(norm) && norm > kMinNorm) {
-    out.has_orientation = true;
-    out.orientation = joint.orientation;
-    if (std::abs(norm - 1.0) > kWrittenTolerance) out.orientation.coeffs() /= norm;
-  }
-  const double variance = joint.variance.value_or(-1.0);
-  if (variance >= 0.0 && variance <= kMaxVariance) out.variance = variance;
-  return out;
+JointState writable_state(const JointResource& joint) {
+  return plausible(joint) ? joint.state : JointState::NotTracked;
 }
+
+bool is_name(std::string_view text) { return SensorId::parse(text).has_value(); }
 
 std::string in_quotes(std::string_view text) {
   constexpr std::string_view kHex = "0123456789ABCDEF";

@@ -31,61 +31,52 @@ enum class Property : std::uint8_t {
   Contributor,
   JointIs,
   JointName,
+  Name,
   Number,
   Sensor,
   Sequence,
   Shares,
-  Slot,
   Source,
   Space,
   State,
+  Whole,
 };
 
-struct Row {
+struct Verb {
   std::string_view name;
   Property property;
-  Number number = Number::X;
+  std::size_t index = 0;  ///< In SubjectFacts::numbers, wholes or names.
 };
 
-/// The properties in a frame document, sorted by name.
-constexpr std::array kRows{
-    Row{"age", Property::Number, Number::Age},
-    Row{"body", Property::BodyIs},
-    Row{"bodyId", Property::BodyId},
-    Row{"captured", Property::Captured},
-    Row{"capturedNanoseconds", Property::CapturedNanoseconds},
-    Row{"carriedFor", Property::Number, Number::CarriedFor},
-    Row{"contributor", Property::Contributor},
-    Row{"cxx", Property::Number, Number::Cxx},
-    Row{"cxy", Property::Number, Number::Cxy},
-    Row{"cxz", Property::Number, Number::Cxz},
-    Row{"cyy", Property::Number, Number::Cyy},
-    Row{"cyz", Property::Number, Number::Cyz},
-    Row{"czz", Property::Number, Number::Czz},
-    Row{"joint", Property::JointIs},
-    Row{"jointName", Property::JointName},
-    Row{"qw", Property::Number, Number::Qw},
-    Row{"qx", Property::Number, Number::Qx},
-    Row{"qy", Property::Number, Number::Qy},
-    Row{"qz", Property::Number, Number::Qz},
-    Row{"rayX", Property::Number, Number::RayX},
-    Row{"rayY", Property::Number, Number::RayY},
-    Row{"rayZ", Property::Number, Number::RayZ},
-    Row{"sensor", Property::Sensor},
-    Row{"sequence", Property::Sequence},
-    Row{"shares", Property::Shares},
-    Row{"sidesConfidence", Property::Number, Number::SidesConfidence},
-    Row{"slot", Property::Slot},
-    Row{"smoothedOver", Property::Number, Number::SmoothedOver},
-    Row{"source", Property::Source},
-    Row{"space", Property::Space},
-    Row{"state", Property::State},
-    Row{"variance", Property::Number, Number::Variance},
-    Row{"x", Property::Number, Number::X},
-    Row{"y", Property::Number, Number::Y},
-    Row{"z", Property::Number, Number::Z},
+constexpr std::array kOwnVerbs{
+    Verb{"body", Property::BodyIs},
+    Verb{"bodyId", Property::BodyId},
+    Verb{"captured", Property::Captured},
+    Verb{"capturedNanoseconds", Property::CapturedNanoseconds},
+    Verb{"contributor", Property::Contributor},
+    Verb{"joint", Property::JointIs},
+    Verb{"jointName", Property::JointName},
+    Verb{"sensor", Property::Sensor},
+    Verb{"sequence", Property::Sequence},
+    Verb{"shares", Property::Shares},
+    Verb{"source", Property::Source},
+    Verb{"space", Property::Space},
+    Verb{"state", Property::State},
 };
-static_assert(std::ranges::is_sorted(kRows, {}, &Row::name));
+
+/// The properties in a frame document, sorted by name: those above and the fields of the tables.
+constexpr auto kVerbs = [] {
+  std::array<Verb, kOwnVerbs.size() + kNumberNames.size + kWholeNames.size + kNameNames.size> all{};
+  auto end = std::ranges::copy(kOwnVerbs, all.begin()).out;
+  const auto add = [&end](const NameList& list, Property property) {
+    for (std::size_t i = 0; i < list.size; ++i) *end++ = {list.names[i], property, i};
+  };
+  add(kNumberNames, Property::Number);
+  add(kWholeNames, Property::Whole);
+  add(kNameNames, Property::Name);
+  std::ranges::sort(all, {}, &Verb::name);
+  return all;
+}();
 
 /// Compares without building a string.
 bool is_xsd(std::string_view datatype, std::string_view name) {
@@ -139,8 +130,8 @@ class Collector {
     }
     if (!verb.starts_with(kChorus)) return true;
     const std::string_view name = verb.substr(kChorus.size());
-    const auto* const row = std::ranges::lower_bound(kRows, name, {}, &Row::name);
-    if (row == kRows.end() || row->name != name)
+    const auto* const row = std::ranges::lower_bound(kVerbs, name, {}, &Verb::name);
+    if (row == kVerbs.end() || row->name != name)
       return true;  // Unknown properties are ignored (proto/README.md).
     std::string_view why = store(at, *row, triple.object);
     if (why.empty()) return true;
@@ -201,7 +192,7 @@ class Collector {
   }
 
   /// Stores the object; returns "" or what is wrong with it.
-  std::string_view store(std::size_t at, const Row& row, const TermView& object) {
+  std::string_view store(std::size_t at, const Verb& row, const TermView& object) {
     switch (row.property) {
       case Property::BodyIs:
         return link(at, object, &SubjectFacts::bodies);
@@ -218,14 +209,17 @@ class Collector {
   }
 
   /// Like store(), for the properties that a subject has only once.
-  static std::string_view store_value(SubjectFacts& facts, const Row& row, const TermView& object) {
+  static std::string_view store_value(SubjectFacts& facts, const Verb& row,
+                                      const TermView& object) {
     switch (row.property) {
       case Property::Number:
-        return store_number(facts.numbers[static_cast<std::size_t>(row.number)], object);
+        return store_number(facts.numbers[row.index], object);
+      case Property::Whole:
+        return store_integer(facts.wholes[row.index], object);
+      case Property::Name:
+        return store_text(facts.names[row.index], object);
       case Property::BodyId:
         return store_integer(facts.body_id, object);
-      case Property::Slot:
-        return store_integer(facts.slot, object);
       case Property::Sequence:
         return store_integer(facts.sequence, object);
       case Property::CapturedNanoseconds:

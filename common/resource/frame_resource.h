@@ -58,6 +58,8 @@ struct FrameResource {
 
 /// How far the length of a ray's direction may be from 1.
 inline constexpr double kRayTolerance = 0.01;
+/// Longest span of time that is written or accepted [s].
+inline constexpr double kLongestCarry = 3600.0;
 
 /// Writes the default (compact) profile.  A joint whose position is not finite or not plausible is
 /// written as not tracked, without a position.  Such a variance or covariance is left out, and so

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/body/bones.h"
+#include "common/resource/frame_parts.h"
 
 namespace chorus::resource {
 
@@ -45,12 +46,25 @@ constexpr JointTexts around_names(std::string_view before, std::string_view betw
 /// of each joint's description.
 inline constexpr JointTexts kTurtleLinks = around_names("-", ">");
 inline constexpr JointTexts kTurtleHeads =
-    around_names("-", "> a ch:Joint ;\n  ch:jointName \"", "\" ;\n");
+    around_names("-", "> a ch:Joint ;\n  ch:jointName \"", "\"");
 
 /// JSON: at the beginning of each joint's description, what comes before the IRI of the body and
 /// what comes after it; the latter is kPlainTypes in JSON and kLinkedTypes in JSON-LD.
 inline constexpr JointTexts kJsonOpenings = around_names("\"", "\":{\"@id\":\"");
-inline constexpr JointTexts kPlainTypes = around_names("#", "\",\"@type\":\"Joint\",");
-inline constexpr JointTexts kLinkedTypes = around_names("-", "\",\"@type\":\"Joint\",");
+inline constexpr JointTexts kPlainTypes = around_names("#", "\",\"@type\":\"Joint\"");
+inline constexpr JointTexts kLinkedTypes = around_names("-", "\",\"@type\":\"Joint\"");
+
+/// What stands before a value: " ;\n  ch:cxx ", " ; ch:cxy " behind another of the same field,
+/// ",\"cxx\":"; a number in JSON-LD is in quotes.
+template <Style kStyle, class Field, std::size_t kI>
+inline constexpr JointText kBefore = [] {
+  JointText text;
+  if constexpr (kStyle == Style::Turtle) {
+    ((text += kI == 0 ? " ;\n  ch:" : " ; ch:") += Field::kNames[kI].name) += " ";
+  } else {
+    ((text += ",\"") += Field::kNames[kI].name) += kStyle == Style::Json ? "\":" : "\":\"";
+  }
+  return text;
+}();
 
 }  // namespace chorus::resource

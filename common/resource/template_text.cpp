@@ -22,12 +22,6 @@ bool plain(char c) {
 
 }  // namespace
 
-bool TemplateText::confidence(std::optional<double>& out) { return decimal_up_to(1.0, out); }
-
-bool TemplateText::duration(std::optional<double>& out) {
-  return decimal_up_to(kLongestCarry, out);
-}
-
 bool TemplateText::shares(std::string_view comma, std::string_view close, const ShareList& list,
                           JointResource& joint) {
   ShareList::Values values;
@@ -38,23 +32,6 @@ bool TemplateText::shares(std::string_view comma, std::string_view close, const 
   const auto read = list.read(std::span<const double>(values).first(count), joint.contributors);
   if (!read || !text(close)) return false;
   joint.shares = *read;
-  return true;
-}
-
-bool TemplateText::decimal_up_to(double most, std::optional<double>& out) {
-  double value = 0.0;
-  if (!decimal(value) || !(value >= 0.0 && value <= most)) return false;
-  out = value;
-  return true;
-}
-
-bool TemplateText::slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out) {
-  std::size_t slot = 0;
-  if (!integer(slot) || slot >= kMaxBodies) return false;
-  for (const BodyResource& other : others) {
-    if (other.slot == slot) return false;
-  }
-  out = slot;
   return true;
 }
 

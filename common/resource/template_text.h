@@ -20,13 +20,6 @@
 
 namespace chorus::resource {
 
-/// True for quaternions whose length is about 1; nearly all are such.  The terms are added one by
-/// one, because norm() would load two at once and wait until they are stored.
-inline bool nearly_unit(const Eigen::Quaterniond& q) {
-  const double squared = q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w();
-  return squared > 0.9 && squared < 1.1;
-}
-
 class TemplateText {
  public:
   explicit TemplateText(std::string_view text) : at_(text.data()), end_(at_ + text.size()) {}
@@ -65,15 +58,6 @@ class TemplateText {
     return true;
   }
 
-  /// A body's slot: below kMaxBodies, and different from the slots of the bodies in `others`.
-  bool slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out);
-
-  /// A decimal in [0, 1].
-  bool confidence(std::optional<double>& out);
-
-  /// A decimal in [0, kLongestCarry].
-  bool duration(std::optional<double>& out);
-
   /// Decimals separated by `comma`, up to `close`: a joint's shares.
   bool shares(std::string_view comma, std::string_view close, const ShareList& list,
               JointResource& joint);
@@ -106,8 +90,6 @@ class TemplateText {
   bool subset(const std::vector<std::string>& names, std::string_view comma, std::uint64_t& bits);
 
  private:
-  bool decimal_up_to(double most, std::optional<double>& out);
-
   const char* at_;
   const char* const end_;
   std::string_view iso_;  ///< The last time read; most times repeat it.

@@ -1,0 +1,65 @@
+// Internal to common/resource: the fields of a body, and of a frame as a whole, that may be absent.
+// To add one: CONTRIBUTING.md.
+#pragma once
+
+#include "common/resource/frame_joint_fields.h"
+
+namespace chorus::resource {
+
+struct Slot : PlainField<Slot, &BodyResource::slot, FieldKind::Whole> {
+  static constexpr std::array<FieldName, 1> kNames{{{"slot"}}};
+  static constexpr Row kRow{
+      .label = "slot",
+      .comment =
+          "The tracker's seat for a person, from 0: the number that every output shows it under "
+          "(Body0 is slot 0). Kept while tracked and for a while after; no two bodies of one frame "
+          "share one. A reader can do without.",
+      .most = kMaxBodies - 1,
+      .between = Between::Earlier,
+      .refusal = "is above 63"};
+};
+
+struct SidesConfidence
+    : NumberField<SidesConfidence, &BodyResource::sides_confidence, Beyond::Nearest> {
+  static constexpr std::array<FieldName, 1> kNames{{{"sidesConfidence"}}};
+  static constexpr Row kRow{
+      .label = "confidence of sides",
+      .comment =
+          "Fused: probability that left and right of this person are not exchanged, from 0 to 1. "
+          "Absent: nobody asked (facing.resolve_sides is false).",
+      .decimals = 4,
+      .most = 1.0,
+      .between = Between::Earlier};
+};
+
+struct CarriedFor : NumberField<CarriedFor, &BodyResource::carried_for, Beyond::Nearest> {
+  static constexpr std::array<FieldName, 1> kNames{{{"carriedFor"}}};
+  static constexpr Row kRow{
+      .label = "carried for",
+      .comment =
+          "Fused: for how long no sensor has seen this person, in seconds; the joints are inferred "
+          "and where the person is expected. Absent: a sensor sees them.",
+      .unit = "SEC",
+      .decimals = 3,
+      .most = kLongestCarry,
+      .between = Between::Earlier};
+};
+
+struct SmoothedOver : NumberField<SmoothedOver, &BodyResource::smoothed_over, Beyond::Nearest> {
+  static constexpr std::array<FieldName, 1> kNames{{{"smoothedOver"}}};
+  static constexpr Row kRow{
+      .label = "smoothed over",
+      .comment =
+          "Fused: for how long after captured what sensors saw was taken into account (chorus fuse "
+          "--smooth; /frame?at= with fusion.smoothing.live), in seconds. Absent: the body is what "
+          "was known at the instant.",
+      .unit = "SEC",
+      .decimals = 3,
+      .most = kLongestCarry,
+      .between = Between::EarlierOfBoth};
+};
+
+using BodyFields = Fields<Slot, SidesConfidence, CarriedFor, SmoothedOver>;
+using FrameFields = Fields<>;
+
+}  // namespace chorus::resource

@@ -1,0 +1,175 @@
+// Internal to common/resource: writes the fields of a frame, in each of the three layouts.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/resource/fixed_point.h"
+#include "common/resource/frame_body_fields.h"
+#include "common/resource/frame_parts.h"
+#include "common/resource/frame_shares.h"
+#include "common/resource/joint_texts.h"
+#include "common/resource/pen.h"
+
+namespace chorus::resource {
+
+template <Style kStyle>
+class FramePen : public Pen {
+ public:
+  /// For a document of `bodies` of the frame's bodies.
+  FramePen(const FrameResource& frame, std::size_t bodies)
+      : Pen(1024 + bodies * kBodyBytes),
+        frame_(frame),
+        sensors_(quoted_names(frame)),
+        share_list_(frame.sensors) {
+    for (const std::string& name : sensors_) sensor_bytes_ += name.size() + kShareBytes;
+  }
+
+  /// Room for one joint, body or frame with its sensors, beside `more` bytes.
+  void need_more(std::size_t more) {
+    need(kJointBytes + sensor_bytes_ + frame_.source.size() * 6 + more);
+  }
+
+  template <class... Text>
+  void puts(const Text&... text) {
+    (put(text), ...);
+  }
+
+  template <class... Each, class Owner>
+  void put_fields(Fields<Each...>, const Owner& owner) {
+    (put_field<Each>(owner), ...);
+  }
+
+  /// All that a joint says but its names.
+  void put_joint(const JointResource& joint) {
+    if (writable_state(joint) == JointState::NotTracked) return put_state(JointState::NotTracked);
+    put_fields(JointFields{}, joint);
+  }
+
+  /// For integers that readers of JSON might round.
+  void put_unsigned(std::uint64_t value) {
+    const bool quoted = kStyle != Style::Turtle && value >= std::uint64_t{kExactInteger};
+    const std::string_view mark = quoted ? "\"" : "";
+    put(mark);
+    put_integer(value);
+    put(mark);
+  }
+
+  void put_sequence() {
+    put(kTurtle ? " ;\n  ch:sequence " : ",\"sequence\":");
+    put_unsigned(frame_.sequence);
+  }
+
+  void put_times(Timestamp captured) {
+    puts(kCaptured, time_.of(captured), kNanoseconds);
+    put_integer(to_unix_ns(captured));
+    put(kTurtle ? "" : "\"");
+  }
+
+  void put_origin() {
+    put(kTurtle ? " ;\n  ch:source " : ",\"source\":");
+    puts(in_quotes(frame_.source), kSpace, name_of(frame_.space), kAfterName);
+    put_fields(FrameFields{}, frame_);
+  }
+
+  void put_sensors() {
+    if (sensors_.empty()) return;
+    put(kTurtle ? " ;\n  ch:sensor " : ",\"sensors\":[");
+    put_names(~std::uint64_t{0});
+    put(kTurtle ? "" : "]");
+  }
+
+ private:
+  static constexpr bool kTurtle = kStyle == Style::Turtle;
+  static constexpr std::string_view kMark = kStyle == Style::JsonLd ? "\"" : "";
+  static constexpr std::string_view kAfterName = kTurtle ? "" : "\"";
+  static constexpr std::string_view kSpace = kTurtle ? " ;\n  ch:space ch:" : ",\"space\":\"";
+  static constexpr std::string_view kState = kTurtle ? " ;\n  ch:state ch:" : ",\"state\":\"";
+  static constexpr std::string_view kCaptured =
+      kTurtle ? " ;\n  ch:captured \"" : ",\"captured\":\"";
+  static constexpr std::string_view kNanoseconds =
+      kTurtle ? "\"^^xsd:dateTime ;\n  ch:capturedNanoseconds " : "\",\"capturedNanoseconds\":\"";
+
+  template <class Field>  // for values that JSON-LD does not put in quotes
+  static constexpr const JointText& kPlain =
+      kBefore<kTurtle ? Style::Turtle : Style::Json, Field, 0>;
+
+  template <class Field, class Owner>
+  void put_field(const Owner& owner) {
+    if constexpr (Field::kKind == FieldKind::Numbers) {
+      if (const auto values = Field::get(owner))
+        put_numbers<Field>(*values, std::make_index_sequence<Field::kNames.size()>{});
+    } else if constexpr (Field::kKind == FieldKind::Whole) {
+      if (const auto& value = Field::get(owner)) {
+        put(kPlain<Field>);
+        put_unsigned(*value);
+      }
+    } else if constexpr (Field::kKind == FieldKind::Name) {
+      if (const auto& name = Field::get(owner); name && is_name(*name))
+        puts(kPlain<Field>, "\"", *name, "\"");
+    } else if constexpr (Field::kKind == FieldKind::State) {
+      if (Field::kTurtle == kTurtle) put_state(owner.state);
+    } else if constexpr (Field::kKind == FieldKind::Contributors) {
+      put_contributors(owner.contributors);
+    } else {
+      put_shares(owner);
+    }
+  }
+
+  template <class Field, std::size_t... kI>
+  void put_numbers(const FieldValues<sizeof...(kI)>& values, std::index_sequence<kI...>) {
+    (put_number<Field::kRow.decimals>(kBefore<kStyle, Field, kI>, values[kI]), ...);
+  }
+
+  template <int kDecimals>
+  void put_number(std::string_view before, double value) {
+    put(before);
+    put_decimal<kDecimals>(value);
+    put(kMark);
+  }
+
+  void put_state(JointState state) { puts(kState, name_of(state), kAfterName); }
+
+  void put_names(std::uint64_t bits) {
+    std::string_view comma;
+    for (std::size_t i = 0; i < std::min(sensors_.size(), kMaxSensors); ++i) {
+      if ((bits >> i & 1U) == 0) continue;
+      puts(comma, sensors_[i]);
+      comma = kTurtle ? ", " : ",";
+    }
+  }
+
+  void put_contributors(std::uint64_t contributors) {
+    const std::uint64_t known = sensors_.size() >= kMaxSensors
+                                    ? ~std::uint64_t{0}
+                                    : (std::uint64_t{1} << sensors_.size()) - 1;
+    if (kTurtle ? (contributors & known) == 0 : sensors_.empty()) return;
+    put(kTurtle ? " ;\n  ch:contributor " : ",\"contributors\":[");
+    put_names(contributors);
+    put(kTurtle ? "" : "]");
+  }
+
+  void put_shares(const JointResource& joint) {
+    ShareList::Values values;
+    std::string_view before = kTurtle ? " ;\n  ch:shares (" : ",\"shares\":[";
+    const auto list = share_list_.of(joint.shares, joint.contributors, values);
+    for (const double share : list) {
+      puts(before, kMark);
+      put_decimal<kShareDecimals>(share);
+      put(kMark);
+      before = kTurtle ? " " : ",";
+    }
+    if (!list.empty()) put(kTurtle ? ")" : "]");
+  }
+
+  const FrameResource& frame_;
+  const std::vector<std::string> sensors_;
+  const ShareList share_list_;
+  std::size_t sensor_bytes_ = 0;
+  TimeText time_;
+};
+
+}  // namespace chorus::resource
