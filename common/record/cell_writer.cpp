@@ -7,6 +7,7 @@
 
 #include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
+#include "proto/embedded.h"
 
 namespace chorus::record {
 namespace {
@@ -17,7 +18,7 @@ struct SchemaRow {
 };
 
 std::string_view schema_text(std::string_view name) {
-  const std::array kSchemas{SchemaRow{kFrameSchemaName, kFrameSchema},
+  const std::array kSchemas{SchemaRow{kFrameSchemaName, proto::frame_schema()},
                             SchemaRow{kFloorSchemaName, kFloorSchema},
                             SchemaRow{kClockSchemaName, kClockSchema},
                             SchemaRow{kRegistrationSchemaName, kRegistrationSchema},

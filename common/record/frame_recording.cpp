@@ -11,6 +11,7 @@
 #include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
 #include "common/resource/frame_resource.h"
+#include "proto/embedded.h"
 
 namespace chorus::record {
 
@@ -113,8 +114,10 @@ Result<void> write_whole(const std::filesystem::path& path, const FrameRecording
   if (auto ok = writer->write_metadata(std::string(kMetadataName), metadata_of(recording)); !ok) {
     return ok;
   }
-  const auto frame = writer->add_channel(
-      {std::string(kFrameTopic), std::string(kFrameSchemaName), std::string(kFrameSchema), {}});
+  const auto frame = writer->add_channel({std::string(kFrameTopic),
+                                          std::string(kFrameSchemaName),
+                                          std::string(proto::frame_schema()),
+                                          {}});
   if (!frame) return pass(frame);
   const auto floor = writer->add_channel(
       {std::string(kFloorTopic), std::string(kFloorSchemaName), std::string(kFloorSchema), {}});
