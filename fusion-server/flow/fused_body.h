@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include <Eigen/Core>
 
 #include "common/base/strong_id.h"
 #include "common/body/skeleton.h"
+#include "common/body/stature.h"
 #include "common/sensor/shares.h"
 
 namespace chorus {
@@ -46,6 +48,10 @@ struct FusedBody {
   /// For how long after the instant what sensors saw was taken into account [s]; none: the body is
   /// what was known at the instant.
   std::optional<double> smoothed_over = {};
+  std::string_view method = {};  ///< The fusion method's name (fusion/methods.h).
+  /// What the method has learned of the person's build; none: it learns nothing.
+  std::optional<BoneLengthOf> bones = {};
+  std::optional<LearnedLength> stature = {};
   /// For predictions (fusion/prediction.h); none: the method has no velocities.
   std::optional<std::array<JointMotion, kJointCount>> motion = {};
 };

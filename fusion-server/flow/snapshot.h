@@ -27,6 +27,8 @@ struct Snapshot {
   std::vector<SensorId> sensors;  ///< Registered sensors ordered by id; at most 64.
   std::vector<FusedBody> bodies;
   std::vector<SensorReport> reports;
+  /// Registration::version of the places that were used; another one: the world may have moved.
+  std::uint64_t registration_version = 0;
 };
 
 }  // namespace chorus

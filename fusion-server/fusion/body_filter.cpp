@@ -83,6 +83,8 @@ class BodyFilter final : public Estimator {
                                            : FusedJoint{};
     });
     body.motion = motion_at(instant.at);
+    body.bones = bones();
+    body.stature = stature_of(*body.bones);
     return body;
   }
 
@@ -172,6 +174,14 @@ class BodyFilter final : public Estimator {
       body[j] = {motion->position, variance * Eigen::Matrix3d::Identity(), true};
     }
     return body;
+  }
+
+  [[nodiscard]] BoneLengthOf bones() const {
+    const HeldBones held = lengths_.held(model());
+    BoneLengthOf bones;
+    for (std::size_t b = 0; b < kBones.size(); ++b)
+      bones[index_of(kBones[b].child)] = {held[b].length, held[b].sigma};
+    return bones;
   }
 
   [[nodiscard]] std::array<JointMotion, kJointCount> motion_at(Timestamp instant) const {

@@ -48,6 +48,7 @@ FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   auto& estimator = estimators_[{person.id, method}];
   if (!estimator) estimator = begin(method, config_);
   FusedBody body = estimator->fuse(person, instant);
+  body.method = name_of(method);
   place_errors_[person.id].add(body, person, instant.sensors);
   const bool placed = std::ranges::any_of(body.skeleton.joints, &Joint::seen);
   if (!person.carried && placed) last_[person.id] = {body, instant.at, method};
@@ -68,7 +69,9 @@ void Memory::keep_only(const std::set<PersonId>& tracked) {
 
 FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,
                const FusionConfig& config) {
-  FusedBody body = begin(method_for(person, config), config)->fuse(person, {Timestamp{}, sensors});
+  const Method method = method_for(person, config);
+  FusedBody body = begin(method, config)->fuse(person, {Timestamp{}, sensors});
+  body.method = name_of(method);
   PlaceErrors().add(body, person, sensors);
   return body;
 }

@@ -22,11 +22,15 @@ HeldBones bones_of(const Skeleton<WorldSpace>& body) {
   return bones;
 }
 
-PlacedJoint moved(const FusedBody& body, std::size_t joint, double passed) {
+PointMotion moved(const FusedBody& body, std::size_t joint, double passed) {
   const Joint& now = body.skeleton.joints[joint];
   PointMotion point{now.position, 0.0, {Eigen::Vector3d::Zero(), kFirstSpeed * kFirstSpeed}};
   if (body.motion) point.motion = (*body.motion)[joint];
-  const PointMotion then = later(point, passed);
+  return later(point, passed);
+}
+
+PlacedJoint placed(const FusedBody& body, std::size_t joint, const PointMotion& then) {
+  const Joint& now = body.skeleton.joints[joint];
   const double known = now.covariance.known() ? 0.0 : body.variance[joint];
   const double variance = kPredictedFloor + known + then.variance;
   return {then.position, now.covariance.matrix() + variance * Eigen::Matrix3d::Identity(), true};
@@ -36,12 +40,15 @@ PlacedJoint moved(const FusedBody& body, std::size_t joint, double passed) {
 
 FusedBody predicted(const FusedBody& body, Duration ahead) {
   if (ahead <= Duration{0}) return body;
+  FusedBody later = body;
   PlacedBody moved_on;
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    if (body.skeleton.joints[j].seen()) moved_on[j] = moved(body, j, seconds(ahead));
+    if (!body.skeleton.joints[j].seen()) continue;
+    const PointMotion then = moved(body, j, seconds(ahead));
+    moved_on[j] = placed(body, j, then);
+    if (later.motion && (*later.motion)[j].variance > 0) (*later.motion)[j] = then.motion;
   }
   const PlacedBody whole = hold_bones(moved_on, bones_of(body.skeleton));
-  FusedBody later = body;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     if (!whole[j].placed) continue;
     FusedJoint joint{body.skeleton.joints[j], 0.0, body.contributors[j]};

@@ -92,6 +92,9 @@ FusedBody smoothed(std::span<const BodyAt> bodies) {
     joint.shares = first.shares[j];
     joint.age = first.age[j];
     joint.joint.position = state.mean.row(0);
+    JointMotion& motion = (*body.motion)[j];
+    motion.velocity = state.mean.row(1);
+    motion.variance = state.covariance(1, 1);
     state_covariance(joint,
                      narrowed(course, j, state.covariance(0, 0)) * joint.joint.covariance.matrix());
     put(body, static_cast<JointId>(j), joint);

@@ -227,6 +227,7 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
   forget_the_gone(perceived.memory);
+  perceived.registration_version = registration.version;
   perceived.reports = report(aligned, perceived.people, taking_part(registration, config));
   return perceived;
 }
@@ -234,6 +235,7 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
 Step fuse(Perceived seen, const Inputs& in, std::vector<SensorId> sensors,
           const PipelineConfig& config) {
   Snapshot snapshot{in.sequence, in.instant, std::move(sensors), {}, {}};
+  snapshot.registration_version = seen.registration_version;
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
   leave_out_the_unplaced(snapshot.bodies, seen.people);

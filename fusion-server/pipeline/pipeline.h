@@ -69,6 +69,7 @@ struct Perceived {
   std::vector<Person> people;
   std::vector<SensorReport> reports;
   Memory memory;
+  std::uint64_t registration_version = 0;
 };
 
 struct Step {

@@ -38,7 +38,8 @@ std::vector<fusion::BodyAt> course_of(const std::deque<Step>& fused, PersonId pe
 }  // namespace
 
 Perception perception_of(const Inputs& in, std::vector<SensorId> sensors, const Perceived& seen) {
-  Perception now{in, std::move(sensors), seen.people, seen.reports, {}, {}};
+  Perception now{in, std::move(sensors),       seen.people, seen.reports, {},
+                 {}, seen.registration_version};
   for (const associate::Track& track : seen.memory.tracks.people) now.tracked.insert(track.id);
   for (const auto& [person, sides] : seen.memory.sides.people) {
     if (sides.seen == in.instant) now.sides.emplace(person, sides.filter.step());
@@ -95,6 +96,7 @@ void Smoother::fuse_oldest(const PipelineConfig& config) {
   seen.people = std::move(now.people);
   weigh(seen.people, config.quality);
   seen.reports = std::move(now.reports);
+  seen.registration_version = now.registration_version;
   seen.memory = std::move(memory_);
   seen.memory.fusion.keep_only(now.tracked);
   fused_.push_back(fuse(std::move(seen), now.in, std::move(now.sensors), config));

@@ -22,6 +22,7 @@ struct Perception {
   std::vector<SensorReport> reports;
   std::set<PersonId> tracked;                   ///< Everybody, seen or not.
   std::map<PersonId, facing::SidesStep> sides;  ///< Of those whose sides were resolved.
+  std::uint64_t registration_version = 0;
 };
 
 [[nodiscard]] Perception perception_of(const Inputs& in, std::vector<SensorId> sensors,

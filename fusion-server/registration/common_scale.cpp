@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/base/median.h"
+#include "common/body/stature.h"
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/walk_points.h"
 
@@ -16,15 +17,12 @@ namespace {
 using enum JointId;
 
 constexpr double kUnknownScale = 0.06;  // sigma of a network's guess of a person's size
-constexpr double kStatureScale = 0.04;  // sigma of where networks put hips and shoulders
 constexpr double kMeasured = 0.005;     // sigma of a distance measured by hand, relative
 constexpr double kLeastFactor = 0.5;    // a length that asks for a smaller factor is a mistake,
 constexpr double kMostFactor = 2.0;     // and so is one that asks for a larger factor
 constexpr double kSigmas95Percent = 196.0;
 constexpr double kContradiction = 2.5;  // sigmas of the person's guessed size
 constexpr std::size_t kLeastSegments = 20;
-/// Ankle to knee to hip to shoulder, as a share of the stature (Drillis and Contini 1966).
-constexpr double kChainOfStature = 0.779;
 
 struct Scale {
   double factor = 1.0;

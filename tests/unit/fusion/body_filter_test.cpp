@@ -148,6 +148,24 @@ TEST(BodyFilter, BonesHoldAJointAtTheLengthThatWasLearned) {
   EXPECT_NEAR(length_after(0.0), length + 0.1, 0.005);
 }
 
+TEST(BodyFilter, StatesTheBonesThatItLearnedAndTheStature) {
+  const auto exact = standing();
+  Room room;
+  const FusedBody body = room.settled(exact);
+  ASSERT_TRUE(body.bones && body.stature);
+  for (const JointId id : {ElbowLeft, KneeRight, SpineMid}) {
+    const LearnedLength& bone = (*body.bones)[index_of(id)];
+    const double length = (exact[id].position - exact[parent_of(id)].position).norm();
+    EXPECT_NEAR(bone.length, length, 1e-3) << name_of(id);
+    EXPECT_GT(bone.sigma, 0.0);
+    EXPECT_LT(bone.sigma, 0.03);
+  }
+  EXPECT_EQ((*body.bones)[index_of(HandLeft)].sigma, 0.0) << "never seen";
+  const double chain = 0.41 + 0.42 + 0.25 + 0.2;
+  EXPECT_NEAR(body.stature->length, chain / kChainOfStature, 0.005);
+  EXPECT_EQ(body.method, "body-filter");
+}
+
 TEST(BodyFilter, ALeapThatOneViewOfSeveralTellsIsFollowedLater) {
   const auto exact = standing();
   auto leapt = exact;

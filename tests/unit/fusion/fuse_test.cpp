@@ -244,6 +244,12 @@ TEST(FuseProperty, MovingTheWorldMovesTheResult) {
   expect_same_when_moved(upright, {Method::BodyFilter});
 }
 
+TEST(MethodNames, StandInWhatAMethodFused) {
+  FusionConfig config;
+  config.method = Method::Mean;
+  EXPECT_EQ(fuse({PersonId{1}, {}}, {}, config).method, "mean");
+}
+
 TEST(MethodNames, GoBothWays) {
   for (const Method method : kMethods) EXPECT_EQ(method_named(name_of(method)), method);
   EXPECT_FALSE(method_named("kalman").has_value());

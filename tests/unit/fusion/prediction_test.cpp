@@ -51,6 +51,14 @@ TEST(BodyPrediction, TheCovarianceGrowsByThatOfTheVelocityAndByTheProcessNoise) 
   EXPECT_NEAR(later.variance[index_of(ElbowLeft)], kVariance, 1e-6);
 }
 
+TEST(BodyPrediction, TheVelocityIsThatOfThenAndLessSure) {
+  FusedBody body = forearm();
+  (*body.motion)[index_of(WristLeft)] = {{1.0, 0.0, 0.0}, 0.04, 0.001, 3.0, 3.0};
+  const JointMotion then = (*predicted(body, milliseconds(200)).motion)[index_of(WristLeft)];
+  EXPECT_LT(then.velocity.x(), 0.95) << "speeds fade";
+  EXPECT_GT(then.variance, 0.04);
+}
+
 TEST(BodyPrediction, BonesKeepTheLengthsThatTheyHave) {
   FusedBody body = forearm();
   (*body.motion)[index_of(WristLeft)].velocity = {0, 0, 4.0};

@@ -65,6 +65,12 @@ TEST(Step, EveryMethodAnswersForThePersonInTheMiddle) {
   }
 }
 
+TEST(Step, SaysWhichVersionOfTheRegistrationPlacedTheSensors) {
+  Registration registration = ring_registration(6);
+  registration.version = 7;
+  EXPECT_EQ(run(ring_histories({}), registration, 2).snapshot.registration_version, 7u);
+}
+
 TEST(Perceive, HandsOnTheViewsThatStepFuses) {
   const Histories histories = ring_histories({.people = 2});
   const Registration registration = ring_registration(6);
