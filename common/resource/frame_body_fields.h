@@ -59,7 +59,8 @@ struct SmoothedOver : NumberField<SmoothedOver, &BodyResource::smoothed_over, Be
       .between = Between::EarlierOfBoth};
 };
 
-using BodyFields = Fields<Slot, SidesConfidence, CarriedFor, SmoothedOver>;
+using BodyFields = Fields<Slot, SidesConfidence, CarriedFor, SmoothedOver, Velocity<BodyResource>,
+                          VelocityVariance<BodyResource>>;
 using FrameFields = Fields<>;
 
 }  // namespace chorus::resource

@@ -36,7 +36,42 @@ struct Age : NumberField<Age, &JointResource::age, Beyond::Nearest> {
       .most = kLongestCarry};
 };
 
+/// Of a joint, and of a body: that of its trunk.
+template <class Owner>
+struct Velocity : VectorField<Velocity<Owner>, &Owner::velocity> {
+  static constexpr std::array<FieldName, 3> kNames{{{"vx", "x"}, {"vy", "y"}, {"vz", "z"}}};
+  static constexpr Row kRow{
+      .label = "velocity {}",
+      .comment =
+          "Fused: velocity along {} at the instant, in metres per second: of the joint; of a "
+          "body, the mean of its trunk's joints. Absent: the fusion method knows none.",
+      .unit = "M-PER-SEC",
+      .decimals = 4,
+      .least = -1000.0,
+      .most = 1000.0,
+      .between = Between::Linear,
+      .refusal = "a velocity beyond 1000 m/s is not believed",
+      .since = "0.5"};
+};
+
+template <class Owner>
+struct VelocityVariance : NumberField<VelocityVariance<Owner>, &Owner::velocity_variance> {
+  static constexpr std::array<FieldName, 1> kNames{{{"velocityVariance"}}};
+  static constexpr Row kRow{
+      .label = "variance of the velocity",
+      .comment =
+          "Fused: variance of the velocity on each axis, in square metres per square second. "
+          "The axes have the same error and no covariance: the covariance matrix of vx, vy "
+          "and vz is this times the identity.",
+      .unit = "M2-PER-SEC2",
+      .decimals = 6,
+      .most = kMaxCoordinate,
+      .between = Between::Larger,
+      .since = "0.5"};
+};
+
 using JointFields = Fields<Position, Ray, Orientation, State<true>, Variance, PositionCovariance,
-                           State<false>, Contributors, SharesOfSensors, Age>;
+                           State<false>, Contributors, SharesOfSensors, Age,
+                           Velocity<JointResource>, VelocityVariance<JointResource>>;
 
 }  // namespace chorus::resource

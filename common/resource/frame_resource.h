@@ -30,6 +30,8 @@ struct JointResource : Joint {
       {};  ///< Fused: of FrameResource::sensors[i], at that index; of contributors only.
   /// Fused: time since a sensor last contributed to the joint [s]; none while one does.
   std::optional<double> age = {};
+  std::optional<Eigen::Vector3d> velocity = {};  ///< Fused [m/s].
+  std::optional<double> velocity_variance = {};  ///< Fused: per axis, alike on all [m^2/s^2].
 };
 
 struct BodyResource {
@@ -43,6 +45,8 @@ struct BodyResource {
   /// Fused: for how long after the instant what sensors saw was taken into account [s].  None: the
   /// body is what was known at the instant.
   std::optional<double> smoothed_over;
+  std::optional<Eigen::Vector3d> velocity;  ///< Fused: of the middle of the trunk [m/s].
+  std::optional<double> velocity_variance;  ///< Fused: per axis, alike on all [m^2/s^2].
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };

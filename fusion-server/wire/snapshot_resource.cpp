@@ -2,11 +2,38 @@
 
 #include <algorithm>
 
+#include "common/body/bones.h"
+
 namespace chorus::wire {
 namespace {
 
 using resource::BodyResource;
 using resource::FrameResource;
+
+/// The mean over the trunk's joints that are seen and whose motion is known.  Their errors count as
+/// one, because what moves the whole body moves all of them.
+void set_trunk_velocity(const FusedBody& body, BodyResource& out) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double variance = 0.0;
+  double count = 0.0;
+  for (const JointId id : kCoreJoints) {
+    const resource::JointResource& joint = out.joints[index_of(id)];
+    if (!joint.velocity) continue;
+    sum += *joint.velocity;
+    variance += *joint.velocity_variance;
+    ++count;
+  }
+  if (count == 0.0 || !body.motion) return;
+  out.velocity = sum / count;
+  out.velocity_variance = variance / count;
+}
+
+/// A joint that no filter knows has no variance of its velocity.
+void set_velocity(const JointMotion& motion, resource::JointResource& out) {
+  if (!(motion.variance > 0.0)) return;
+  out.velocity = motion.velocity;
+  out.velocity_variance = motion.variance;
+}
 
 BodyResource body_of(const FusedBody& body, Timestamp instant) {
   BodyResource out;
@@ -27,7 +54,9 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
     out.joints[j].shares = body.shares[j];
     if (body.contributors[j] == 0) out.joints[j].age = body.age[j];
     out.joints[j].covariance = joint.covariance;
+    if (body.motion) set_velocity((*body.motion)[j], out.joints[j]);
   }
+  set_trunk_velocity(body, out);
   return out;
 }
 

@@ -57,6 +57,19 @@ TEST(FrameBetween, IsProportionalToTime) {
   EXPECT_EQ(mixed.sequence, 0U) << "named after the frame before it";
 }
 
+TEST(FrameBetween, MixesVelocitiesAndStatesTheLargerVariance) {
+  FrameResource a = frame_at(milliseconds(0), 1.0);
+  FrameResource b = frame_at(milliseconds(40), 3.0);
+  joint_of(a).velocity = {1.0, 0.0, 0.0};
+  joint_of(b).velocity = {2.0, 0.0, 0.0};
+  joint_of(a).velocity_variance = 0.1;
+  joint_of(b).velocity_variance = 0.2;
+  EXPECT_EQ(joint_of(quarter(a, b)).velocity, Eigen::Vector3d(1.25, 0.0, 0.0));
+  EXPECT_EQ(joint_of(quarter(a, b)).velocity_variance, 0.2);
+  joint_of(b).velocity.reset();
+  EXPECT_FALSE(joint_of(quarter(a, b)).velocity);
+}
+
 TEST(FrameBetween, AtTheFramesThemselvesItIsThese) {
   const FrameResource a = frame_at(milliseconds(0), 1.0);
   const FrameResource b = frame_at(milliseconds(40), 3.0);

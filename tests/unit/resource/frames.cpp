@@ -48,6 +48,12 @@ Eigen::Vector3d random_position(Dice& dice, JointResource& joint, const FrameRes
   return p;
 }
 
+Eigen::Vector3d random_velocity(Dice& dice) {
+  Eigen::Vector3d v;
+  for (int i = 0; i < 3; ++i) v[i] = rounded(dice.between(-3, 3), 1e-4);
+  return v;
+}
+
 Covariance random_covariance(Dice& dice) {
   Eigen::Matrix3d root;
   for (int i = 0; i < 9; ++i) root(i) = dice.between(-0.05, 0.05);
@@ -79,6 +85,10 @@ JointResource random_joint(Dice& dice, const FrameResource& frame) {
   joint.variance = rounded(dice.between(0, 0.01), 1e-8);
   joint.contributors = dice.number((std::uint64_t{1} << frame.sensors.size()) - 1);
   if (joint.contributors == 0 && dice.chance(0.8)) joint.age = rounded(dice.between(0, 3), 1e-3);
+  if (dice.chance(0.7)) {
+    joint.velocity = random_velocity(dice);
+    joint.velocity_variance = rounded(dice.between(0, 0.1), 1e-6);
+  }
   const bool shared = std::popcount(joint.contributors) == 1 || dice.chance(0.8);
   if (shared) joint.shares = random_shares(dice, joint.contributors);
   return joint;
@@ -136,6 +146,25 @@ void add_shares(About& about, const FrameResource& frame, const JointResource& j
   }
 }
 
+/// Of a joint or a body.
+template <class Owner>
+void add_velocity(About& about, const Owner& owner) {
+  if (owner.velocity) {
+    about.decimal("vx", owner.velocity->x(), 4);
+    about.decimal("vy", owner.velocity->y(), 4);
+    about.decimal("vz", owner.velocity->z(), 4);
+  }
+  if (owner.velocity_variance) about.decimal("velocityVariance", *owner.velocity_variance, 6);
+}
+
+template <class Owner>
+std::string velocity_of(const Owner& owner) {
+  if (!owner.velocity) return " still";
+  std::string text;
+  for (int i = 0; i < 3; ++i) text += " " + decimals((*owner.velocity)[i], 4);
+  return text + " " + decimals(owner.velocity_variance.value_or(-1), 6);
+}
+
 void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri, std::size_t index,
                const JointResource& joint) {
   About about{graph, rdf::iri(iri)};
@@ -163,6 +192,7 @@ void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri,
   }
   add_shares(about, frame, joint);
   if (joint.age) about.decimal("age", *joint.age, 3);
+  add_velocity(about, joint);
 }
 
 std::string text_of(const JointResource& joint) {
@@ -176,7 +206,8 @@ std::string text_of(const JointResource& joint) {
   for (std::size_t i = 0; joint.shares.known() && i < kMaxSensors; ++i)
     shares += " " + decimals(joint.shares.of(i), 4);
   return text + " v" + decimals(joint.variance.value_or(-1), 10) + " c" +
-         std::to_string(joint.contributors) + shares + " a" + decimals(joint.age.value_or(-1), 6);
+         std::to_string(joint.contributors) + shares + " a" + decimals(joint.age.value_or(-1), 6) +
+         velocity_of(joint);
 }
 
 }  // namespace
@@ -197,6 +228,8 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
     if (kind.fused && b != 1) body.sides_confidence = rounded(dice.between(0, 1), 1e-4);
     if (kind.fused && b == 1) body.carried_for = rounded(dice.between(0, 3), 1e-3);
     if (kind.fused && b == 2) body.smoothed_over = rounded(dice.between(0, 3), 1e-3);
+    if (kind.fused && b != 2) body.velocity = random_velocity(dice);
+    if (kind.fused && b != 2) body.velocity_variance = rounded(dice.between(0, 0.1), 1e-6);
     if (b == 1) body.id = 72'057'594'037'928'018;  // like Kinect v2 ids: too large for a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
@@ -227,6 +260,7 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     if (body.sides_confidence) skeleton.decimal("sidesConfidence", *body.sides_confidence, 4);
     if (body.carried_for) skeleton.decimal("carriedFor", *body.carried_for, 3);
     if (body.smoothed_over) skeleton.decimal("smoothedOver", *body.smoothed_over, 3);
+    add_velocity(skeleton, body);
     skeleton.times(body.captured);
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::string joint = iri + "-" + std::string(kJointNames[i]);
@@ -251,6 +285,7 @@ std::string difference(const FrameResource& a, const FrameResource& b) {
       return "confidence of sides";
     if (!same(a.bodies[i].carried_for, b.bodies[i].carried_for)) return "carried for";
     if (!same(a.bodies[i].smoothed_over, b.bodies[i].smoothed_over)) return "smoothed over";
+    if (velocity_of(a.bodies[i]) != velocity_of(b.bodies[i])) return "velocity of a body";
     if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const std::string left = text_of(a.bodies[i].joints[j]);

@@ -67,6 +67,24 @@ TEST(SnapshotResource, SaysWorldSpaceSensorsAndContributors) {
   EXPECT_EQ(foot.contributors, 0u);
 }
 
+TEST(SnapshotResource, SaysHowJointsAndBodiesMove) {
+  Snapshot s = snapshot(42, 0.5);
+  EXPECT_FALSE(to_resource(s).bodies[0].velocity) << "the method knows of no motion";
+  s.bodies[0].motion.emplace();
+  for (const JointId id : {JointId::Head, JointId::SpineBase, JointId::HandRight})
+    (*s.bodies[0].motion)[index_of(id)].variance = 0.01;
+  (*s.bodies[0].motion)[index_of(JointId::Head)].velocity = {2.0, 0.0, 0.0};
+  (*s.bodies[0].motion)[index_of(JointId::SpineBase)].velocity = {1.0, 0.0, 0.0};
+  (*s.bodies[0].motion)[index_of(JointId::HandRight)].velocity = {9.0, 0.0, 0.0};
+  const auto frame = to_resource(s);
+  const auto& joints = frame.bodies[0].joints;
+  EXPECT_EQ(joints[index_of(JointId::Head)].velocity, Eigen::Vector3d(2.0, 0.0, 0.0));
+  EXPECT_EQ(joints[index_of(JointId::Head)].velocity_variance, 0.01);
+  EXPECT_FALSE(joints[index_of(JointId::Neck)].velocity) << "no filter knows it";
+  EXPECT_EQ(frame.bodies[0].velocity, Eigen::Vector3d(1.5, 0.0, 0.0)) << "hands are not the trunk";
+  EXPECT_EQ(frame.bodies[0].velocity_variance, 0.01);
+}
+
 TEST(SnapshotResource, IsValidInputForAnotherFusionServer) {
   const auto frame = to_resource(snapshot(42, 0.5));
   const auto read = read_frame(write(frame, resource::Format::Turtle), resource::Format::Turtle);
