@@ -59,8 +59,35 @@ struct SmoothedOver : NumberField<SmoothedOver, &BodyResource::smoothed_over, Be
       .between = Between::EarlierOfBoth};
 };
 
+struct Stature : NumberField<Stature, &BodyResource::stature> {
+  static constexpr std::array<FieldName, 1> kNames{{{"stature"}}};
+  static constexpr Row kRow{.label = "stature",
+                            .comment =
+                                "Fused: how tall the person is, from the lengths of shanks, thighs "
+                                "and spine, in metres. Absent: these are not known.",
+                            .unit = "M",
+                            .decimals = 4,
+                            .most = 10.0,
+                            .between = Between::Earlier,
+                            .since = "0.5"};
+};
+
+struct StatureSigma : NumberField<StatureSigma, &BodyResource::stature_sigma> {
+  static constexpr std::array<FieldName, 1> kNames{{{"statureSigma"}}};
+  static constexpr Row kRow{
+      .label = "standard deviation of the stature",
+      .comment =
+          "Fused: standard deviation of the stature, in metres; 4 % for the proportions of people "
+          "and for where sensors see hips and shoulders is in it.",
+      .unit = "M",
+      .decimals = 4,
+      .most = 10.0,
+      .between = Between::Earlier,
+      .since = "0.5"};
+};
+
 using BodyFields = Fields<Slot, SidesConfidence, CarriedFor, SmoothedOver, Velocity<BodyResource>,
-                          VelocityVariance<BodyResource>>;
+                          VelocityVariance<BodyResource>, Stature, StatureSigma>;
 using FrameFields = Fields<>;
 
 }  // namespace chorus::resource

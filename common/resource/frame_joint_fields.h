@@ -70,8 +70,37 @@ struct VelocityVariance : NumberField<VelocityVariance<Owner>, &Owner::velocity_
       .since = "0.5"};
 };
 
-using JointFields = Fields<Position, Ray, Orientation, State<true>, Variance, PositionCovariance,
-                           State<false>, Contributors, SharesOfSensors, Age,
-                           Velocity<JointResource>, VelocityVariance<JointResource>>;
+struct BoneLength : NumberField<BoneLength, &JointResource::bone_length> {
+  static constexpr std::array<FieldName, 1> kNames{{{"boneLength"}}};
+  static constexpr Row kRow{
+      .label = "length of the bone",
+      .comment =
+          "Fused: length of the bone that ends in this joint, from its parent to it, as learned "
+          "while the person was seen, in metres. Absent: not known.",
+      .unit = "M",
+      .decimals = 4,
+      .most = 10.0,
+      .between = Between::Earlier,
+      .since = "0.5"};
+};
+
+struct BoneSigma : NumberField<BoneSigma, &JointResource::bone_sigma> {
+  static constexpr std::array<FieldName, 1> kNames{{{"boneSigma"}}};
+  static constexpr Row kRow{
+      .label = "standard deviation of the bone",
+      .comment =
+          "Fused: standard deviation of boneLength, in metres. Where all sensors see the joint in "
+          "a wrong place, the bone is wrong by more.",
+      .unit = "M",
+      .decimals = 4,
+      .most = 10.0,
+      .between = Between::Earlier,
+      .since = "0.5"};
+};
+
+using JointFields =
+    Fields<Position, Ray, Orientation, State<true>, Variance, PositionCovariance, State<false>,
+           Contributors, SharesOfSensors, Age, Velocity<JointResource>,
+           VelocityVariance<JointResource>, BoneLength, BoneSigma>;
 
 }  // namespace chorus::resource

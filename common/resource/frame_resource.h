@@ -32,6 +32,9 @@ struct JointResource : Joint {
   std::optional<double> age = {};
   std::optional<Eigen::Vector3d> velocity = {};  ///< Fused [m/s].
   std::optional<double> velocity_variance = {};  ///< Fused: per axis, alike on all [m^2/s^2].
+  /// Fused: length of the bone that ends in the joint, and its standard deviation [m].
+  std::optional<double> bone_length = {};
+  std::optional<double> bone_sigma = {};
 };
 
 struct BodyResource {
@@ -47,6 +50,8 @@ struct BodyResource {
   std::optional<double> smoothed_over;
   std::optional<Eigen::Vector3d> velocity;  ///< Fused: of the middle of the trunk [m/s].
   std::optional<double> velocity_variance;  ///< Fused: per axis, alike on all [m^2/s^2].
+  std::optional<double> stature;            ///< Fused [m].
+  std::optional<double> stature_sigma;      ///< Fused: its standard deviation [m].
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };

@@ -35,6 +35,14 @@ void set_velocity(const JointMotion& motion, resource::JointResource& out) {
   out.velocity_variance = motion.variance;
 }
 
+void set_bones(const BoneLengthOf& bones, BodyResource& out) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (out.joints[j].state == JointState::NotTracked || !(bones[j].sigma > 0.0)) continue;
+    out.joints[j].bone_length = bones[j].length;
+    out.joints[j].bone_sigma = bones[j].sigma;
+  }
+}
+
 BodyResource body_of(const FusedBody& body, Timestamp instant) {
   BodyResource out;
   out.id = body.id.value;
@@ -57,6 +65,11 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
     if (body.motion) set_velocity((*body.motion)[j], out.joints[j]);
   }
   set_trunk_velocity(body, out);
+  if (body.bones) set_bones(*body.bones, out);
+  if (body.stature) {
+    out.stature = body.stature->length;
+    out.stature_sigma = body.stature->sigma;
+  }
   return out;
 }
 

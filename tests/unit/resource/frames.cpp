@@ -88,6 +88,8 @@ JointResource random_joint(Dice& dice, const FrameResource& frame) {
   if (dice.chance(0.7)) {
     joint.velocity = random_velocity(dice);
     joint.velocity_variance = rounded(dice.between(0, 0.1), 1e-6);
+    joint.bone_length = rounded(dice.between(0, 0.5), 1e-4);
+    joint.bone_sigma = rounded(dice.between(0, 0.1), 1e-4);
   }
   const bool shared = std::popcount(joint.contributors) == 1 || dice.chance(0.8);
   if (shared) joint.shares = random_shares(dice, joint.contributors);
@@ -193,6 +195,8 @@ void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri,
   add_shares(about, frame, joint);
   if (joint.age) about.decimal("age", *joint.age, 3);
   add_velocity(about, joint);
+  if (joint.bone_length) about.decimal("boneLength", *joint.bone_length, 4);
+  if (joint.bone_sigma) about.decimal("boneSigma", *joint.bone_sigma, 4);
 }
 
 std::string text_of(const JointResource& joint) {
@@ -207,7 +211,8 @@ std::string text_of(const JointResource& joint) {
     shares += " " + decimals(joint.shares.of(i), 4);
   return text + " v" + decimals(joint.variance.value_or(-1), 10) + " c" +
          std::to_string(joint.contributors) + shares + " a" + decimals(joint.age.value_or(-1), 6) +
-         velocity_of(joint);
+         velocity_of(joint) + " b" + decimals(joint.bone_length.value_or(-1), 4) +
+         decimals(joint.bone_sigma.value_or(-1), 4);
 }
 
 }  // namespace
@@ -230,6 +235,8 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
     if (kind.fused && b == 2) body.smoothed_over = rounded(dice.between(0, 3), 1e-3);
     if (kind.fused && b != 2) body.velocity = random_velocity(dice);
     if (kind.fused && b != 2) body.velocity_variance = rounded(dice.between(0, 0.1), 1e-6);
+    if (kind.fused && b != 1) body.stature = rounded(dice.between(1, 2), 1e-4);
+    if (kind.fused && b != 1) body.stature_sigma = rounded(dice.between(0, 0.1), 1e-4);
     if (b == 1) body.id = 72'057'594'037'928'018;  // like Kinect v2 ids: too large for a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
@@ -261,6 +268,8 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     if (body.carried_for) skeleton.decimal("carriedFor", *body.carried_for, 3);
     if (body.smoothed_over) skeleton.decimal("smoothedOver", *body.smoothed_over, 3);
     add_velocity(skeleton, body);
+    if (body.stature) skeleton.decimal("stature", *body.stature, 4);
+    if (body.stature_sigma) skeleton.decimal("statureSigma", *body.stature_sigma, 4);
     skeleton.times(body.captured);
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::string joint = iri + "-" + std::string(kJointNames[i]);
@@ -285,6 +294,9 @@ std::string difference(const FrameResource& a, const FrameResource& b) {
       return "confidence of sides";
     if (!same(a.bodies[i].carried_for, b.bodies[i].carried_for)) return "carried for";
     if (!same(a.bodies[i].smoothed_over, b.bodies[i].smoothed_over)) return "smoothed over";
+    if (!same(a.bodies[i].stature, b.bodies[i].stature) ||
+        !same(a.bodies[i].stature_sigma, b.bodies[i].stature_sigma))
+      return "stature";
     if (velocity_of(a.bodies[i]) != velocity_of(b.bodies[i])) return "velocity of a body";
     if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
     for (std::size_t j = 0; j < kJointCount; ++j) {

@@ -85,6 +85,21 @@ TEST(SnapshotResource, SaysHowJointsAndBodiesMove) {
   EXPECT_EQ(frame.bodies[0].velocity_variance, 0.01);
 }
 
+TEST(SnapshotResource, SaysHowThePersonIsBuilt) {
+  Snapshot s = snapshot(42, 0.5);
+  s.bodies[0].stature = LearnedLength{1.78, 0.07};
+  s.bodies[0].bones.emplace();
+  (*s.bodies[0].bones)[index_of(JointId::KneeLeft)] = {0.43, 0.004};
+  (*s.bodies[0].bones)[index_of(JointId::FootLeft)] = {0.12, 0.004};
+  const auto body = to_resource(s).bodies[0];
+  EXPECT_EQ(body.stature, 1.78);
+  EXPECT_EQ(body.stature_sigma, 0.07);
+  EXPECT_EQ(body.joints[index_of(JointId::KneeLeft)].bone_length, 0.43);
+  EXPECT_EQ(body.joints[index_of(JointId::KneeLeft)].bone_sigma, 0.004);
+  EXPECT_FALSE(body.joints[index_of(JointId::AnkleLeft)].bone_length) << "not learned";
+  EXPECT_FALSE(body.joints[index_of(JointId::FootLeft)].bone_length) << "not tracked now";
+}
+
 TEST(SnapshotResource, IsValidInputForAnotherFusionServer) {
   const auto frame = to_resource(snapshot(42, 0.5));
   const auto read = read_frame(write(frame, resource::Format::Turtle), resource::Format::Turtle);
