@@ -86,8 +86,32 @@ struct StatureSigma : NumberField<StatureSigma, &BodyResource::stature_sigma> {
       .since = "0.5"};
 };
 
+struct MethodName : PlainField<MethodName, &BodyResource::method, FieldKind::Name> {
+  static constexpr std::array<FieldName, 1> kNames{{{"method"}}};
+  static constexpr Row kRow{
+      .label = "method",
+      .comment =
+          "Fused: name of the method that fused this person at this instant, as in the "
+          "configuration (fusion.method); it may be another one than configured, for a person "
+          "whom only cameras without depth or one other tracker sees.",
+      .between = Between::Earlier,
+      .since = "0.5"};
+};
+
 using BodyFields = Fields<Slot, SidesConfidence, CarriedFor, SmoothedOver, Velocity<BodyResource>,
-                          VelocityVariance<BodyResource>, Stature, StatureSigma>;
-using FrameFields = Fields<>;
+                          VelocityVariance<BodyResource>, Stature, StatureSigma, MethodName>;
+struct RegistrationVersion
+    : PlainField<RegistrationVersion, &FrameResource::registration_version, FieldKind::Whole> {
+  static constexpr std::array<FieldName, 1> kNames{{{"registrationVersion"}}};
+  static constexpr Row kRow{
+      .label = "version of the registration",
+      .comment =
+          "Fused: version of the registration (as in /registration) that placed the sensors. "
+          "Another one: sensors were placed anew or the origin was moved, so that positions "
+          "before and after may not be compared.",
+      .since = "0.5"};
+};
+
+using FrameFields = Fields<RegistrationVersion>;
 
 }  // namespace chorus::resource

@@ -52,6 +52,7 @@ struct BodyResource {
   std::optional<double> velocity_variance;  ///< Fused: per axis, alike on all [m^2/s^2].
   std::optional<double> stature;            ///< Fused [m].
   std::optional<double> stature_sigma;      ///< Fused: its standard deviation [m].
+  std::optional<std::string> method;        ///< Fused: name of the fusion method.
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };
@@ -61,6 +62,8 @@ struct FrameResource {
   Timestamp captured;
   std::string source;  ///< Sensor id, or "fusion".
   SpaceKind space = SpaceKind::Sensor;
+  /// Fused: version of the registration that placed the sensors.
+  std::optional<std::uint64_t> registration_version = {};
   std::vector<std::string> sensors;  ///< Fused: the sensors of the contributor bits (at most 64).
   std::vector<BodyResource> bodies;  ///< At most kMaxBodies, with distinct ids.
 };

@@ -51,6 +51,7 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
   out.sides_confidence = body.sides_confidence;
   out.carried_for = body.carried_for;
   out.smoothed_over = body.smoothed_over;
+  if (!body.method.empty()) out.method = body.method;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Joint& joint = body.skeleton.joints[j];
     out.joints[j].position = joint.position;
@@ -81,6 +82,7 @@ FrameResource to_resource(const Snapshot& snapshot) {
   frame.captured = snapshot.instant;
   frame.source = kFusionSource;
   frame.space = resource::SpaceKind::World;
+  if (snapshot.registration_version > 0) frame.registration_version = snapshot.registration_version;
   frame.sensors.reserve(snapshot.sensors.size());
   for (const SensorId& sensor : snapshot.sensors) frame.sensors.push_back(sensor.str());
   const std::size_t count = std::min(snapshot.bodies.size(), kMaxBodies);

@@ -225,6 +225,7 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
                                 static_cast<std::int64_t>(dice.number(1'000'000'000'000)));
   frame.source = kind.fused ? "fusion" : "s1";
   frame.space = kind.fused ? SpaceKind::World : SpaceKind::Sensor;
+  if (kind.fused) frame.registration_version = dice.number(1'000);
   if (kind.fused) frame.sensors = {"s1", "s2", "s10", "north_3"};
   for (std::size_t b = 0; b < kind.bodies; ++b) {
     BodyResource body;
@@ -237,6 +238,7 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
     if (kind.fused && b != 2) body.velocity_variance = rounded(dice.between(0, 0.1), 1e-6);
     if (kind.fused && b != 1) body.stature = rounded(dice.between(1, 2), 1e-4);
     if (kind.fused && b != 1) body.stature_sigma = rounded(dice.between(0, 0.1), 1e-4);
+    if (kind.fused && b != 2) body.method = "body-filter";
     if (b == 1) body.id = 72'057'594'037'928'018;  // like Kinect v2 ids: too large for a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
@@ -255,6 +257,8 @@ rdf::Graph expected_graph(const FrameResource& frame) {
   about.times(frame.captured);
   about.say("source", rdf::literal(frame.source));
   about.say("space", About::own(frame.space == SpaceKind::World ? "WorldSpace" : "SensorSpace"));
+  if (frame.registration_version)
+    about.integer("registrationVersion", std::to_string(*frame.registration_version));
   for (const std::string& sensor : frame.sensors) about.say("sensor", rdf::literal(sensor));
   for (const BodyResource& body : frame.bodies) {
     const std::string iri = own + "#" + std::to_string(body.id);
@@ -268,6 +272,7 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     if (body.carried_for) skeleton.decimal("carriedFor", *body.carried_for, 3);
     if (body.smoothed_over) skeleton.decimal("smoothedOver", *body.smoothed_over, 3);
     add_velocity(skeleton, body);
+    if (body.method) skeleton.say("method", rdf::literal(*body.method));
     if (body.stature) skeleton.decimal("stature", *body.stature, 4);
     if (body.stature_sigma) skeleton.decimal("statureSigma", *body.stature_sigma, 4);
     skeleton.times(body.captured);
@@ -286,6 +291,7 @@ std::string difference(const FrameResource& a, const FrameResource& b) {
   if (a.source != b.source) return "source";
   if (a.space != b.space) return "space";
   if (a.sensors != b.sensors) return "sensors";
+  if (a.registration_version != b.registration_version) return "version of the registration";
   if (a.bodies.size() != b.bodies.size()) return "number of bodies";
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
     if (a.bodies[i].id != b.bodies[i].id) return "body id";
@@ -297,6 +303,7 @@ std::string difference(const FrameResource& a, const FrameResource& b) {
     if (!same(a.bodies[i].stature, b.bodies[i].stature) ||
         !same(a.bodies[i].stature_sigma, b.bodies[i].stature_sigma))
       return "stature";
+    if (a.bodies[i].method != b.bodies[i].method) return "method";
     if (velocity_of(a.bodies[i]) != velocity_of(b.bodies[i])) return "velocity of a body";
     if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
     for (std::size_t j = 0; j < kJointCount; ++j) {

@@ -85,6 +85,16 @@ TEST(SnapshotResource, SaysHowJointsAndBodiesMove) {
   EXPECT_EQ(frame.bodies[0].velocity_variance, 0.01);
 }
 
+TEST(SnapshotResource, SaysByWhichMethodAndInWhichWorld) {
+  Snapshot s = snapshot(42, 0.5);
+  EXPECT_FALSE(to_resource(s).registration_version) << "no registration";
+  EXPECT_FALSE(to_resource(s).bodies[0].method);
+  s.registration_version = 5;
+  s.bodies[0].method = "body-filter";
+  EXPECT_EQ(to_resource(s).registration_version, 5u);
+  EXPECT_EQ(to_resource(s).bodies[0].method, "body-filter");
+}
+
 TEST(SnapshotResource, SaysHowThePersonIsBuilt) {
   Snapshot s = snapshot(42, 0.5);
   s.bodies[0].stature = LearnedLength{1.78, 0.07};
