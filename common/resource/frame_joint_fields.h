@@ -98,9 +98,26 @@ struct BoneSigma : NumberField<BoneSigma, &JointResource::bone_sigma> {
       .since = "0.5"};
 };
 
+struct OrientationCovariance : CovarianceField<&JointResource::orientation_covariance> {
+  static constexpr std::array<FieldName, Covariance::kTerms> kNames{
+      {{"oxx", "xx"}, {"oxy", "xy"}, {"oxz", "xz"}, {"oyy", "yy"}, {"oyz", "yz"}, {"ozz", "zz"}}};
+  static constexpr Row kRow{
+      .label = "covariance of the orientation {}",
+      .comment =
+          "Where it is known, covariance of the orientation about {and}, in square radians: "
+          "of the small rotation vector, in the axes of the space, that takes the stated "
+          "orientation to the true one.",
+      .unit = "RAD2",
+      .decimals = 8,
+      .least = -kMaxCoordinate,
+      .most = kMaxCoordinate,
+      .refusal = "the covariance has a negative variance, or one beyond 10000",
+      .since = "0.5"};
+};
+
 using JointFields =
     Fields<Position, Ray, Orientation, State<true>, Variance, PositionCovariance, State<false>,
            Contributors, SharesOfSensors, Age, Velocity<JointResource>,
-           VelocityVariance<JointResource>, BoneLength, BoneSigma>;
+           VelocityVariance<JointResource>, BoneLength, BoneSigma, OrientationCovariance>;
 
 }  // namespace chorus::resource

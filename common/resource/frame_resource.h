@@ -35,6 +35,8 @@ struct JointResource : Joint {
   /// Fused: length of the bone that ends in the joint, and its standard deviation [m].
   std::optional<double> bone_length = {};
   std::optional<double> bone_sigma = {};
+  /// Of `orientation`, about the axes of the space [rad^2], if it is known.
+  Covariance orientation_covariance = {};
 };
 
 struct BodyResource {

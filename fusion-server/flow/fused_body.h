@@ -48,6 +48,9 @@ struct FusedBody {
   /// For how long after the instant what sensors saw was taken into account [s]; none: the body is
   /// what was known at the instant.
   std::optional<double> smoothed_over = {};
+  /// Of the skeleton's orientations, about the axes of the world [rad^2], where the method knows
+  /// it.
+  std::array<Covariance, kJointCount> orientation_covariance = {};
   std::string_view method = {};  ///< The fusion method's name (fusion/methods.h).
   /// What the method has learned of the person's build; none: it learns nothing.
   std::optional<BoneLengthOf> bones = {};

@@ -63,6 +63,7 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
     out.joints[j].shares = body.shares[j];
     if (body.contributors[j] == 0) out.joints[j].age = body.age[j];
     out.joints[j].covariance = joint.covariance;
+    out.joints[j].orientation_covariance = body.orientation_covariance[j];
     if (body.motion) set_velocity((*body.motion)[j], out.joints[j]);
   }
   set_trunk_velocity(body, out);

@@ -88,6 +88,7 @@ JointResource random_joint(Dice& dice, const FrameResource& frame) {
   if (dice.chance(0.7)) {
     joint.velocity = random_velocity(dice);
     joint.velocity_variance = rounded(dice.between(0, 0.1), 1e-6);
+    if (dice.chance(0.5)) joint.orientation_covariance = random_covariance(dice);
     joint.bone_length = rounded(dice.between(0, 0.5), 1e-4);
     joint.bone_sigma = rounded(dice.between(0, 0.1), 1e-4);
   }
@@ -195,6 +196,9 @@ void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri,
   add_shares(about, frame, joint);
   if (joint.age) about.decimal("age", *joint.age, 3);
   add_velocity(about, joint);
+  constexpr std::array kTurns{"oxx", "oxy", "oxz", "oyy", "oyz", "ozz"};
+  for (std::size_t i = 0; joint.orientation_covariance.known() && i < kTurns.size(); ++i)
+    about.decimal(kTurns[i], joint.orientation_covariance.term(i), 8);
   if (joint.bone_length) about.decimal("boneLength", *joint.bone_length, 4);
   if (joint.bone_sigma) about.decimal("boneSigma", *joint.bone_sigma, 4);
 }
@@ -206,6 +210,8 @@ std::string text_of(const JointResource& joint) {
   text += joint.measurement == Measurement::Ray ? " ray" : " point";
   for (std::size_t i = 0; joint.covariance.known() && i < Covariance::kTerms; ++i)
     text += " " + decimals(joint.covariance.term(i), 8);
+  for (std::size_t i = 0; joint.orientation_covariance.known() && i < Covariance::kTerms; ++i)
+    text += " o" + decimals(joint.orientation_covariance.term(i), 8);
   std::string shares = joint.shares.known() ? " s" : "";
   for (std::size_t i = 0; joint.shares.known() && i < kMaxSensors; ++i)
     shares += " " + decimals(joint.shares.of(i), 4);
