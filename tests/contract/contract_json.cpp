@@ -66,13 +66,25 @@ std::string readable_unit(std::string_view unit) {
   return {};
 }
 
+/// ", of a body or joint"
+std::string owners_of(const Term& term) {
+  std::string owners;
+  for (const auto& [owner, word] :
+       {std::pair{"Frame", "frame"}, {"Skeleton", "body"}, {"Joint", "joint"}}) {
+    const bool of_frame = std::string_view(owner) == "Skeleton" && term.of("Frame");
+    if (term.of(owner) && !of_frame) owners += std::string(owners.empty() ? "" : " or ") + word;
+  }
+  return ", of a " + owners;
+}
+
 std::string readable_type(const Term& term) {
-  if (term.kind == FieldKind::Name) return "string";
+  if (term.kind == FieldKind::Name) return "name of `[A-Za-z0-9_-]`" + owners_of(term);
   const std::string many = term.group.size() > 1 ? "s" : "";
   const std::string type = term.is_number() ? "decimal" + many : "integer";
   const bool limited = term.group.size() == 1 && term.row.most > 0;
   return type + readable_unit(term.row.unit) +
-         (limited ? ", " + short_number(term.least()) + " to " + short_number(term.row.most) : "");
+         (limited ? ", " + short_number(term.least()) + " to " + short_number(term.row.most) : "") +
+         owners_of(term);
 }
 
 }  // namespace
