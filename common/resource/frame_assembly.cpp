@@ -39,8 +39,12 @@ Result<Timestamp> time_of(const SubjectFacts& subject) {
 
 std::string between_limits(const Row& row) {
   const auto number = [](double value) { return std::to_string(static_cast<long long>(value)); };
-  const std::string unit = row.unit == "M2" ? " m^2" : row.unit == "SEC" ? " s" : "";
-  return "is not between " + number(row.least) + " and " + number(row.most) + unit;
+  constexpr std::array<std::array<std::string_view, 2>, 4> kUnits{
+      {{"M", " m"}, {"M2", " m^2"}, {"SEC", " s"}, {"M2-PER-SEC2", " m^2/s^2"}}};
+  const auto* const unit =
+      std::ranges::find(kUnits, row.unit, [](const auto& each) { return each[0]; });
+  return "is not between " + number(row.least) + " and " + number(row.most) +
+         std::string(unit == kUnits.end() ? "" : (*unit)[1]);
 }
 
 template <class Field>
@@ -85,7 +89,9 @@ Result<void> read_field(const SubjectFacts& facts, Owner& owner) {
   } else if constexpr (Field::kKind == FieldKind::Name) {
     const auto& value = facts.names[kNameNames.index_of(Field::kNames[0].name)];
     if (!value) return {};
-    if (!is_name(*value)) return refuse(facts, Field::kNames[0].name, "is no name of letters");
+    if (!is_name(*value))
+      return refuse(facts, Field::kNames[0].name,
+                    "is no name of 1-64 characters of A-Z a-z 0-9 _ -");
     Field::set(owner, *value);
   }
   return {};
