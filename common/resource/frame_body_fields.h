@@ -87,9 +87,9 @@ struct StatureSigma : NumberField<StatureSigma, &BodyResource::stature_sigma> {
 };
 
 struct MethodName : PlainField<MethodName, &BodyResource::method, FieldKind::Name> {
-  static constexpr std::array<FieldName, 1> kNames{{{"method"}}};
+  static constexpr std::array<FieldName, 1> kNames{{{"fusionMethod"}}};
   static constexpr Row kRow{
-      .label = "method",
+      .label = "fusion method",
       .comment =
           "Fused: name of the method that fused this person at this instant, as in the "
           "configuration (fusion.method); it may be another one than configured, for a person "

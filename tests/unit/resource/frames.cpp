@@ -278,7 +278,7 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     if (body.carried_for) skeleton.decimal("carriedFor", *body.carried_for, 3);
     if (body.smoothed_over) skeleton.decimal("smoothedOver", *body.smoothed_over, 3);
     add_velocity(skeleton, body);
-    if (body.method) skeleton.say("method", rdf::literal(*body.method));
+    if (body.method) skeleton.say("fusionMethod", rdf::literal(*body.method));
     if (body.stature) skeleton.decimal("stature", *body.stature, 4);
     if (body.stature_sigma) skeleton.decimal("statureSigma", *body.stature_sigma, 4);
     skeleton.times(body.captured);
