@@ -38,9 +38,9 @@ using Jacobian = Eigen::Matrix<double, 3, kUnknowns>;
 /// One of our points beside the reference at the same time.
 struct Pair {
   double time = 0.0;
-  Eigen::Vector3d ours;
-  Eigen::Vector3d reference;
-  Eigen::Vector3d speed;  ///< Of the reference [m/s].
+  Eigen::Vector3d ours = Eigen::Vector3d::Zero();
+  Eigen::Vector3d reference = Eigen::Vector3d::Zero();
+  Eigen::Vector3d speed = Eigen::Vector3d::Zero();  ///< Of the reference [m/s].
   /// The axes of the marker's offset: in the reference's world, or (of the body) in ours.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
 };

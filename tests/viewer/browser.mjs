@@ -1,6 +1,8 @@
 // Headless Chromium with software WebGL, for tests that look at the viewer.
 import { chromium } from 'playwright-core';
 
+export const PATIENCE_MS = 120000; // for anything to be shown, on whatever machine; a test that passes never waits so long
+
 export function launch() {
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
@@ -12,6 +14,7 @@ export function launch() {
 /// Opens the viewer and collects all errors that it reports.
 export async function openViewer(browser, url) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: 'dark' });
+  page.setDefaultTimeout(PATIENCE_MS);
   const complaints = [];
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('console', (message) => {

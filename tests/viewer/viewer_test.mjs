@@ -6,10 +6,10 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
-import { colorsOnCanvas, launch, openViewer } from './browser.mjs';
-import { live, lost, startFakeFusion, usualWorld } from './fake_fusion.mjs';
+import { PATIENCE_MS, colorsOnCanvas, launch, openViewer } from './browser.mjs';
+import { CLOCK_AHEAD_MS, live, lost, startFakeFusion, usualWorld } from './fake_fusion.mjs';
 
-const SOON = { timeout: 30000 }; // a loaded machine that draws by software shows a few pictures a second
+const SOON = {}; // as long as browser.mjs has patience: a loaded machine that draws by software shows a picture now and then
 const FILES = fileURLToPath(new URL('../../services/viewer/', import.meta.url));
 let browser;
 let fusion;
@@ -57,6 +57,11 @@ test('draws the fused body, the raw one of the live sensor, and both sensors', a
 const text = (page, selector) => page.textContent(selector);
 const headline = (page, pattern) => page.waitForFunction(
   (source) => new RegExp(source).test(document.getElementById('headline').textContent), pattern.source, SOON);
+/// Sentence and colour of the same moment: a page that was held up says so in between, in another colour.
+const headlineIn = (page, pattern, color) => page.waitForFunction(([source, wanted]) => {
+  const said = document.getElementById('headline');
+  return new RegExp(source).test(said.textContent) && getComputedStyle(said).color === wanted;
+}, [pattern.source, color], SOON);
 const colour = (page, selector) => page.evaluate((s) => getComputedStyle(document.querySelector(s)).color, selector);
 const GREEN = 'rgb(95, 211, 141)';
 const RED = 'rgb(255, 128, 116)';
@@ -68,8 +73,10 @@ async function picture(page, name) {
 test('the age of a frame is by the server’s clock, and errors of sensors are there to read', async () => {
   const { page } = await openViewer(browser, fusion.url);
   await headline(page, /^Live: one person\. s2 delivers nothing\.$/);
-  const age = Number.parseInt(await text(page, '#age'), 10);
-  assert.ok(age >= 0 && age < 1000, `an hour between the clocks must not be seen, but it says ${age} ms`);
+  // How old a frame really is when it is shown depends on the machine; an error of an hour does not. state_test.mjs has the milliseconds.
+  const [age, unit] = (await text(page, '#age')).split(' ');
+  const shown = Number(age) * (unit === 's' ? 1000 : 1);
+  assert.ok(shown >= 0 && shown < CLOCK_AHEAD_MS / 10, `an hour between the clocks must not be seen, but it says ${age} ${unit}`);
   assert.equal(await text(page, '#next'), 's2: connection refused');
   const facts = (id) => page.locator(`[data-sensor=${id}] dd`).allTextContents();
   assert.deepEqual((await facts('s1')).slice(0, 4), ['1', '30.0 Hz', '12 ms', '0.97']);
@@ -86,21 +93,18 @@ test('green only while all is well: nobody there, no sensors, dead sensors', asy
   await headline(page, /^Live: one person\. The places are in doubt\.$/); // Good, but with a reason
   assert.notEqual(await colour(page, '#headline'), GREEN);
   world.registration.reasons = [];
-  await headline(page, /^Live: one person, 2 sensors\.$/);
-  assert.equal(await colour(page, '#headline'), GREEN);
+  await headlineIn(page, /^Live: one person, 2 sensors\.$/, GREEN);
   world.people = 0;
   await headline(page, /^Nobody is in sight\.$/);
   assert.notEqual(await colour(page, '#headline'), GREEN);
   await picture(page, 'nobody');
   world.sensors = { s1: lost(), s2: lost({ lastError: 'no answer within 3 s' }) };
-  await headline(page, /^None of the 2 sensors delivers anything\.$/);
-  assert.equal(await colour(page, '#headline'), RED);
+  await headlineIn(page, /^None of the 2 sensors delivers anything\.$/, RED);
   assert.equal(await colour(page, '[data-sensor=s1] .state'), RED);
   assert.deepEqual(await page.locator('.card p').allTextContents(), ['connection refused', 'no answer within 3 s']);
   await picture(page, 'dead');
   world.sensors = {};
-  await headline(page, /^No sensors are configured\.$/);
-  assert.equal(await colour(page, '#headline'), RED);
+  await headlineIn(page, /^No sensors are configured\.$/, RED);
   await picture(page, 'none');
   await page.close();
 });
@@ -178,7 +182,7 @@ test('the origin is set where one person stands still', async () => {
 
 /// Where the head of the fake person is now [px]; the person sways, so it is asked for again and again.
 const pointAtHead = async (page) => {
-  for (let i = 0; i < 60; ++i) {
+  for (const end = Date.now() + PATIENCE_MS; Date.now() < end;) {
     const at = await page.evaluate(() => window.chorusViewer.where('Head'));
     if (at) await page.mouse.move(at.x, at.y);
     if (await page.isVisible('#joint')) return at;
@@ -205,7 +209,8 @@ test('uncertainty is shown when asked for: ellipsoids, people, and a joint with 
   await page.mouse.down();
   await page.mouse.up();
   await page.mouse.move(1200, 60);
-  await page.waitForTimeout(300);
+  const drawn = await page.evaluate(() => window.chorusViewer.fusedFrames);
+  await page.waitForFunction((before) => window.chorusViewer.fusedFrames > before + 3, drawn, SOON);
   const said = (await text(page, '#joint')).split('\n');
   assert.deepEqual(said.slice(0, 3), ['Head, person 1', '95 % within ±56 × 28 × 14 mm', 'from s1 80 %, s2 20 %'], 'it stays when clicked');
   assert.match(said[3], /^seen, \d+ ms old$/);
@@ -237,8 +242,7 @@ test('says so when the server goes away, and shows nothing of it any more', asyn
   const { page } = await openViewer(browser, doomed.url);
   await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5 && window.chorusViewer.rawBones.s1 > 0, null, SOON);
   doomed.stop();
-  await headline(page, /^The fusion server has not answered for \d+ s\.$/);
-  assert.equal(await colour(page, '#headline'), RED);
+  await headlineIn(page, /^The fusion server has not answered for \d+ s\.$/, RED);
   await page.waitForFunction(() => window.chorusViewer.fresh === 'gone', null, SOON);
   await page.waitForTimeout(500);
   const shown = await page.evaluate(() => window.chorusViewer);

@@ -37,6 +37,8 @@ class FakeFusion:
     def __init__(self, lines):
         lines = [line for line in lines.splitlines() if line]
         began = time.monotonic() + 0.2
+        self.served = 0  # frames
+        fake = self
 
         class Handler(http.server.BaseHTTPRequestHandler):
             def do_GET(self):
@@ -47,6 +49,7 @@ class FakeFusion:
                     time.sleep(0.005)
                     status = 304
                 body = lines[min(index, len(lines) - 1)] if status == 200 else b""
+                fake.served += status == 200
                 self.send_response(status)
                 self.send_header("ETag", tag)
                 if status != 304:

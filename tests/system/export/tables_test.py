@@ -162,7 +162,8 @@ class Export(unittest.TestCase):
             server.stop()
         self.assertEqual(code, 0, error)
         rows = list(csv.DictReader(io.StringIO(out.decode())))
-        self.assertGreater(len(rows) / 25, 15, "a second of frames at 30 Hz, some lost to a slow machine")
+        # The last one may have been under way when the time was over.
+        self.assertGreaterEqual(len(rows) / 25, max(1, server.served - 2), "what was served is written")
         first = next(i for i, frame in enumerate(self.frames) if frame["captured"] == rows[0]["utc"])
         self.assertAlmostEqual(float(rows[0]["x_m"]), self.joints(first)["SpineBase"]["x"], places=6)
 

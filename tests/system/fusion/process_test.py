@@ -126,7 +126,7 @@ class Program(Rig):
         waiting.sendall(f"GET /registration HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: {tag}\r\nPrefer: wait=30\r\n\r\n".encode())
         begun = time.monotonic()
         self.assertEqual(fusion.stop(), 0)
-        self.assertLess(time.monotonic() - begun, 2.5)
+        self.assertLess(time.monotonic() - begun, 20.0, "the client would have waited 30 s")
         waiting.close()
 
     def test_every_resource_answers_in_every_format(self):

@@ -75,7 +75,7 @@ class Process:
     def alive(self):
         return self.child.poll() is None
 
-    def stop(self, sig=signal.SIGTERM, patience=10.0):
+    def stop(self, sig=signal.SIGTERM, patience=PATIENCE):
         if self.alive():
             self.child.send_signal(sig)
         return self.child.wait(timeout=patience)

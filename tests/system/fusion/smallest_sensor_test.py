@@ -16,7 +16,7 @@ from ports import free_ports  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
 FUSION = Path(os.environ["CHORUS_BIN"]) / "chorus-fusion"
-SEEN_WITHIN_S = 30
+SEEN_WITHIN_S = 90
 WATCHED_S = 3
 PLACE = {"x": 0, "y": 1.2, "z": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}  # according to its floor plane
 
@@ -57,10 +57,16 @@ class SmallestSensor(unittest.TestCase):
         head = bodies[0]["joints"]["Head"]
         self.assertAlmostEqual(head["y"], 1.65, delta=0.05)
 
+        def counts():
+            return asked(f"{base}/sensors/")["sensors"]["s1"], asked(f"http://127.0.0.1:{port + 1}/frame")["sequence"]
+
+        before, first = counts()
         time.sleep(WATCHED_S)
-        sensor = asked(f"{base}/sensors/")["sensors"]["s1"]
+        sensor, last = counts()
         self.assertEqual(sensor["state"], "live", sensor)
-        self.assertGreater(sensor["rateHz"], 25, "every frame comes, and at once")
+        came = sensor["framesReceived"] - before["framesReceived"]
+        # A poller that waits for nothing gets each frame; 10 are allowed for between the two questions and for a busy machine.
+        self.assertGreater(came, 0.7 * (last - first) - 10, "every frame comes, and at once")
 
 
 if __name__ == "__main__":

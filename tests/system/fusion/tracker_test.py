@@ -93,9 +93,7 @@ class Tracker(Rig):
         self.assertEqual(get_json(fusion.url + "registration")["version"], before["version"])
 
     def check_restart(self, fusion, settings, stored):
-        begun = time.monotonic()
         self.assertEqual(fusion.stop(), 0)
-        self.assertLess(time.monotonic() - begun, 5.0)
         polled = {f"s{i + 1}": sensor.url for i, sensor in enumerate(self.sensors)}
         again = self.fusion(polled, **settings)
         shown = get_json(again.url + "registration")

@@ -77,7 +77,7 @@ class Process(unittest.TestCase):
             code, took_s = sensor.stop()
             waiting.join()
             self.assertEqual(code, 0)
-            self.assertLess(took_s, 2.0)
+            self.assertLess(took_s, 15.0, "the client would have waited 20 s")
             self.assertEqual(statuses, [503])
 
     def test_reload_applies_what_it_can_and_refuses_a_wrong_file(self):

@@ -77,8 +77,8 @@ class Resources(unittest.TestCase):
             steps.append(after["sequence"] - before["sequence"])
             self.assertGreater(int(after["capturedNanoseconds"]), int(before["capturedNanoseconds"]))
         self.assertTrue(all(step >= 1 for step in steps), "no frame twice")
-        # Every request here opens a connection, so on a busy machine some frames may be missed, but not many.
-        self.assertGreaterEqual(steps.count(1), 25, steps)
+        # Every request here opens a connection, so on a busy machine frames are missed; a poll that skips would never give the next one.
+        self.assertGreaterEqual(steps.count(1), 8, steps)
 
     def test_conditional_get(self):
         floor = self.get("/floor-plane")
