@@ -27,6 +27,11 @@ void RateReport::hit(std::string_view detail) {
   write_line();
 }
 
+std::string RateReport::last() const {
+  const std::scoped_lock lock(mutex_);
+  return detail_;
+}
+
 /// Called with the lock held, so that the lines of one event stay in order.
 void RateReport::write_line() {
   const std::uint64_t count = total_ - reported_;

@@ -25,13 +25,15 @@ class RateReport {
 
   /// Counts one event; the log line shows the `detail` of the latest one.
   void hit(std::string_view detail = {});
+  /// The detail of the last hit; empty if there was none.
+  [[nodiscard]] std::string last() const;
 
  private:
   void write_line();
 
   const std::string event_;
   const log::Level level_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::uint64_t total_ = 0;
   std::uint64_t reported_ = 0;
   std::string detail_;  ///< The detail of the last hit.

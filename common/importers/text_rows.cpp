@@ -47,7 +47,7 @@ Result<std::string> read_bounded(const std::filesystem::path& file, std::uintmax
     return fail(ErrorCode::InvalidArgument, file.string(), "is a folder; name the file in it.");
   if (!std::filesystem::is_regular_file(file, failed))
     return fail(ErrorCode::NotFound, file.string(), "there is no such file.");
-  auto text = read_file(file, max_bytes).map_error([](Error error) {
+  auto text = read_file_or_pipe(file, max_bytes).map_error([](Error error) {
     if (error.code == ErrorCode::TooLarge) error.message += ". Cut the recording into parts.";
     return error;
   });

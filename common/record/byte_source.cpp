@@ -59,7 +59,7 @@ class MemoryBytes final : public ByteSource {
 }  // namespace
 
 Result<std::unique_ptr<ByteSource>> open_bytes(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct ::stat about {};
   const bool stated = file >= 0 && ::fstat(file, &about) == 0;
   if (stated && S_ISREG(about.st_mode)) {

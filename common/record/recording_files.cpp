@@ -31,6 +31,8 @@ std::string taken(std::istream& in, std::size_t count) {
 std::optional<std::uint64_t> first_log_time(const fs::path& file) {
   constexpr std::size_t kBeforeTimeOfMessage = 2 + 4;  // channel and sequence
   constexpr std::size_t kTime = 8;
+  std::error_code unknown;
+  if (!fs::is_regular_file(file, unknown)) return std::nullopt;  // Opening a pipe would wait.
   std::ifstream in(file, std::ios::binary);
   if (taken(in, mcap::kMagic.size()) != mcap::kMagic) return std::nullopt;
   while (in) {

@@ -16,7 +16,7 @@ std::string advice_on(ErrorCode code) {
 Result<std::string> text_of(const std::string& path) {
   constexpr std::uintmax_t kMaxBytes = 16u << 20;
   if (path.empty()) return std::string("{}");
-  auto text = read_file(path, kMaxBytes);
+  auto text = read_file_or_pipe(path, kMaxBytes);
   if (text) return text;
   return fail(ErrorCode::Io, path,
               "the configuration file cannot be read: " + text.error().message +

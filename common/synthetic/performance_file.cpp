@@ -1,13 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <system_error>
 
+#include "common/base/file.h"
 #include "common/motion/asf_amc.h"
 #include "common/motion/bvh.h"
 #include "common/motion/c3d.h"
@@ -26,12 +23,7 @@ Result<std::string> text_of(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, problem)) {
     return fail(ErrorCode::InvalidArgument, path.string(), "is a folder; name a motion file");
   }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return fail(ErrorCode::NotFound, path.string(), std::strerror(errno));
-  if (std::filesystem::file_size(path, problem) > kMaxBytes && !problem) {
-    return fail(ErrorCode::TooLarge, path.string(), "is larger than 256 MB");
-  }
-  return std::string(std::istreambuf_iterator<char>(file), {});
+  return read_file(path, kMaxBytes);
 }
 
 /// One motion as a result; when its conversion fails, the error names the file.

@@ -28,8 +28,7 @@ std::string RegistrationStore::path() const { return folder_ + "/registration.js
 std::string RegistrationStore::people_path() const { return folder_ + "/people.json"; }
 
 Result<std::optional<Registration>> RegistrationStore::load() const {
-  std::error_code ignored;
-  if (folder_.empty() || !fs::exists(path(), ignored)) return std::nullopt;
+  if (folder_.empty() || !is_there(path())) return std::nullopt;
   auto registration = load_registration_file(path());
   if (!registration) return pass(registration);
   return std::optional(std::move(*registration));
@@ -38,7 +37,7 @@ Result<std::optional<Registration>> RegistrationStore::load() const {
 Recovered RegistrationStore::recover(const Error& damage) const {
   fs::path aside = path() + ".damaged";
   std::error_code error;
-  for (int i = 2; fs::exists(aside, error); ++i) aside = path() + ".damaged-" + std::to_string(i);
+  for (int i = 2; is_there(aside); ++i) aside = path() + ".damaged-" + std::to_string(i);
   fs::rename(path(), aside, error);
   Recovered out{load_earlier(), "the stored registration cannot be read: " + to_string(damage)};
   out.told += error ? "; it cannot be moved aside: " + error.message()
@@ -61,8 +60,7 @@ Result<void> RegistrationStore::write(const std::string& file, const std::string
 }
 
 std::optional<Registration> RegistrationStore::load_earlier() const {
-  std::error_code ignored;
-  if (folder_.empty() || !fs::exists(path() + ".old", ignored)) return std::nullopt;
+  if (folder_.empty() || !is_there(path() + ".old")) return std::nullopt;
   auto earlier = load_registration_file(path() + ".old");
   if (!earlier) return std::nullopt;
   return std::move(*earlier);
@@ -78,8 +76,7 @@ Result<void> RegistrationStore::save(const Registration& registration,
 }
 
 Result<std::uint64_t> RegistrationStore::load_next_person() const {
-  std::error_code ignored;
-  if (folder_.empty() || !fs::exists(people_path(), ignored)) return 1;
+  if (folder_.empty() || !is_there(people_path())) return 1;
   const auto text = read_file(people_path(), kMaxBytes);
   if (!text) return pass(text);
   const auto json = parse_json(*text).value_or(nlohmann::json());
@@ -97,7 +94,7 @@ Result<void> RegistrationStore::save_next_person(std::uint64_t next) const {
 
 Result<void> RegistrationStore::forget() const {
   std::error_code error;
-  if (folder_.empty() || !fs::exists(path(), error)) return {};
+  if (folder_.empty() || !is_there(path())) return {};
   fs::rename(path(), path() + ".old", error);
   if (error) return fail(ErrorCode::Io, path(), "cannot be moved aside: " + error.message());
   sync_folder(folder_);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <thread>
+
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -46,6 +48,36 @@ TEST(File, ThatCannotBeReplacedStaysAsItWas) {
   EXPECT_THAT(replace_file(folder / "a", "new"), FailsWith(ErrorCode::Io));
   EXPECT_EQ(bytes_of(folder / "a"), "old");
   EXPECT_THAT(replace_file(folder / "no/such", "new"), FailsWith(ErrorCode::Io));
+}
+
+TEST(File, APipeIsNoFileAndNobodyWaitsForIt) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const auto read = read_file(folder / "pipe", 10);
+  ASSERT_THAT(read, FailsWith(ErrorCode::Io));
+  EXPECT_THAT(read.error().message, ::testing::HasSubstr("a file is wanted"));
+  EXPECT_THAT(read_file("/dev/null", 10), FailsWith(ErrorCode::Io));
+  EXPECT_THAT(replace_file(folder / "pipe", "text"), FailsWith(ErrorCode::Io)) << "nobody reads it";
+}
+
+TEST(File, APipeThatAPersonNamedIsReadToItsEnd) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(folder / "pipe") << std::string(200'000, 'x'); });
+  EXPECT_EQ(read_file_or_pipe(folder / "pipe", 1 << 20).value_or("").size(), 200'000u);
+  writer.join();
+  EXPECT_THAT(read_file_or_pipe(folder / "", 10), FailsWith(ErrorCode::Io));
+  EXPECT_EQ(read_file_or_pipe("/dev/null", 10).value_or("?"), "");
+}
+
+TEST(File, ALinkToItselfIsThereAndIsTold) {
+  const TemporaryFolder folder;
+  fs::create_symlink(folder / "self", folder / "self");
+  EXPECT_TRUE(is_there(folder / "self"));
+  EXPECT_FALSE(is_there(folder / "none"));
+  const auto read = read_file(folder / "self", 10);
+  ASSERT_THAT(read, FailsWith(ErrorCode::Io));
+  EXPECT_THAT(read.error().message, ::testing::HasSubstr("leads back to itself"));
 }
 
 TEST(File, DevicesAreWrittenToAndNotReplaced) {

@@ -28,6 +28,9 @@ bool is_heif(const std::string& file) {
 }  // namespace
 
 Result<Picture> read_picture(const std::string& file) {
+  std::error_code unknown;
+  if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown))
+    return fail(ErrorCode::InvalidArgument, file, "is no file; name a picture");
   auto pixels = std::make_shared<cv::Mat>();
   try {
     *pixels = cv::imread(file, cv::IMREAD_COLOR);
