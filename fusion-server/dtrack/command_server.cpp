@@ -7,9 +7,11 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "common/base/log.h"
 #include "common/base/rate_report.h"
+#include "common/base/shortened.h"
 #include "common/net/capacity.h"
 #include "common/net/event_loop.h"
 #include "common/net/every.h"
@@ -25,6 +27,7 @@ using net::tcp;
 constexpr std::size_t kMaxWaiting = 4096;  ///< Bytes of answers that a client has not read.
 constexpr std::size_t kMaxRefused = 64;    ///< Commands of one client that are unknown or not
                                            ///< permitted.
+constexpr std::size_t kMostShown = 80;     ///< Characters of a refused command in status and log.
 constexpr std::chrono::milliseconds kSweep{250};
 
 struct Connection {
@@ -40,6 +43,7 @@ struct Connection {
   std::string waiting;  ///< Answers that have not been handed to the operating system.
   std::string writing;  ///< Answers being written.
   SteadyTime deadline;
+  SteadyTime heard = std::chrono::steady_clock::now();
 };
 using ConnectionPtr = std::shared_ptr<Connection>;
 
@@ -53,6 +57,9 @@ struct CommandServer::Impl {
   void welcome(net::Socket socket);
   /// Why a further connection from this host is refused; empty if it is accepted.
   [[nodiscard]] std::string objection(const std::string& host) const;
+  [[nodiscard]] net::Capacity capacity() const;
+  /// If there is no place, an idle connection gives its own to one from this host.
+  void make_room(const std::string& host);
   void read(const ConnectionPtr& connection);
   void obey(const ConnectionPtr& connection);
   void write(const ConnectionPtr& connection);
@@ -85,14 +92,29 @@ void CommandServer::Impl::ensure() {
   sweeping.ensure();
 }
 
+net::Capacity CommandServer::Impl::capacity() const {
+  return {static_cast<std::size_t>(options.max_connections),
+          static_cast<std::size_t>(options.max_connections_per_address),
+          "outputs.dtrack.command.max_connections",
+          "outputs.dtrack.command.max_connections_per_address"};
+}
+
 std::string CommandServer::Impl::objection(const std::string& host) const {
   const auto of_host = std::ranges::count(
       connections, host, [](const ConnectionPtr& connection) { return connection->host; });
-  return net::objection({static_cast<std::size_t>(options.max_connections),
-                         static_cast<std::size_t>(options.max_connections_per_address),
-                         "outputs.dtrack.command.max_connections",
-                         "outputs.dtrack.command.max_connections_per_address"},
-                        {connections.size(), static_cast<std::size_t>(of_host)}, host);
+  return net::objection(capacity(), {connections.size(), static_cast<std::size_t>(of_host)}, host);
+}
+
+void CommandServer::Impl::make_room(const std::string& host) {
+  std::vector<ConnectionPtr> all(connections.begin(), connections.end());
+  std::vector<net::Occupant> occupants;
+  for (const ConnectionPtr& one : all) {
+    const bool at_work = device.measuring && one == connections.front();
+    occupants.push_back({one->host, one->conversation.answered > 0, one->heard, at_work});
+  }
+  const auto idle =
+      net::who_makes_room(capacity(), occupants, host, std::chrono::steady_clock::now());
+  if (idle) turn_away(all[*idle], "it was idle, and another client wanted its place");
 }
 
 void CommandServer::Impl::welcome(net::Socket socket) {
@@ -104,6 +126,7 @@ void CommandServer::Impl::welcome(net::Socket socket) {
       !why.empty())
     return refuse(why);
   const std::string host = peer.address().to_string();
+  make_room(host);
   if (const std::string why = objection(host); !why.empty()) return refuse(why);
   auto connection = std::make_shared<Connection>(std::move(socket), next_serial++);
   connection->host = host;
@@ -133,14 +156,19 @@ void CommandServer::Impl::obey(const ConnectionPtr& connection) {
   std::string command;
   while (connection->reader.next(command)) {
     conversation.in_control = connection == connections.front();
+    const std::size_t refused_before = conversation.refused;
     connection->waiting += answer(command, conversation, device);
+    if (conversation.refused > refused_before)
+      refuse("a command that is unknown, or not permitted to it: " +
+             shortened(command, kMostShown));
     if (conversation.refused > kMaxRefused) return turn_away(connection, "it knows no command");
     if (connection->waiting.size() > kMaxWaiting) {
       return turn_away(connection, "it does not read its answers");
     }
   }
   if (conversation.answered > answered) {
-    connection->deadline = std::chrono::steady_clock::now() + options.idle;
+    connection->heard = std::chrono::steady_clock::now();
+    connection->deadline = connection->heard + options.idle;
   }
   tell_controller();
   write(connection);
@@ -237,6 +265,7 @@ SinkCounters CommandServer::counters() const {
   SinkCounters counters;
   counters.refused = impl_->refused;
   counters.clients = impl_->clients;
+  counters.last_refusal = impl_->turned_away.last();
   return counters;
 }
 

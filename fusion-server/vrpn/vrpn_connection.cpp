@@ -4,10 +4,14 @@
 
 #include <utility>
 
+#include "common/base/shortened.h"
+
 namespace chorus::vrpn {
 namespace {
 
 using net::error_code;
+
+constexpr std::size_t kMostShown = 80;  // Characters of a name in status and log.
 
 /// Room for one or two frames: the kernel should not buffer seconds of old poses.
 constexpr int kSendBuffer = 128 * 1024;
@@ -80,8 +84,14 @@ void Connection::read() {
 void Connection::on_read(error_code failed, std::size_t size) {
   if (!socket_.is_open()) return;
   if (failed) return close();
+  heard_ = std::chrono::steady_clock::now();
   auto answer = conversation_.receive({input_.data(), size}, context_.clock->now());
   if (!answer) return refuse(answer.error().message);
+  if (const auto name = conversation_.take_unknown()) {
+    ++context_.counters->refused;
+    context_.turned_away->hit("a client asks for \"" + shortened(*name, kMostShown) +
+                              "\", which is none of our trackers");
+  }
   if (const auto port = conversation_.datagram_port()) {
     error_code gone;
     datagrams_to_ = {socket_.remote_endpoint(gone).address(), *port};

@@ -53,6 +53,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Closes the connection when a deadline has passed.
   void sweep(SteadyTime now);
   void close();
+  /// Counts and logs the reason, and closes.
+  void refuse(const std::string& reason);
+
+  /// True once the client's cookie has arrived.
+  [[nodiscard]] bool established() const { return conversation_.established(); }
+  /// When the client last said anything; when it connected, if it never did.
+  [[nodiscard]] SteadyTime heard() const { return heard_; }
 
  private:
   static constexpr std::size_t kMaxAnswers = 65536;
@@ -62,7 +69,6 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void write();
   void on_written(net::error_code failed);
   void send_datagrams(const Reports& reports);
-  void refuse(const std::string& reason);
 
   ConnectionContext context_;
   net::Socket socket_;
@@ -75,6 +81,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::shared_ptr<const Reports> waiting_;  ///< The newest frame that has not been written.
   std::string output_;                      ///< The bytes being written.
   bool writing_ = false;
+  SteadyTime heard_ = std::chrono::steady_clock::now();
   SteadyTime deadline_;  ///< For the cookie; later for the write in progress.
 };
 

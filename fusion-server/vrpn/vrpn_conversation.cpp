@@ -6,6 +6,7 @@ namespace chorus::vrpn {
 namespace {
 
 constexpr std::string_view kPing = "vrpn_Base ping_message";
+constexpr std::string_view kControl = "VRPN Control";  // Every client's own sender.
 constexpr std::int32_t kMinDatagramPort = 1024;
 constexpr std::int32_t kMaxDatagramPort = 65535;
 
@@ -62,6 +63,7 @@ Result<void> Conversation::take_sender(const Message& message) {
   const auto id = static_cast<std::size_t>(message.sender);
   if (id >= tracker_of_sender_.size()) tracker_of_sender_.resize(id + 1);
   tracker_of_sender_[id] = trackers_->index_of(*name);
+  if (!tracker_of_sender_[id] && *name != kControl) unknown_ = std::string(*name);
   wants_all_ = true;
   wanted_.assign(trackers_->size(), false);
   for (const auto& tracker : tracker_of_sender_) {

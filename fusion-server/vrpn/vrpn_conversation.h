@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/base/result.h"
@@ -42,6 +43,11 @@ class Conversation {
   /// The port at the peer's address for datagrams; none: everything goes over TCP.
   [[nodiscard]] std::optional<std::uint16_t> datagram_port() const { return datagram_port_; }
 
+  /// The last name that the client asked for and that is none of our trackers; each is told once.
+  [[nodiscard]] std::optional<std::string> take_unknown() {
+    return std::exchange(unknown_, std::nullopt);
+  }
+
   /// The reports that the client wants, numbered, as one piece of the TCP stream.
   [[nodiscard]] std::string stream(const Reports& reports);
   /// The same reports as datagrams of whole messages, each of at most kMaxDatagram bytes.
@@ -65,6 +71,7 @@ class Conversation {
   std::vector<std::optional<std::size_t>> tracker_of_sender_;  ///< By the client's sender ids.
   std::vector<bool> wanted_;                                   ///< By tracker.
   bool wants_all_ = true;
+  std::optional<std::string> unknown_;
   std::uint32_t stream_sequence_ = 0;
   std::uint32_t datagram_sequence_ = 0;
 };

@@ -63,6 +63,12 @@ struct Server::Impl {
   void turn_away(const std::string& reason);
   /// Why a further client from this address is refused; empty if it is accepted.
   [[nodiscard]] std::string objection(const asio::ip::address& of) const;
+  [[nodiscard]] net::Capacity capacity() const {
+    return {options.max_clients, options.max_clients_per_address, "outputs.vrpn.max_clients",
+            "outputs.vrpn.max_clients_per_address"};
+  }
+  /// If there is no place, an idle client gives its own to one from this address.
+  void make_room(const asio::ip::address& newcomer);
 
   struct Client {
     std::shared_ptr<Connection> connection;
@@ -133,15 +139,30 @@ std::string Server::Impl::objection(const asio::ip::address& of) const {
   const auto under_way = std::ranges::count_if(
       attempts, [&](const auto& attempt) { return attempt->asker.address == address; });
   return net::objection(
-      {options.max_clients, options.max_clients_per_address, "outputs.vrpn.max_clients",
-       "outputs.vrpn.max_clients_per_address"},
+      capacity(),
       {clients.size() + attempts.size(), static_cast<std::size_t>(connected + under_way)}, address);
+}
+
+void Server::Impl::make_room(const asio::ip::address& newcomer) {
+  if (!options.allow.objection(newcomer, "outputs.vrpn.allow").empty()) return;
+  std::vector<std::shared_ptr<Connection>> all;
+  std::vector<net::Occupant> occupants;
+  for (const auto& [key, client] : clients) {
+    all.push_back(client.connection);
+    occupants.push_back(
+        {client.address, client.connection->established(), client.connection->heard()});
+  }
+  const std::string address = text_of(newcomer);
+  const auto idle =
+      net::who_makes_room(capacity(), occupants, address, std::chrono::steady_clock::now());
+  if (idle) all[*idle]->refuse("it was idle, and another client wanted its place");
 }
 
 void Server::Impl::on_accepted(net::Socket socket) {
   error_code gone;
   const auto remote = socket.remote_endpoint(gone);
   if (gone) return;
+  make_room(remote.address());
   if (const std::string why = objection(remote.address()); !why.empty()) return turn_away(why);
   welcome(std::move(socket), std::nullopt);
 }
@@ -170,6 +191,7 @@ void Server::Impl::on_request(error_code failed, std::size_t size) {
 
 void Server::Impl::answer_request(const tcp::endpoint& to) {
   const Asker asker{text_of(to.address()), to.port()};
+  make_room(to.address());
   if (const std::string why = objection(to.address()); !why.empty()) return turn_away(why);
   const auto verdict = gate.ask(asker, std::chrono::steady_clock::now());
   if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
@@ -292,6 +314,7 @@ SinkCounters Server::counters() const {
   counters.failed = impl_->counters.failed;
   counters.refused = impl_->counters.refused;
   counters.clients = impl_->counters.clients;
+  counters.last_refusal = impl_->turned_away.last();
   return counters;
 }
 

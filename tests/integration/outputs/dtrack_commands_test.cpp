@@ -103,6 +103,25 @@ TEST(DtrackCommandServer, OneHostDoesNotTakeAllPlaces) {
   EXPECT_EQ(ask(another, "dtrack2 getmsg"), "dtrack2 ok\0"s);
 }
 
+TEST(DtrackCommandServer, IdleConnectionsOfAHostMakeRoomForItsOwnClient) {
+  const auto server = server_with({.max_connections_per_address = 2});
+  RawClient first(server->port());
+  RawClient second(server->port());
+  ASSERT_TRUE(wait_for([&] { return server->counters().clients == 2; }));
+  RawClient third(server->port());
+  EXPECT_EQ(ask(third, "dtrack2 getmsg"), "dtrack2 ok\0"s);
+  EXPECT_EQ(first.hear_all(), "");
+  EXPECT_TRUE(first.ended()) << "it has said nothing, and for longest";
+}
+
+TEST(DtrackCommandServer, ACommandThatIsRefusedCanBeSeen) {
+  const auto server = server_with();
+  RawClient client(server->port());
+  (void)ask(client, "dtrack2 self destruct");
+  EXPECT_EQ(server->counters().refused, 1u);
+  EXPECT_NE(server->counters().last_refusal.find("dtrack2 self destruct"), std::string::npos);
+}
+
 TEST(DtrackCommandServer, TenThousandConnectionsCostNobodyElseAnything) {
   const auto server = server_with();
   RawClient client(server->port());

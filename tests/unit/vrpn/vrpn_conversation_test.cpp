@@ -162,6 +162,17 @@ TEST(VrpnSession, AClientGetsTheTrackersItNames) {
   EXPECT_EQ(client.poses(reports).size(), 1 + 24u);
 }
 
+TEST(VrpnSession, ANameThatIsNoneOfOursIsToldOnce) {
+  Conversation conversation(trackers(), {"192.0.2.1", false});
+  (void)conversation.receive(
+      vrpn_cookie() + vrpn_description(-1, 0, "VRPN Control") + vrpn_description(-1, 1, "Tracker0"),
+      from_unix_ns(0));
+  EXPECT_EQ(conversation.take_unknown(), "Tracker0");
+  EXPECT_EQ(conversation.take_unknown(), std::nullopt);
+  (void)conversation.receive(vrpn_description(-1, 2, "Body0"), from_unix_ns(0));
+  EXPECT_EQ(conversation.take_unknown(), std::nullopt);
+}
+
 TEST(VrpnSession, AnswersPingsToOurTrackersOnly) {
   Heard client;
   client.say(vrpn_cookie() + vrpn_description(-1, 4, "Body1") + vrpn_description(-1, 5, "Other") +
