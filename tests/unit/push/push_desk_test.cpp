@@ -150,20 +150,38 @@ TEST_F(Desk, SaysWhyNothingComes) {
   EXPECT_EQ(rig.desk->status().refused, 1U);
 }
 
-TEST_F(Desk, LetsOnlySoManyIn) {
-  for (int i = 0; i < 4; ++i) EXPECT_THAT(rig.desk->connect(), IsOk());
-  const auto fifth = rig.desk->connect();
-  ASSERT_THAT(fifth, FailsWith(ErrorCode::Unavailable));
-  EXPECT_THAT(fifth.error().message, HasSubstr("max_pushers"));
-  rig.desk->disconnect();
-  EXPECT_THAT(rig.desk->connect(), IsOk());
+TEST_F(Desk, WhoSaysNothingMakesRoomForTheNext) {
+  std::vector<PushDesk::Guest> silent;
+  for (int i = 0; i < 16; ++i) silent.push_back(*rig.desk->connect("local socket"));
+  rig.desk->greeted(silent[0]);
+  silent.push_back(*rig.desk->connect("local socket"));
+  for (const auto guest : silent) EXPECT_FALSE(rig.desk->must_leave(guest));
+  const auto next = rig.desk->connect("local socket");
+  ASSERT_THAT(next, IsOk());
+  EXPECT_FALSE(rig.desk->must_leave(silent[0])) << "it has said hello";
+  EXPECT_TRUE(rig.desk->must_leave(silent[1])) << "the oldest that has not";
+  EXPECT_FALSE(rig.desk->must_leave(silent[2]));
+  EXPECT_FALSE(rig.desk->must_leave(*next));
+}
+
+TEST_F(Desk, SilentOnesOfOneWayTakeNoPlaceOfAnother) {
+  const auto waiting = *rig.desk->connect("WebSocket");
+  for (int i = 0; i < 60; ++i) EXPECT_THAT(rig.desk->connect("local socket"), IsOk());
+  EXPECT_FALSE(rig.desk->must_leave(waiting));
+  EXPECT_THAT(rig.desk->connect("WebSocket"), IsOk());
+}
+
+TEST_F(Desk, AFloodOfSilentOnesIsBounded) {
+  int in = 0;
+  for (int i = 0; i < 1000; ++i) in += rig.desk->connect("local socket").has_value() ? 1 : 0;
+  EXPECT_EQ(in, 16 + 64);
 }
 
 TEST_F(Desk, IsShutForASecondAfterAFlood) {
   rig.desk->shut_for_a_moment();
-  EXPECT_THAT(rig.desk->connect(), FailsWith(ErrorCode::Unavailable));
+  EXPECT_THAT(rig.desk->connect("WebSocket"), FailsWith(ErrorCode::Unavailable));
   rig.pass(milliseconds(1001));
-  EXPECT_THAT(rig.desk->connect(), IsOk());
+  EXPECT_THAT(rig.desk->connect("WebSocket"), IsOk());
 }
 
 }  // namespace

@@ -221,7 +221,8 @@ TEST_F(Session, AFloodEndsIt) {
   EXPECT_LE(messages, 4 * 120 + 1);
   ASSERT_THAT(heard, FailsWith(ErrorCode::Unavailable));
   EXPECT_THAT(heard.error().message, HasSubstr("480 messages"));
-  EXPECT_THAT(rig.desk->connect(), FailsWith(ErrorCode::Unavailable)) << "not at once again";
+  EXPECT_THAT(rig.desk->connect("WebSocket"), FailsWith(ErrorCode::Unavailable))
+      << "not at once again";
 }
 
 TEST_F(Session, SoDoTooManyBytes) {

@@ -16,7 +16,8 @@ struct BridgeSettings {
   double max_rate_hz = 120.0;    ///< Frames beyond this rate are dropped.
   std::size_t max_message_bytes = 256 * 1024;
   double max_bytes_per_s = 4e6;  ///< A pusher that sends more is disconnected.
-  /// Largest number of pushers that may be connected at once; only one of them pushes.
+  /// Of each way in (WebSocket, local socket) four times as many connections may wait with their
+  /// hello; for one more, the oldest of those that said nothing leaves.
   std::size_t max_pushers = 4;
   /// A pusher that pushes no frame for this long makes room for another one.
   Duration yields_after = std::chrono::seconds(2);

@@ -15,6 +15,8 @@ constexpr std::size_t kQueue = 64;                        // Largest number of f
 constexpr Duration kMaxRepeat = std::chrono::seconds(1);  // as in SensorService
 constexpr auto kShut = std::chrono::seconds(1);
 constexpr std::uint64_t kWidestGap = 1000;
+constexpr std::size_t kSilentPerPusher = 4;
+constexpr std::size_t kMostLeaving = 64;  // They leave within a quarter of a second.
 
 std::string described(const Pusher& pusher) {
   const std::string from = pusher.address.empty() ? "" : " from " + pusher.address;
@@ -29,25 +31,41 @@ long whole_seconds(std::chrono::steady_clock::duration duration) {
 
 PushDesk::PushDesk(DeskOptions options) : options_(std::move(options)), queue_(kQueue) {}
 
-Result<void> PushDesk::connect() {
+Result<PushDesk::Guest> PushDesk::connect(const std::string& via) {
   const std::lock_guard lock(mutex_);
   if (steady_now() < shut_until_) {
     return fail(ErrorCode::Unavailable, "/push",
                 "a program has just been sent away for flooding; try again in a second");
   }
-  if (connections_ >= options_.settings.max_pushers) {
-    return fail(ErrorCode::Unavailable, "/push",
-                fmt::format("{} programs are connected already, and one pushes; end the others or "
-                            "raise device.bridge.max_pushers",
-                            connections_));
+  const std::size_t most = kSilentPerPusher * options_.settings.max_pushers;
+  std::size_t of_way = 0;
+  std::size_t leaving = 0;
+  Silent* oldest = nullptr;
+  for (auto& [guest, one] : silent_) {
+    if (one.leaves) ++leaving;
+    if (one.leaves || one.via != via) continue;
+    ++of_way;
+    if (oldest == nullptr) oldest = &one;
   }
-  ++connections_;
-  return {};
+  if (leaving >= kMostLeaving)
+    return fail(ErrorCode::Unavailable, "/push",
+                fmt::format("{} programs connected and said nothing; end them", leaving));
+  if (of_way >= most && oldest != nullptr) oldest->leaves = true;
+  silent_.emplace(++last_guest_, Silent{via});
+  return last_guest_;
 }
 
-void PushDesk::disconnect() {
+void PushDesk::greeted(Guest guest) { disconnect(guest); }
+
+void PushDesk::disconnect(Guest guest) {
   const std::lock_guard lock(mutex_);
-  if (connections_ > 0) --connections_;
+  silent_.erase(guest);
+}
+
+bool PushDesk::must_leave(Guest guest) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = silent_.find(guest);
+  return found != silent_.end() && found->second.leaves;
 }
 
 void PushDesk::shut_for_a_moment() {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -56,7 +57,8 @@ struct DeskOptions {
 
 class PushDesk {
  public:
-  using Seat = std::uint64_t;  ///< A new number for each pusher that takes the sensor; never 0.
+  using Seat = std::uint64_t;   ///< A new number for each pusher that takes the sensor; never 0.
+  using Guest = std::uint64_t;  ///< A new number for each connection.
 
   explicit PushDesk(DeskOptions options);
 
@@ -64,11 +66,17 @@ class PushDesk {
   [[nodiscard]] Timestamp now() const { return options_.clock->now(); }
   [[nodiscard]] SteadyTime steady_now() const { return options_.steady_now(); }
 
-  // A connection counts towards max_pushers as soon as it is open, before its hello.
+  // A connection that has not said hello takes nobody's place: of each way in, four times
+  // max_pushers may be silent, and for one more the oldest of them leaves.
 
-  /// Counts a new connection.  Unavailable when there are too many, or just after a flood.
-  [[nodiscard]] Result<void> connect();
-  void disconnect();
+  /// A new connection by this way ("WebSocket", "local socket").  Unavailable just after a flood,
+  /// or while many that have to leave are still open.
+  [[nodiscard]] Result<Guest> connect(const std::string& via);
+  /// It has said hello.
+  void greeted(Guest guest);
+  void disconnect(Guest guest);
+  /// True if it said nothing and has to make room for another.
+  [[nodiscard]] bool must_leave(Guest guest) const;
   /// Call this when a pusher was disconnected for flooding: for a second, no new connection is
   /// accepted.
   void shut_for_a_moment();
@@ -120,7 +128,12 @@ class PushDesk {
   std::string departed_;     ///< Human-readable: how the last pusher left.
   std::string turned_away_;  ///< Why the last hello was refused, if no pusher came in since.
   Seat last_seat_ = 0;
-  std::size_t connections_ = 0;
+  struct Silent {
+    std::string via;
+    bool leaves = false;
+  };
+  std::map<Guest, Silent> silent_;  ///< Connections that have not said hello, oldest first.
+  Guest last_guest_ = 0;
   SteadyTime shut_until_{};
   std::uint64_t sequence_ = 0;
   std::optional<Timestamp> last_captured_;

@@ -36,12 +36,14 @@ std::vector<std::string_view> joints_given(const layout::Layout& layout) {
 
 class PushDialogue final : public http::Dialogue {
  public:
-  PushDialogue(std::shared_ptr<PushDesk> desk, std::string via, std::string address)
+  PushDialogue(std::shared_ptr<PushDesk> desk, PushDesk::Guest guest, std::string via,
+               std::string address)
       : desk_(std::move(desk)),
+        guest_(guest),
         session_(desk_, std::move(via), std::move(address)),
         begun_(desk_->steady_now()),
         heard_(begun_) {}
-  ~PushDialogue() override { desk_->disconnect(); }
+  ~PushDialogue() override { desk_->disconnect(guest_); }
   PushDialogue(const PushDialogue&) = delete;
   PushDialogue& operator=(const PushDialogue&) = delete;
 
@@ -57,6 +59,7 @@ class PushDialogue final : public http::Dialogue {
   [[nodiscard]] http::Reply doubt(const Error& error) const;
 
   std::shared_ptr<PushDesk> desk_;
+  PushDesk::Guest guest_;
   PushSession session_;
   SteadyTime begun_;
   SteadyTime heard_;
@@ -119,6 +122,7 @@ http::Reply PushDialogue::hear(std::string_view message) {
   if (*heard == Heard::Frame) errors_in_a_row_ = 0;
   if (const auto strange = session_.take_doubt()) return doubt(*strange);
   if (*heard == Heard::Hello) {
+    desk_->greeted(guest_);
     session_.expect_clock();
     return {{welcome(), clock_question()}};
   }
@@ -129,6 +133,9 @@ http::Reply PushDialogue::hear(std::string_view message) {
 http::Reply PushDialogue::look() {
   const SteadyTime now = desk_->steady_now();
   if (!session_.hello()) {
+    if (desk_->must_leave(guest_))
+      return send_away({ErrorCode::Unavailable, "type",
+                        "too many programs are connected and say nothing; this one makes room"});
     if (now - begun_ < kHelloWithin) return {};
     return send_away({ErrorCode::Timeout, "type", "the first message, a hello, has not come"});
   }
@@ -151,8 +158,9 @@ http::Reply PushDialogue::end(const Error& why) {
 
 Result<std::unique_ptr<http::Dialogue>> open_dialogue(const std::shared_ptr<PushDesk>& desk,
                                                       std::string via, std::string address) {
-  if (const auto ok = desk->connect(); !ok) return pass(ok);
-  return std::make_unique<PushDialogue>(desk, std::move(via), std::move(address));
+  const auto guest = desk->connect(via);
+  if (!guest) return pass(guest);
+  return std::make_unique<PushDialogue>(desk, *guest, std::move(via), std::move(address));
 }
 
 }  // namespace chorus::bridge
