@@ -45,8 +45,7 @@ Duration backoff(const PollTimings& timings, int failures_in_row, double jitter)
 }
 
 bool refuses_token(int status) {
-  return status == http::status::kUnauthorized || status == http::status::kForbidden ||
-         status == http::status::kTooManyRequests;
+  return status == http::status::kUnauthorized || status == http::status::kForbidden;
 }
 
 }  // namespace
@@ -247,6 +246,10 @@ Step PollFsm::fail(SensorState state, std::string reason, double jitter) {
 /// Says why there was no document, and what to do about it.
 std::string PollFsm::refusal_words(int status) const {
   const bool of_token = refuses_token(status);
+  if (status == http::status::kTooManyRequests)
+    return "GET " + std::string(offer_.path) +
+           " answers 429: the sensor, or a proxy before it, asks for fewer requests from this "
+           "address; look for other programs here that ask it";
   return "GET " + std::string(offer_.path) + " answers " + std::to_string(status) +
          (of_token ? "; give the sensor's entry here a token of its http.tokens"
                    : "; check that the url is that of a sensor service");

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/duration.h"
 #include "common/http/document.h"
 #include "common/time/timestamp.h"
 
@@ -21,6 +22,7 @@ struct Answer {
   std::shared_ptr<const FileBody> file = {};  ///< Sent after `body`.
   /// When set, Server-Timing shows the age of the capture at sending.
   std::optional<Timestamp> captured = {};
+  Duration delay{0};  ///< It is sent so much later: the client guesses tokens.
   /// Close after this answer, because the beginning of the next request is unknown.
   bool close = false;
 };

@@ -12,6 +12,7 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::seconds kLingerTime{2};
+constexpr std::chrono::milliseconds kHeldFor{100};
 constexpr std::size_t kLingerBytes = 1u << 20;  // How much is still read after the last answer.
 
 // The client sends the body only after it has read this.
@@ -171,6 +172,18 @@ void Conversation::serve(std::size_t head_size) {
   count(context_.counters.requests);
   if (!head_.keep_alive) close_after_ = true;
   if (!may_ask()) return refuse(status::kUnavailable, "too many connections; keep fewer open");
+  answer();
+}
+
+/// Answers the request in the buffer, or holds it for a moment if its address has asked too much.
+void Conversation::answer() {
+  const bool limited = context_.allowance != nullptr && !is_exempt();
+  if (limited && !context_.allowance->take(peer_.account, now_)) {
+    if (state_ != State::Held) count(context_.counters.held);
+    state_ = State::Held;
+    deadline_ = now_ + kHeldFor;
+    return;
+  }
   if (expects_tls_)
     return refuse(status::kBadRequest,
                   "this port speaks TLS only; ask the same address with https://");
@@ -193,6 +206,12 @@ void Conversation::serve(std::size_t head_size) {
 
 std::string Conversation::handshake() const {
   return handshake_of(head_, unread().substr(request_size_));
+}
+
+/// True for programs on this host itself.  Where a proxy is configured, whoever comes from this
+/// host may be anybody.
+bool Conversation::is_exempt() const {
+  return peer_.loopback && !peer_.proxy && context_.config.trusted_proxies.empty();
 }
 
 /// True if this request is within the limits of its sender, or if its path is vital.
@@ -238,6 +257,15 @@ void Conversation::send(Answer answer) {
          "too many files are on their way to others; ask again when one is done"});
   }
   answer_ = std::move(answer);
+  if (answer_.delay > Duration{0} && !context_.stopping) {
+    state_ = State::Delayed;
+    deadline_ = now_ + answer_.delay;
+    return;
+  }
+  send_now();
+}
+
+void Conversation::send_now() {
   state_ = State::Writing;
   close_after_ = close_after_ || answer_.close || context_.stopping;
   if (answer_.status == status::kNotModified) count(context_.counters.not_modified);
@@ -321,6 +349,10 @@ void Conversation::on_deadline() {
       return end_wait(context_.responder.given_up(*reaction_.entry, head_));
     case State::Streaming:
       return push_event();
+    case State::Held:
+      return answer();
+    case State::Delayed:
+      return send_now();
     default:
       return hang_up();
   }

@@ -68,7 +68,8 @@ class Conversation {
 
  private:
   [[nodiscard]] std::string_view unread() const { return buffer_.unread(); }
-  enum class State { Head, Body, Writing, Waiting, Streaming, Lingering, Closed };
+  /// Held: the client has asked too much lately, and its request waits; Delayed: its answer does.
+  enum class State { Head, Held, Body, Delayed, Writing, Waiting, Streaming, Lingering, Closed };
 
   template <class Event>
   Orders resume(SteadyTime now, const Event& event);
@@ -78,6 +79,7 @@ class Conversation {
   void refuse(int status, std::string detail);
   void serve(std::size_t head_size);
   [[nodiscard]] bool may_ask();
+  [[nodiscard]] bool is_exempt() const;
   void begin_body();
   void advance_body();
   void send(Answer answer);
@@ -94,6 +96,8 @@ class Conversation {
   void watch();
   void begin_stream();
   void push_event();
+  void answer();
+  void send_now();
   void on_deadline();
   void on_stop();
   void hang_up();

@@ -3,6 +3,7 @@
 
 #include "common/http/counters.h"
 #include "common/http/responder.h"
+#include "common/net/address_allowance.h"
 
 namespace chorus::http {
 
@@ -11,6 +12,7 @@ struct ConversationContext {
   const Responder& responder;
   AtomicCounters& counters;
   const bool& stopping;  ///< While the server stops, each answer is the last one of its connection.
+  net::AddressAllowance* allowance = nullptr;  ///< Of requests; null: as many as anybody likes.
 };
 
 }  // namespace chorus::http

@@ -11,7 +11,7 @@ struct AtomicCounters {
   using Count = std::atomic<std::uint64_t>;
   Count requests = 0, refused = 0, not_modified = 0, connections_total = 0, connections_open = 0,
         long_polls_waiting = 0, event_streams_open = 0, websockets_open = 0, events_skipped = 0,
-        bytes_sent = 0, downloads_open = 0, unauthorized = 0, closed_for_room = 0,
+        bytes_sent = 0, downloads_open = 0, unauthorized = 0, held = 0, closed_for_room = 0,
         handshakes_failed = 0, connections_limit = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "common/http/media_range.h"
+#include "common/http/page_lines.h"
 #include "common/http/text.h"
 
 namespace chorus::http {
@@ -126,6 +127,9 @@ struct Document::Impl {
     if (!options.content_location.empty())
       add_line(lines, "Content-Location", options.content_location);
     lines.append(own);
+    // No page goes out without a policy, whoever made it.
+    if (options.page || is_page(out.media_type))
+      lines.append(page_lines(options.page.value_or(Page::Plain), options.import_map));
     for (const auto& [name, value] : options.headers) add_line(lines, name, value);
     return lines;
   }

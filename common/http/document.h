@@ -16,6 +16,7 @@
 #include "common/base/result.h"
 #include "common/http/file_body.h"
 #include "common/http/gzip.h"
+#include "common/http/page_lines.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::http {
@@ -38,6 +39,9 @@ struct DocumentOptions {
   std::string cache_control = "no-cache";
   std::string content_location = {};  ///< Relative IRI of the immutable version: "frames/42".
   std::vector<Header> headers = {};   ///< Further headers, such as Link.
+  /// If set, the document is, or belongs to, such a page.  Without it HTML is Page::Plain.
+  std::optional<Page> page = {};
+  std::string import_map = {};                ///< Of the page, see page_lines().
   std::shared_ptr<const FileBody> file = {};  ///< The body, instead of what the variant renders.
   /// If set, adds Server-Timing with the age of the capture.
   std::optional<Timestamp> captured = {};

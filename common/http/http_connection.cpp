@@ -31,7 +31,8 @@ HttpConnection::HttpConnection(ServerCore& core, net::Socket socket,
     : Connection(net::account_of(remote.address())),
       core_(core),
       stream_(std::move(socket)),
-      conversation_({core.config, core.responder, core.counters, core.stopping},
+      conversation_({core.config, core.responder, core.counters, core.stopping,
+                     core.allowance ? &*core.allowance : nullptr},
                     peer_of(core, stream_.socket(), remote),
                     [this](const std::string& account) { return core_.charge(*this, account); }) {
   net::make_prompt(stream_.socket());

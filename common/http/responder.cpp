@@ -40,6 +40,10 @@ std::string_view event_type_of(std::string_view accept) {
   return turtle > explicit_quality_of(kJsonType, accept).value_or(0) ? kTurtle : kJsonType;
 }
 
+/// X-Accel-Buffering: nginx and others collect an answer before they pass it on; events must not
+/// wait for that.
+constexpr std::string_view kStreamLines =
+    "Content-Type: text/event-stream\r\nCache-Control: no-store\r\nX-Accel-Buffering: no\r\n\r\n";
 constexpr std::string_view kStreamBegin = "retry: 1000\n\n";  // Browsers reconnect after 1 s.
 
 std::string_view coded_stream_begin() {
@@ -265,7 +269,7 @@ Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entr
   reaction.answer.route = route_lines(entry);
   const bool coded = coding_for(head.accept_encoding) == Coding::Gzip;
   if (coded) reaction.answer.extra = "Content-Encoding: gzip\r\n";
-  reaction.answer.own = "Content-Type: text/event-stream\r\nCache-Control: no-store\r\n\r\n";
+  reaction.answer.own = kStreamLines;
   if (!is_head(head)) reaction.answer.body = coded ? coded_stream_begin() : kStreamBegin;
   reaction.answer.close = true;
   return reaction;

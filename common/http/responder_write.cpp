@@ -46,26 +46,19 @@ struct Asking {
 
 }  // namespace
 
-/// The answer that refuses this request; none when the request may do what it needs.
+/// The answer that refuses this request; none when the request may do what it needs.  Every token
+/// is looked at; after many wrong ones from one address, the answer to the next wrong one waits.
 std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& peer, Role needed,
                                            std::string_view route) const {
-  const auto now = std::chrono::steady_clock::now();
-  const bool tries = !guard_.tokens.empty() && is_present(head.authorization);
-  if (tries && !tries_->may_try(peer.account, head.authorization, now)) {
-    const std::string detail =
-        "too many different wrong tokens came from your address; try again in a second";
-    Answer answer = complaint(
-        {status::kTooManyRequests, name_of(ErrorCode::Unauthorized), {}, {}, detail}, head, route);
-    answer.extra = "Retry-After: 1\r\n";
-    return answer;
-  }
   const auto refused = refuse_access(head, peer, needed, guard_);
   if (!refused) return std::nullopt;
+  Answer answer = fault(*refused, head, route);
   if (has_wrong_token(head, guard_)) {
-    tries_->note_wrong(peer.account, head.authorization, now);
+    answer.delay =
+        tries_->note_wrong(peer.account, head.authorization, std::chrono::steady_clock::now());
     wrong_tokens_->hit(peer.account);
   }
-  return fault(*refused, head, route);
+  return answer;
 }
 
 /// Where reading needs a token, refuses a client without the right one, whether or not the path

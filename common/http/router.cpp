@@ -128,11 +128,11 @@ void Router::dialogue(const std::string& pattern, DialogueRoute route) {
   entry.dialogue = std::move(route);
 }
 
-void Router::files(std::string prefix, std::string folder, std::string_view lines) {
+void Router::files(std::string prefix, std::string folder, const FilesAre& about) {
   assert(prefix.back() == '/');
   Entry& entry = entry_of(prefix);
   assert(!entry.readable());
-  entry.files = std::make_unique<StaticFiles>(std::move(folder), lines);
+  entry.files = std::make_unique<StaticFiles>(std::move(folder), about);
 }
 
 void Router::vital(const std::string& pattern) { entry_of(pattern).vital = true; }

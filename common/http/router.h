@@ -13,6 +13,7 @@
 #include "common/http/dialogue.h"
 #include "common/http/document.h"
 #include "common/http/live_document.h"
+#include "common/http/static_files.h"
 
 namespace chorus::http {
 
@@ -71,9 +72,8 @@ class Router {
   /// WebSockets whose clients send messages too.  Opening one counts as writing: Role::Control.
   void dialogue(const std::string& pattern, DialogueRoute route);
   /// GET/HEAD of the files in `folder` and below, never outside it; media types by extension.  The
-  /// prefix ends in '/'.  `lines`: header lines for each of these files, each with CR LF; must
-  /// outlive the router and its documents.
-  void files(std::string prefix, std::string folder, std::string_view lines = {});
+  /// prefix ends in '/'.
+  void files(std::string prefix, std::string folder, const FilesAre& about = {});
 
   /// Reading the pattern needs no token, even if reading everything else does.
   void for_everybody(const std::string& pattern);

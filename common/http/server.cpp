@@ -42,11 +42,22 @@ ServerCounters Server::counters() const {
   const auto read = [](const AtomicCounters::Count& c) {
     return c.load(std::memory_order_relaxed);
   };
-  return {read(now.requests),           read(now.refused),           read(now.not_modified),
-          read(now.connections_total),  read(now.connections_open),  read(now.long_polls_waiting),
-          read(now.event_streams_open), read(now.websockets_open),   read(now.events_skipped),
-          read(now.bytes_sent),         read(now.downloads_open),    read(now.unauthorized),
-          read(now.closed_for_room),    read(now.handshakes_failed), read(now.connections_limit)};
+  return {read(now.requests),
+          read(now.refused),
+          read(now.not_modified),
+          read(now.connections_total),
+          read(now.connections_open),
+          read(now.long_polls_waiting),
+          read(now.event_streams_open),
+          read(now.websockets_open),
+          read(now.events_skipped),
+          read(now.bytes_sent),
+          read(now.downloads_open),
+          read(now.unauthorized),
+          read(now.held),
+          read(now.closed_for_room),
+          read(now.handshakes_failed),
+          read(now.connections_limit)};
 }
 
 void Server::set_tokens(std::vector<Token> tokens) {

@@ -24,6 +24,9 @@ struct ServerLimits {
   std::size_t max_connections = 2000;
   std::size_t max_per_address = 64;  ///< Does not apply to loopback and trusted proxies.
   std::size_t max_long_polls = 1500;
+  /// Requests of one address; what is more waits.  0: no limit.  Does not apply to programs on this
+  /// host, unless there are trusted proxies: then these may be anybody's.
+  double max_requests_per_s = 2000.0;
   /// Files being sent at the same time; each needs a buffer of 256 KiB.
   std::size_t max_downloads = 16;
   std::size_t max_header_bytes = 8192;
@@ -84,6 +87,7 @@ struct ServerCounters {
   std::uint64_t downloads_open = 0;
   /// Requests without a token that they need, or with a wrong one.
   std::uint64_t unauthorized = 0;
+  std::uint64_t held = 0;             ///< Requests that waited: their address asked too much.
   std::uint64_t closed_for_room = 0;  ///< Idle connections closed to make room for others.
   /// TLS handshakes that were broken off, malformed, or refused by the client.
   std::uint64_t handshakes_failed = 0;

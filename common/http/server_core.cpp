@@ -28,6 +28,8 @@ ServerCore::ServerCore(ServerConfig server_config, std::shared_ptr<const Router>
       sweeping(io, kSweepInterval, [this] { sweep(); }),
       handshakes(io),
       now(std::chrono::steady_clock::now()) {
+  if (const double most = config.limits.max_requests_per_s; most > 0.0)
+    allowance.emplace(net::Allowance{most, most});  // A second's worth at once.
   const std::size_t entries = responder.router().entries().size();
   waiting.resize(entries);
   wake_posted = std::make_unique<std::atomic<bool>[]>(entries);

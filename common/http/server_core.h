@@ -4,6 +4,7 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "common/http/counters.h"
 #include "common/http/responder.h"
 #include "common/http/server.h"
+#include "common/net/address_allowance.h"
 #include "common/net/asio.h"
 #include "common/net/every.h"
 #include "common/net/listen.h"
@@ -54,6 +56,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   net::AcceptLoop accepting;
   net::Every sweeping;
   net::Turns handshakes;
+  std::optional<net::AddressAllowance> allowance;  ///< Of requests, for each address.
   RateReport failed_handshakes{"TLS handshake failed"};
 
   SteadyTime now;  ///< The time of the last sweep.

@@ -88,8 +88,7 @@ struct StaticFiles::Impl {
     DocumentPtr document;
   };
   fs::path folder;
-  std::string_view lines;
-  std::size_t max_file_bytes = 0;
+  FilesAre about;
   std::mutex mutex;
   std::map<std::string, Kept> kept;
 
@@ -109,20 +108,22 @@ struct StaticFiles::Impl {
     auto bytes = read_file(file, state.size);
     if (!bytes) return pass(bytes);
     DocumentOptions options;
+    options.page = about.page;
+    if (about.page && is_page(media_type_of_file(file.filename().string())))
+      options.import_map = import_map_of(*bytes);
     options.version = std::to_string(state.modified_ns) + "-" + std::to_string(state.size);
     std::vector<Variant> variants;
     variants.push_back({std::string(media_type_of_file(file.filename().string())),
                         [text = std::move(*bytes)] { return text; }});
-    variants.back().lines = lines;
+    variants.back().lines = about.lines;
     return std::make_shared<const Document>(std::move(variants), std::move(options));
   }
 };
 
-StaticFiles::StaticFiles(std::string folder, std::string_view lines, std::size_t max_file_bytes)
+StaticFiles::StaticFiles(std::string folder, const FilesAre& about)
     : impl_(std::make_unique<Impl>()) {
   impl_->folder = std::move(folder);
-  impl_->lines = lines;
-  impl_->max_file_bytes = max_file_bytes;
+  impl_->about = about;
 }
 
 StaticFiles::~StaticFiles() = default;
@@ -132,9 +133,9 @@ Result<DocumentPtr> StaticFiles::document(std::string_view path) {
   if (!file) return pass(file);
   const auto state = state_of(*file);
   if (!state) return pass(state);
-  if (state->size > impl_->max_file_bytes)
+  if (state->size > impl_->about.max_bytes)
     return fail(ErrorCode::Forbidden, std::string(path),
-                "the file is larger than the " + std::to_string(impl_->max_file_bytes) +
+                "the file is larger than the " + std::to_string(impl_->about.max_bytes) +
                     " bytes this server sends");
   const std::lock_guard lock(impl_->mutex);
   auto& entry = impl_->kept[file->string()];

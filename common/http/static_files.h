@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,14 +16,19 @@ namespace chorus::http {
 /// Media type by file extension; application/octet-stream when unknown.
 [[nodiscard]] std::string_view media_type_of_file(std::string_view name);
 
+/// What the files of a folder have in common.
+struct FilesAre {
+  std::string_view lines = {};    ///< Header lines of all answers, each with CR LF; must outlive
+                                  ///< the documents.
+  std::optional<Page> page = {};  ///< Set: they belong to such a page, scripts included.
+  std::size_t max_bytes = 16u << 20;
+};
+
 /// Reads files on request and keeps each document until the file's mtime or size changes.
 /// Thread-safe.
 class StaticFiles {
  public:
-  /// `lines`: header lines for the answers of all files, each with CR LF; must outlive the
-  /// documents.
-  explicit StaticFiles(std::string folder, std::string_view lines = {},
-                       std::size_t max_file_bytes = 16u << 20);
+  explicit StaticFiles(std::string folder, const FilesAre& about = {});
   ~StaticFiles();
 
   /// `path` is decoded and relative; "" and "sub/" stand for the index.html there.  NotFound unless

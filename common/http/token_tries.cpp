@@ -29,23 +29,18 @@ const std::string& TokenTries::account(const std::string& address) const {
   return records_.contains(address) || records_.size() < kMaxAddresses ? address : kShared;
 }
 
-bool TokenTries::may_try(const std::string& address, std::string_view authorization,
-                         Time now) const {
-  const auto known = records_.find(account(address));
-  if (known == records_.end()) return true;
-  const Record& record = known->second;
-  if (record.forgiven - now <= (kAtOnce - 1) * kPerTry) return true;
-  return std::ranges::find(record.wrong, mark_of(authorization)) != record.wrong.end();
-}
-
-void TokenTries::note_wrong(const std::string& address, std::string_view authorization, Time now) {
+Duration TokenTries::note_wrong(const std::string& address, std::string_view authorization,
+                                Time now) {
   std::erase_if(records_, [now](const auto& entry) { return entry.second.forgiven <= now; });
   Record& record = records_[account(address)];
   const Mark mark = mark_of(authorization);
-  if (std::ranges::find(record.wrong, mark) != record.wrong.end()) return;
+  if (std::ranges::find(record.wrong, mark) != record.wrong.end()) return Duration{0};
   record.wrong.push_back(mark);
   if (record.wrong.size() > kMarksKept) record.wrong.pop_front();
-  record.forgiven = std::max(record.forgiven, now) + kPerTry;
+  // More than this is not owed, so that an address is not slowed for hours after a burst.
+  const Time most = now + kAtOnce * kPerTry + kLongestDelay;
+  record.forgiven = std::min(std::max(record.forgiven, now) + kPerTry, most);
+  return std::max(Duration{0}, Duration(record.forgiven - now - kAtOnce * kPerTry));
 }
 
 }  // namespace chorus::http

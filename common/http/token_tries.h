@@ -1,4 +1,4 @@
-// Slows down a client that guesses bearer tokens.
+// Slows down a client that guesses bearer tokens, and nobody else.
 #pragma once
 
 #include <array>
@@ -9,24 +9,29 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/duration.h"
+
 namespace chorus::http {
 
-/// Ten different wrong tokens from one address are checked without delay; after that, one a second.
-/// In between no new token is checked, not even the right one: were the right one let through while
-/// the address is slowed, a guesser would know it from the answer, and could guess at full speed.
+/// Every token is looked at, and a right one is never held up: other programs at the same address,
+/// or behind the same proxy, may guess as they like.  Only the answer to a wrong one is delayed.
+/// Ten different wrong tokens from one address are answered at once; after that, the answers come
+/// one a second, but none later than kLongestDelay.  A guesser that does not wait for the answer
+/// has to open a connection for every guess, and net::AddressAllowance limits its requests; tokens
+/// of 128 bits, as chorus init makes them, cannot be guessed at that rate.
 ///
-/// A wrong token that the address sent a short while ago is checked again without being counted,
-/// because whoever repeats it learns nothing new.  So a program with an outdated token that asks
-/// for ever does not hold up the others on its host.  While some thousand addresses are remembered,
+/// A wrong token that the address sent a short while ago is answered at once and not counted,
+/// because whoever repeats it learns nothing new.  While some thousand addresses are remembered,
 /// all further ones are counted as one.
 class TokenTries {
  public:
   using Time = std::chrono::steady_clock::time_point;
+  static constexpr std::chrono::seconds kLongestDelay{5};
 
-  /// `authorization` is the value of the header field, by which tokens are told apart.
-  [[nodiscard]] bool may_try(const std::string& address, std::string_view authorization,
-                             Time now) const;
-  void note_wrong(const std::string& address, std::string_view authorization, Time now);
+  /// Counts a wrong token and returns how long its answer waits.  `authorization` is the value of
+  /// the header field, by which tokens are told apart.
+  [[nodiscard]] Duration note_wrong(const std::string& address, std::string_view authorization,
+                                    Time now);
 
  private:
   /// SHA-256, so that no guess can be made to look like one that was counted before.

@@ -59,6 +59,8 @@ void read_limits(ConfigReader& config, http::ServerLimits& out) {
   read_count("max_per_address", out.max_per_address, 1);
   read_count("max_long_polls", out.max_long_polls, 1);
   read_count("max_downloads", out.max_downloads, 1);
+  constexpr double kMostRequests = 1e6;
+  config.read("max_requests_per_s", out.max_requests_per_s, 0.0, kMostRequests);
 }
 
 }  // namespace

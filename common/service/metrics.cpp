@@ -119,6 +119,8 @@ void add_server(MetricsText& text, const http::ServerCounters& counters) {
       Row{"chorus_http_sent_bytes_total", "Bytes sent.", counters.bytes_sent},
       Row{"chorus_http_unauthorized_total", "Requests refused for a wrong token or none.",
           counters.unauthorized},
+      Row{"chorus_http_held_total", "Requests that waited because their address asked too much.",
+          counters.held},
       Row{"chorus_http_closed_for_room_total", "Idle connections that gave way to others.",
           counters.closed_for_room},
       Row{"chorus_http_handshakes_failed_total", "TLS handshakes that failed.",

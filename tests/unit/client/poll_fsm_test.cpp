@@ -148,13 +148,21 @@ TEST(PollFsm, StatusesThatNoSensorGivesAreRefusedWithAdvice) {
 }
 
 TEST(PollFsm, AWrongTokenIsRefusedWithWhereToPutTheRightOne) {
-  for (const int status : {401, 403, 429}) {
+  for (const int status : {401, 403}) {
     PollFsm fsm = at_first_frame(milliseconds(0));
     (void)fsm.resume(FrameAnswered{status}, milliseconds(1), kFull);
     EXPECT_EQ(fsm.state(), SensorState::Refused);
     EXPECT_EQ(fsm.last_error(), "GET frame answers " + std::to_string(status) +
                                     "; give the sensor's entry here a token of its http.tokens");
   }
+}
+
+TEST(PollFsm, TooManyRequestsAreNotCalledAWrongToken) {
+  PollFsm fsm = at_first_frame(milliseconds(0));
+  (void)fsm.resume(FrameAnswered{429}, milliseconds(1), kFull);
+  EXPECT_EQ(fsm.state(), SensorState::Refused);
+  EXPECT_EQ(fsm.last_error().find("token"), std::string::npos) << fsm.last_error();
+  EXPECT_NE(fsm.last_error().find("fewer requests"), std::string::npos) << fsm.last_error();
 }
 
 TEST(PollFsm, ARefusedTokenIsTriedAgainWithinASecond) {

@@ -35,7 +35,7 @@ class StaticFilesTest : public ::testing::Test {
     EXPECT_FALSE(document) << path;
     return document ? ErrorCode::Internal : document.error().code;
   }
-  StaticFiles files_() { return StaticFiles(folder_.string(), {}, 64); }
+  StaticFiles files_() { return StaticFiles(folder_.string(), {{}, {}, 64}); }
 
   const chorus::testing::TemporaryFolder base_;
   fs::path folder_;

