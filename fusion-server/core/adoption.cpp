@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/geometry/rigid_fit.h"
+#include "fusion-server/core/place_change.h"
 #include "fusion-server/core/world.h"
 
 namespace chorus::core {
@@ -18,10 +18,6 @@ const char* const kContradicted =
     "register all anew (chorus register --fresh)";
 
 namespace {
-
-// If the places of the held sensors in both registrations fit with a greater rms than this, one of
-// these sensors was moved [m].
-constexpr double kMisfit = 0.3;
 
 int rank(Verdict verdict) {
   switch (verdict) {
@@ -49,46 +45,38 @@ bool stands_well(const Registration& registration, const SensorId& sensor) {
   return verdict_of(registration, sensor) == Verdict::Good;
 }
 
-/// The sensors whose places extended() takes from the candidate.
+/// True if the candidate places any sensor worse than it stands, where it stands.
+bool worsens(const Registration& current, const Registration& candidate) {
+  const auto between = between_worlds(current, candidate, {});
+  return std::ranges::any_of(current.sensors, [&](const auto& entry) {
+    return candidate.sensors.contains(entry.first) &&
+           change_of(current, candidate, entry.first, between) == Change::Worse;
+  });
+}
+
+/// Whether extended() takes the place of a sensor that has one from the candidate.
+bool is_improved(const Registration& current, const Registration& candidate, const SensorId& sensor,
+                 SolveKind kind) {
+  const int before = rank(verdict_of(current, sensor));
+  const int after = rank(verdict_of(candidate, sensor));
+  if (after != before) return after > before && stands_well(candidate, sensor);
+  if (stands_well(current, sensor) || sensor == current.master) return false;
+  const auto between = between_worlds(current, candidate, {sensor});
+  const Change change = change_of(current, candidate, sensor, between);
+  return change == Change::Better ||
+         (between && kind == SolveKind::Final && change == Change::Elsewhere);
+}
+
+/// The sensors whose places extended() takes from the candidate: those that have none, and those
+/// that it places better.
 std::set<SensorId> newcomers(const Registration& current, const Registration& candidate,
                              SolveKind kind) {
   std::set<SensorId> found;
   for (const auto& [sensor, place] : candidate.sensors) {
-    const bool good = stands_well(candidate, sensor);
-    const bool known = current.sensors.contains(sensor);
-    if (known ? good && !stands_well(current, sensor) : good || kind == SolveKind::Final)
+    if (!current.sensors.contains(sensor) || is_improved(current, candidate, sensor, kind))
       found.insert(sensor);
   }
   return found;
-}
-
-/// Adds the sensor's position, the point kReach in front of it, and the points one metre beside and
-/// one metre above that point.
-void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& marks) {
-  const Eigen::Vector3d walk = kReach * Eigen::Vector3d::UnitZ();
-  for (const Eigen::Vector3d& mark : {Eigen::Vector3d(Eigen::Vector3d::Zero()), walk,
-                                      Eigen::Vector3d(walk + Eigen::Vector3d::UnitX()),
-                                      Eigen::Vector3d(walk + Eigen::Vector3d::UnitY())}) {
-    marks.push_back(pose * mark);
-  }
-}
-
-/// The transform from the candidate's world to ours, computed from the held sensors that both
-/// registrations place.
-std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
-                                                const Registration& candidate,
-                                                const std::set<SensorId>& moving) {
-  std::vector<Eigen::Vector3d> ours;
-  std::vector<Eigen::Vector3d> theirs;
-  for (const auto& [sensor, place] : current.sensors) {
-    const auto other = candidate.sensors.find(sensor);
-    if (other == candidate.sensors.end() || moving.contains(sensor)) continue;
-    add_marks(place.world_from_sensor, ours);
-    add_marks(other->second.world_from_sensor, theirs);
-  }
-  const auto fit = fit_rigid(theirs, ours);
-  if (!fit || fit->rms > kMisfit) return std::nullopt;
-  return fit->target_from_source;
 }
 
 /// Makes the place's chain and error start at our master instead of the candidate's.  The new chain
@@ -247,6 +235,8 @@ bool should_replace(const Registration& current, const Registration& candidate, 
   if (rank(candidate.verdict) != rank(current.verdict))
     return rank(candidate.verdict) > rank(current.verdict);
   // A provisional solve during the walk does not replace a good registration; the final one may.
+  // Neither does when it would place any sensor worse: then only the others get their new places.
+  if (worsens(current, candidate)) return false;
   return kind == SolveKind::Final || current.verdict == Verdict::Provisional;
 }
 

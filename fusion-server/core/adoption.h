@@ -22,15 +22,17 @@ extern const char* const kContradicted;
 /// Whether the candidate should replace the whole registration: not if it is refused or places no
 /// sensor; always if the current one is refused or places none. Otherwise it must place all sensors
 /// of the current one. Then a better verdict replaces it; so does an equal one if `kind` is Final,
-/// so that a new walk has an effect, or if both are provisional.
+/// so that a new walk has an effect, or if both are provisional, but only if it places no sensor
+/// worse where it stands: a short walk after a long one leaves the places as they are.
 [[nodiscard]] bool should_replace(const Registration& current, const Registration& candidate,
                                   SolveKind kind);
 
-/// The current places, with the candidate's place for each sensor that only the candidate places
-/// well.  At the end of a walk, also for each sensor that only the candidate places at all.  Places
-/// from the candidate are moved into the world of the held sensors.  NotFound: there is no such
-/// sensor, or one of the two registrations is refused or empty.  Conflict, with kContradicted: the
-/// walk contradicts the places of the held sensors relative to one another.
+/// The current places, with the candidate's place for each sensor that has none, so that it is in
+/// use after the first seconds of a walk, and for each one that does not stand well and that the
+/// candidate places well, by a clearly smaller radius, or (at the end of a walk) where it was moved
+/// to.  Places from the candidate are moved into the world of the held sensors.  NotFound: there is
+/// no such sensor, or one of the two registrations is refused or empty.  Conflict, with
+/// kContradicted: the walk contradicts the places of the held sensors relative to one another.
 [[nodiscard]] Result<Registration> extended(const Registration& current,
                                             const Registration& candidate, SolveKind kind);
 

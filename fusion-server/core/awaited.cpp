@@ -152,6 +152,25 @@ void say_start(const Situation& s, Walker walker, std::vector<std::string>& out)
   }
 }
 
+/// All have a place, but not a good one: says which walk would mend that.
+void say_provisional(const Situation& s, std::vector<std::string>& out) {
+  if (s.registration.verdict != Verdict::Provisional || s.proposes) return;
+  std::vector<SensorId> weak;
+  for (const auto& [sensor, place] : s.registration.sensors) {
+    const auto own = s.registration.verdicts.find(sensor);
+    if (own != s.registration.verdicts.end() && own->second.verdict != Verdict::Good &&
+        sensor != s.registration.master)
+      weak.push_back(sensor);
+  }
+  const std::string who = weak.empty() || weak.size() + 1 >= s.registration.sensors.size()
+                              ? "the sensors stand"
+                              : named(weak) + (weak.size() == 1 ? " stands" : " stand");
+  const std::string why =
+      s.registration.reasons.empty() ? std::string() : " (" + s.registration.reasons.front() + ")";
+  out.push_back(who + " only provisionally" + why +
+                ": chorus register, and walk for 30 s where the sensors see you together");
+}
+
 /// Says that all places are those of another setup.
 void say_unpolled(const Situation& s, std::vector<std::string>& out) {
   std::vector<SensorId> placed;
@@ -173,7 +192,10 @@ std::vector<std::string> awaited(const Situation& s) {
   say_unpolled(s, out);
   const auto missing =
       those(s, [&](const SensorId& sensor) { return !s.registration.sensors.contains(sensor); });
-  if (missing.empty() && s.session == nullptr && !s.sensors.empty()) return out;
+  if (missing.empty() && s.session == nullptr && !s.sensors.empty()) {
+    say_provisional(s, out);
+    return out;
+  }
   if (!missing.empty() && !s.registration.sensors.empty()) {
     out.push_back(named(missing) + (missing.size() == 1 ? " has" : " have") + " no place yet");
   }

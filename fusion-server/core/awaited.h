@@ -27,8 +27,8 @@ struct Situation {
   bool proposes = false;  ///< A registration waits to be accepted.
 };
 
-/// One sentence per need; empty when there are sensors and each has a place, no session is running,
-/// and no registration waits to be accepted.
+/// One sentence per need; empty when there are sensors and each has a good place, no session is
+/// running, and no registration waits to be accepted.
 [[nodiscard]] std::vector<std::string> awaited(const Situation& situation);
 
 }  // namespace chorus::core

@@ -20,7 +20,9 @@ constexpr double kCameraBias = mm(12);  // of joints that a network finds in pic
 constexpr double kCameraRms = 0.5;        // [m]
 constexpr double kCameraSpeed = 10.0;     // [m/s]
 constexpr double kCameraDistance = 12.0;  // [m] pictures show people as far as that
-constexpr double kCameraPosition = 2.0;   // [m] 95 %, of a whole room
+// [m] 95 %.  With a larger radius two cameras would show one person at two places, and a place
+// would be called provisional that is only a direction.
+constexpr double kCameraPosition = 0.5;
 
 bool saw_somebody(const WalkTrack& track) {
   return std::ranges::any_of(track.frames,

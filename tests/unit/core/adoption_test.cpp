@@ -154,19 +154,63 @@ TEST(Extending, OneHeldSensorIsEnough) {
                   .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
 }
 
-TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVerdict) {
+TEST(Extending, ANewcomerThatIsNotGoodYetIsInUseAtOnceAndSpoilsNobodysVerdict) {
   const Registration current = adopted_ring(Verdict::Good, {1, 2});
   Registration candidate = adopted_ring(Verdict::Provisional, {1, 2, 3});
   candidate.reasons = {"the walk lasted only 8 s"};
-  EXPECT_EQ(adopted(current, candidate, SolveKind::Provisional, true).error().code,
-            ErrorCode::NotFound);
-  const auto wider = adopted(current, candidate, SolveKind::Final, true);
+  const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
   ASSERT_TRUE(wider);
   EXPECT_EQ(verdict_of(*wider, named("s1")), Verdict::Good);
   EXPECT_EQ(verdict_of(*wider, named("s2")), Verdict::Good);
   EXPECT_EQ(verdict_of(*wider, named("s3")), Verdict::Provisional);
   EXPECT_EQ(wider->verdicts.at(named("s3")).reasons, candidate.reasons);
   EXPECT_EQ(wider->verdict, Verdict::Provisional);
+}
+
+/// The same places with these 95 % radii on the floor, in the order of the sensors after the
+/// master.
+Registration with_radii(Registration r, const std::vector<double>& radii) {
+  auto radius = radii.begin();
+  for (auto& [sensor, place] : r.sensors) {
+    if (sensor == r.master || radius == radii.end()) continue;
+    place.covariance.diagonal()[3] = place.covariance.diagonal()[5] =
+        std::pow(*radius++ / 2.4477, 2);
+  }
+  return r;
+}
+
+double x_of(const Registration& r, const char* sensor) {
+  return r.sensors.at(named(sensor)).world_from_sensor.translation().x();
+}
+
+TEST(Replacing, AShorterWalkMakesNoPlaceWorse) {
+  const Registration longer =
+      with_radii(adopted_ring(Verdict::Provisional, {1, 2, 3}), {0.014, 0.019});
+  Registration shorter = with_radii(adopted_ring(Verdict::Provisional, {1, 2, 3}), {0.025, 0.034});
+  EXPECT_FALSE(should_replace(longer, shorter, SolveKind::Final));
+  EXPECT_FALSE(adopted(longer, shorter, SolveKind::Final, false));
+  EXPECT_TRUE(should_replace(shorter, longer, SolveKind::Final)) << "a longer one does its work";
+  const Registration as_good = with_radii(longer, {0.0141, 0.0185});
+  EXPECT_TRUE(should_replace(longer, as_good, SolveKind::Final));
+}
+
+TEST(Replacing, ASensorThatWasMovedGetsItsNewPlaceHoweverShortTheWalk) {
+  const Registration longer = with_radii(adopted_ring(Verdict::Good, {1, 2, 3}), {0.01, 0.01});
+  Registration moved = with_radii(adopted_ring(Verdict::Good, {1, 2, 3}), {0.01, 0.03});
+  moved.sensors.at(named("s3")).world_from_sensor.translation().x() += 0.25;
+  EXPECT_TRUE(should_replace(longer, moved, SolveKind::Final));
+}
+
+TEST(Extending, TakesOnlyThePlacesThatAreBetter) {
+  const Registration current =
+      with_radii(adopted_ring(Verdict::Provisional, {1, 2, 3}), {0.02, 0.05});
+  Registration candidate = with_radii(adopted_ring(Verdict::Provisional, {1, 2, 3}), {0.03, 0.02});
+  for (const char* sensor : {"s2", "s3"})
+    candidate.sensors.at(named(sensor)).world_from_sensor.translation().x() += 0.004;
+  const auto next = adopted(current, candidate, SolveKind::Final, false);
+  ASSERT_TRUE(next) << next.error().message;
+  EXPECT_EQ(x_of(*next, "s2"), x_of(current, "s2")) << "it stood better before";
+  EXPECT_GT(x_of(*next, "s3"), x_of(current, "s3") + 0.001) << "it stands better now";
 }
 
 TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {

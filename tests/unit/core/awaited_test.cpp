@@ -9,6 +9,7 @@
 namespace chorus::core {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -140,6 +141,24 @@ TEST_F(Awaited, NothingWhenAllHaveAPlaceAndTheMissingOneWhenOneHasNot) {
   EXPECT_THAT(said(), ElementsAre("sensor s3 has no place yet",
                                   HasSubstr("the next try by itself is in 30 s")));
   place("s3");
+  EXPECT_THAT(said(), IsEmpty());
+}
+
+TEST_F(Awaited, AlwaysANextStepWhileThePlacesAreNotGood) {
+  for (const char* sensor : {"s1", "s2", "s3"}) {
+    see(sensor, 1);
+    place(sensor);
+  }
+  registration_.master = sensor_id("s1");
+  registration_.verdict = Verdict::Provisional;
+  registration_.reasons = {"the walk lasted only 8 s; 20 s make a good registration"};
+  EXPECT_THAT(said(), ElementsAre(AllOf(HasSubstr("the walk lasted only 8 s"),
+                                        HasSubstr("chorus register, and walk for 30 s"))));
+  for (const char* sensor : {"s1", "s2"})
+    registration_.verdicts[sensor_id(sensor)] = {Verdict::Good, {}};
+  registration_.verdicts[sensor_id("s3")] = {Verdict::Provisional, {}};
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("sensor s3 stands only provisionally")));
+  registration_.verdict = Verdict::Good;
   EXPECT_THAT(said(), IsEmpty());
 }
 
