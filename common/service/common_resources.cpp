@@ -1,5 +1,8 @@
 #include "common/service/common_resources.h"
 
+#include <algorithm>
+#include <deque>
+#include <mutex>
 #include <string_view>
 #include <utility>
 
@@ -64,24 +67,40 @@ DocumentPtr clock_document(const Clock& clock) {
 Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
   if (!health.ready) return fail(ErrorCode::Unavailable, "health", health.reason);
   DocumentOptions options = fleeting(now);
-  nlohmann::json status{{"status", "ok"}};
+  nlohmann::json status{{"status", health.reason.empty() ? "ok" : "degraded"}};
   if (!health.reason.empty()) status["warning"] = health.reason;
   const std::string json =
       status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  const std::string text = health.reason.empty() ? "ok\n" : "ok, but " + health.reason + "\n";
+  const std::string text = health.reason.empty() ? "ok\n" : "degraded: " + health.reason + "\n";
   std::vector<Variant> variants{{"application/json", [json] { return json; }},
                                 {"text/plain", [text] { return text; }}};
   return std::make_shared<const http::Document>(linked(std::move(variants), Kind::Other),
                                                 std::move(options));
 }
 
+/// The service's own health, and whether it runs with the configuration that it was given.
+Health with_configuration(Health health,
+                          const std::shared_ptr<const Configuration>& configuration) {
+  const std::string trouble = configuration == nullptr ? "" : configuration->trouble();
+  if (trouble.empty() || !health.ready) return health;
+  health.reason += (health.reason.empty() ? "" : "; ") + trouble;
+  return health;
+}
+
 /// Metrics of the process, as opposed to those of the service.
-std::string process_metrics() {
+std::string process_metrics(const std::shared_ptr<const Configuration>& configuration) {
   MetricsText text;
   text.gauge({"chorus_build", "1, with the version of the program."}, 1,
              {{"version", std::string(version())}});
   text.counter({"chorus_log_dropped_lines_total", "Log lines dropped because nobody read them."},
                static_cast<double>(log::dropped_lines()));
+  if (configuration == nullptr) return text.text();
+  const ConfigurationFacts facts = configuration->facts();
+  text.gauge({"chorus_configuration_reload_failed",
+              "1 while the last reload changed nothing because of a mistake; see /configuration."},
+             facts.reload_error.empty() ? 0.0 : 1.0);
+  text.gauge({"chorus_configuration_pending_keys", "Changed keys that wait for a restart."},
+             static_cast<double>(facts.waiting.size()));
   return text.text();
 }
 
@@ -107,12 +126,8 @@ DocumentPtr void_document() {
   return resource::document_of(std::move(node), std::move(options), place);
 }
 
-/// The description for the Web of Things, as this client needs it: with the address by which it
-/// asks.
-Result<DocumentPtr> thing_document(const Self& self, const http::Router& router,
-                                   const Request& request) {
-  const auto text = std::make_shared<const std::string>(thing_description(
-      self, router, {request.root, request.guards_reading, request.guards_writing}));
+DocumentPtr thing_document(const Self& self, const http::Router& router, const ThingFacts& facts) {
+  const auto text = std::make_shared<const std::string>(thing_description(self, router, facts));
   DocumentOptions options;
   options.version = version_of(*text);
   std::vector<Variant> variants;
@@ -121,6 +136,46 @@ Result<DocumentPtr> thing_document(const Self& self, const http::Router& router,
   return std::make_shared<const http::Document>(linked(std::move(variants), Kind::Other),
                                                 std::move(options));
 }
+
+/// The descriptions for the Web of Things, as each client needs one: with the address by which it
+/// asks.  Making one takes a while, so it is made once; the last few are kept, because anybody may
+/// ask by any numeric address.
+class Things {
+ public:
+  Things(const http::Router& router, std::function<Self()> self)
+      : router_(router), self_(std::move(self)) {}
+
+  [[nodiscard]] DocumentPtr of(const Request& request) {
+    const ThingFacts facts{request.root, request.guards_reading, request.guards_writing};
+    const Self self = self_();
+    const std::scoped_lock lock(mutex_);
+    const auto kept = std::ranges::find_if(
+        made_, [&](const Made& one) { return one.facts == facts && same_thing(one.self, self); });
+    if (kept != made_.end()) return kept->document;
+    if (made_.size() >= kMost) made_.pop_front();
+    made_.push_back({facts, self, thing_document(self, router_, facts)});
+    return made_.back().document;
+  }
+
+ private:
+  /// True if all is the same that a Thing Description says.
+  static bool same_thing(const Self& a, const Self& b) {
+    return a.title == b.title && a.description == b.description && a.type == b.type &&
+           a.resources == b.resources;
+  }
+
+  static constexpr std::size_t kMost = 8;
+  struct Made {
+    ThingFacts facts;
+    Self self;
+    DocumentPtr document;
+  };
+
+  const http::Router& router_;
+  std::function<Self()> self_;
+  std::mutex mutex_;
+  std::deque<Made> made_;
+};
 
 void add_fixed(http::Router& router) {
   serve(router, "/openapi.json",
@@ -141,26 +196,40 @@ void add_routes(http::Router& router, const CommonResources& options) {
   router.get("/clock", [clock](const Request&, const PathParams&) -> Result<DocumentPtr> {
     return clock_document(*clock);
   });
-  router.get(
-      "/healthz",
-      [clock, health = options.health](const Request&, const PathParams&) -> Result<DocumentPtr> {
-        return health_document(health ? health() : Health{}, clock->now());
-      });
+  router.get("/healthz",
+             [clock, health = options.health, configuration = options.configuration](
+                 const Request&, const PathParams&) -> Result<DocumentPtr> {
+               return health_document(with_configuration(health ? health() : Health{},
+                                                         configuration ? configuration() : nullptr),
+                                      clock->now());
+             });
   router.vital("/healthz");
   router.for_everybody("/healthz");
   if (options.metrics) {
     router.vital("/metrics");
     router.get("/metrics",
-               [clock, metrics = options.metrics](const Request&,
-                                                  const PathParams&) -> Result<DocumentPtr> {
-                 return metrics_document(metrics() + process_metrics(), clock->now());
+               [clock, metrics = options.metrics, configuration = options.configuration](
+                   const Request&, const PathParams&) -> Result<DocumentPtr> {
+                 return metrics_document(
+                     metrics() + process_metrics(configuration ? configuration() : nullptr),
+                     clock->now());
+               });
+  }
+  if (options.configuration) {
+    router.get("/configuration",
+               [clock, configuration = options.configuration](
+                   const Request&, const PathParams&) -> Result<DocumentPtr> {
+                 return resource::other_document("application/json",
+                                                 configuration_json(configuration()->facts()),
+                                                 fleeting(clock->now()));
                });
   }
   add_fixed(router);
   if (!options.self) return;
   router.get("/.well-known/wot",
-             [&router, self = options.self](const Request& request, const PathParams&) {
-               return thing_document(self(), router, request);
+             [things = std::make_shared<Things>(router, options.self)](
+                 const Request& request, const PathParams&) -> Result<DocumentPtr> {
+               return things->of(request);
              });
 }
 

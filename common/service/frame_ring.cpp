@@ -8,10 +8,27 @@
 namespace chorus::service {
 namespace {
 
+/// What to say about a number with a point, as programs write seconds; empty if it is none.
+std::string instant_in_seconds(const std::string& text) {
+  const auto value = parse_number<double>(text);
+  if (!value) return {};
+  return "looks like seconds since 1970; give nanoseconds, a whole number: " +
+         std::to_string(static_cast<long long>(std::clamp(*value, -9e9, 9e9) * 1e9));
+}
+
 Result<Timestamp> parse_instant(const std::string& text) {
-  if (const auto ns = parse_number<std::int64_t>(text)) return from_unix_ns(*ns);
+  const auto ns = parse_number<std::int64_t>(text);
+  const std::string hint = ns ? "" : instant_in_seconds(text);
+  // No frame is of the first days of 1970; small numbers are seconds or milliseconds.
+  constexpr std::int64_t kLeast = 1'000'000'000'000'000;
+  if (ns && *ns > -kLeast && *ns < kLeast)
+    return fail(ErrorCode::InvalidArgument, "/frame?at=" + text,
+                "is in nanoseconds since 1970, which would be in that year; in seconds or "
+                "milliseconds? Multiply by 1000000000 or 1000000");
+  if (ns) return from_unix_ns(*ns);
   auto parsed = parse_iso8601(text);
   if (parsed) return parsed;
+  if (!hint.empty()) return fail(ErrorCode::InvalidArgument, "/frame?at=" + text, hint);
   return fail(ErrorCode::InvalidArgument, "/frame?at=" + text,
               "give the instant as UTC, 2026-11-21T07:30:00.25Z, or in nanoseconds since 1970");
 }

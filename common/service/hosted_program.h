@@ -11,13 +11,15 @@
 #include "common/base/log.h"
 #include "common/service/program.h"
 #include "common/service/waiting_keys.h"
+#include "common/time/clock.h"
 
 namespace chorus::service {
 
 /// `Settings` has a member `live`, which has a LogConfig `log`, and a member `at_start`.
 /// `Host` has: static Result<std::unique_ptr<Host>> make(const Settings&), which binds no port;
 ///   Result<void> start(); void take(const live part&); void stop();
-///   and optionally: bool alive(); Concerns concerns().
+///   and optionally: bool alive(); Concerns concerns();
+///   void tell_of(std::shared_ptr<const Configuration>), called after make().
 template <class Settings, class Host>
 class HostedProgram final : public Program {
  public:
@@ -33,6 +35,8 @@ class HostedProgram final : public Program {
     if (!host) return pass(host);
     settings_ = std::move(*settings);
     host_ = std::move(*host);
+    if constexpr (requires(Host & h) { h.tell_of(configuration()); })
+      host_->tell_of(configuration());
     return settings_.live.log;
   }
 
@@ -47,11 +51,13 @@ class HostedProgram final : public Program {
     const std::string text = config.text();
     const auto wanted = read_(std::move(config));
     if (!wanted) return pass(wanted);
-    if (needs_restart(*wanted)) {
-      log::warn("changes wait for a restart", {{"keys", waiting(text)}});
-    }
+    const auto keys = needs_restart(*wanted) ? waiting(text) : std::vector<std::string>{};
+    std::string all;
+    for (const std::string& key : keys) all += (all.empty() ? "" : ", ") + key;
+    if (!keys.empty()) log::warn("changes wait for a restart", {{"keys", all}});
     settings_.live = wanted->live;
     host_->take(settings_.live);
+    configuration()->reloaded(text, keys, SystemClock().now());
     return settings_.live.log;
   }
 
@@ -69,7 +75,7 @@ class HostedProgram final : public Program {
 
   /// The changed keys that need a restart.  A key that is not valid when changed alone counts as
   /// one.
-  [[nodiscard]] std::string waiting(const std::string& wanted) const {
+  [[nodiscard]] std::vector<std::string> waiting(const std::string& wanted) const {
     return waiting_keys(started_as_, wanted, [this](const std::string& text) {
       const auto probe = ConfigReader::parse(text, "reload").and_then(read_);
       return !probe || needs_restart(*probe);

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "common/service/supervisor.h"
+#include "common/time/clock.h"
 
 namespace chorus::service {
 namespace {
@@ -16,7 +17,9 @@ sigset_t block_signals() {
   sigemptyset(&signals);
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
+  // A broken connection is told by its call; the others mean nothing to a service, and must not end
+  // it only because somebody took one for a reload.
+  for (const int signal : {SIGPIPE, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
   return signals;
 }
 
@@ -29,6 +32,7 @@ void reload(Program& program, const ConfigSource& source) {
   const auto taken = read_config(source).and_then(
       [&](const ConfigReader& config) { return program.reload(config); });
   if (!taken) {
+    program.configuration()->reload_failed(taken.error(), SystemClock().now());
     return log::error("configuration not reloaded, the old one stays",
                       {{"reason", to_string(taken.error())}});
   }
@@ -74,6 +78,7 @@ void run(Program& program, const ConfigSource& source, const sigset_t& signals) 
 int serve(const About& about, Program& program, const CommandLine& command) {
   const sigset_t signals = block_signals();  // Must happen before any thread starts.
   const auto log = read_config(command.source).and_then([&](const ConfigReader& config) {
+    program.configuration()->started(command.source, config.text(), SystemClock().now());
     return program.prepare(config);
   });
   if (!log) return refuse(about, log.error());

@@ -5,11 +5,13 @@
 // is wrong, nothing changes.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
 #include "common/service/command_line.h"
+#include "common/service/configuration.h"
 #include "common/service/log_config.h"
 
 namespace chorus::service {
@@ -34,6 +36,15 @@ class Program {
   /// Called while running: false when a thread on which everything depends has hung for a while.
   /// Then the watchdog of systemd restarts the program.
   [[nodiscard]] virtual bool alive() { return true; }
+
+  /// What the service says of its own configuration; the shell notes starts and failed reloads, the
+  /// program what a reload changed.
+  [[nodiscard]] const std::shared_ptr<Configuration>& configuration() const {
+    return configuration_;
+  }
+
+ private:
+  std::shared_ptr<Configuration> configuration_ = std::make_shared<Configuration>();
 };
 
 [[nodiscard]] int run_program(const About& about, Program& program, int argc,

@@ -20,6 +20,7 @@ std::vector<Listed> everywhere() {
           {"clock", "clock", "how well this host keeps time"},
           {"healthz", "", "whether frames are coming"},
           {"metrics", "", "counters for Prometheus"},
+          {"configuration", "", "what is in force, and what waits for a restart"},
           {"openapi.json", "endpointDescription", "the interface for tools"},
           {".well-known/wot", "", "the interface for the Web of Things"},
           {"ns", "", "the vocabulary"},

@@ -17,6 +17,8 @@ struct Listed {
   std::string path;
   std::string key;   ///< The property that links to the resource; empty: it is only listed.
   std::string what;  ///< Human-readable, half a sentence.
+
+  bool operator==(const Listed&) const = default;
 };
 
 struct Self {

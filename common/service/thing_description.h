@@ -14,6 +14,8 @@ struct ThingFacts {
   std::string base;             ///< Absolute IRI of `/`; empty: not known.
   bool guards_reading = false;  ///< Whether reading needs a token, at least from other hosts.
   bool guards_writing = false;  ///< The same of writing.
+
+  bool operator==(const ThingFacts&) const = default;
 };
 
 /// JSON.  Names, sentences, media types and inputs are those of proto/openapi.json.  Only what the

@@ -1,5 +1,7 @@
 #include "common/service/waiting_keys.h"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -69,20 +71,40 @@ std::string joined(const Path& path) {
 
 }  // namespace
 
-std::string waiting_keys(std::string_view running, std::string_view wanted,
-                         const NeedsRestart& needs_restart) {
+std::vector<std::string> changed_keys(std::string_view running, std::string_view wanted) {
+  return waiting_keys(running, wanted, [](const std::string&) { return true; });
+}
+
+std::vector<std::string> waiting_keys(std::string_view running, std::string_view wanted,
+                                      const NeedsRestart& needs_restart) {
   const json now = parsed(running);
   const json next = parsed(wanted);
   if (!now.is_object() || !next.is_object()) return {};
   Path at;
   std::vector<Path> changed;
   add_changes(now, next, at, changed);
-  std::string keys;
+  std::vector<std::string> keys;
   for (const Path& path : changed) {
-    if (!needs_restart(with_one_change(now, path, next).dump())) continue;
-    keys += (keys.empty() ? "" : ", ") + joined(path);
+    if (needs_restart(with_one_change(now, path, next).dump())) keys.push_back(joined(path));
   }
   return keys;
+}
+
+std::string with_keys_of(std::string_view text, std::string_view other,
+                         const std::vector<std::string>& keys) {
+  json out = parsed(text);
+  const json from = parsed(other);
+  if (!out.is_object() || !from.is_object()) return std::string(text);
+  for (const std::string& key : keys) {
+    Path path;
+    for (std::size_t begin = 0; begin <= key.size();) {
+      const std::size_t end = std::min(key.find('.', begin), key.size());
+      path.push_back(key.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    out = with_one_change(std::move(out), path, from);
+  }
+  return out.dump();
 }
 
 }  // namespace chorus::service

@@ -194,6 +194,7 @@ SinkCounters Server::counters() const {
   counters.failed = impl_->failed;
   counters.refused = impl_->refused;
   counters.clients = impl_->clients;
+  counters.last_refusal = impl_->turned_away.last();
   return counters;
 }
 

@@ -30,6 +30,7 @@ SinkCounters OutletSink::counters() const {
   SinkCounters counters = outlet_->counters();
   counters.frames = sent_;
   counters.failed += failed_;
+  if (failed_ > 0) counters.last_failure = trouble_.last();
   counters.dropped += waiting_.dropped();
   return counters;
 }

@@ -1,8 +1,10 @@
 #include "fusion-server/outputs/outputs.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace chorus::outputs {
@@ -28,28 +30,31 @@ void for_each_output(Config& config, const Visitor& visit) {
   visit("natnet", config.natnet);
 }
 
-struct Opening {
-  std::shared_ptr<const Clock> clock;
-  std::vector<std::unique_ptr<Sink>> sinks;
-  Result<void> outcome;
-};
-
 /// open_outlet() is found in the protocol's namespace, by argument-dependent lookup.
 template <class Setting>
-void open_one(std::string_view key, const Setting& output, Opening& opening) {
-  if (!output.common.enabled || !opening.outcome) return;
-  const outlet::OutletContext context{static_cast<std::size_t>(output.common.max_persons),
-                                      opening.clock};
+Result<std::unique_ptr<Sink>> open_one(std::string_view key, const Setting& output,
+                                       const std::shared_ptr<const Clock>& clock) {
+  const outlet::OutletContext context{static_cast<std::size_t>(output.common.max_persons), clock};
   auto outlet = open_outlet(output.protocol, context);
   if (!outlet) {
     Error error = outlet.error();
     error.context = "outputs." + std::string(key) + ": " + error.context;
-    opening.outcome = tl::unexpected<Error>(std::move(error));
-    return;
+    return tl::unexpected<Error>(std::move(error));
   }
-  opening.sinks.push_back(std::make_unique<outlet::OutletSink>(
+  return std::make_unique<outlet::OutletSink>(
       std::move(*outlet),
-      outlet::OutletTiming{output.common.latency, context.slots, context.clock}));
+      outlet::OutletTiming{output.common.latency, context.slots, context.clock});
+}
+
+/// Calls `visit` with the key and the settings of the output with this index, and returns what it
+/// returns.
+template <class Value, class Config, class Visitor>
+Value of_output(Config& config, std::size_t index, Value otherwise, const Visitor& visit) {
+  std::size_t at = 0;
+  for_each_output(config, [&](std::string_view key, auto& output) {
+    if (at++ == index) otherwise = visit(key, output);
+  });
+  return otherwise;
 }
 
 }  // namespace
@@ -73,12 +78,61 @@ void read_outputs(ConfigReader reader, OutputsConfig& out) {
 
 Result<std::vector<std::unique_ptr<Sink>>> open_outputs(const OutputsConfig& config,
                                                         const std::shared_ptr<const Clock>& clock) {
-  Opening opening{clock, {}, {}};
-  for_each_output(config, [&opening](std::string_view key, const auto& output) {
-    open_one(key, output, opening);
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (std::size_t i = 0; i < output_names().size(); ++i) {
+    if (!is_enabled(config, i)) continue;
+    auto sink = open_output(config, i, clock);
+    if (!sink) return pass(sink);
+    sinks.push_back(std::move(*sink));
+  }
+  return sinks;
+}
+
+const std::vector<std::string_view>& output_names() {
+  static const auto names = [] {
+    std::vector<std::string_view> all;
+    const OutputsConfig config;
+    for_each_output(config, [&](std::string_view key, const auto&) { all.push_back(key); });
+    return all;
+  }();
+  return names;
+}
+
+bool is_enabled(const OutputsConfig& config, std::size_t index) {
+  return of_output(config, index, false,
+                   [](std::string_view, const auto& output) { return output.common.enabled; });
+}
+
+bool same_output(const OutputsConfig& a, const OutputsConfig& b, std::size_t index) {
+  // Copies in which all other outputs are the same: then the configurations compare as this one.
+  OutputsConfig left;
+  OutputsConfig right;
+  const auto copy = [index](const OutputsConfig& from, OutputsConfig& to) {
+    std::size_t at = 0;
+    for_each_output(from, [&](std::string_view key, const auto& output) {
+      if (at++ != index) return;
+      for_each_output(to, [&](std::string_view other, auto& target) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(target)>,
+                                     std::decay_t<decltype(output)>>) {
+          if (other == key) target = output;
+        }
+      });
+    });
+  };
+  copy(a, left);
+  copy(b, right);
+  return left == right;
+}
+
+Result<std::unique_ptr<Sink>> open_output(const OutputsConfig& config, std::size_t index,
+                                          const std::shared_ptr<const Clock>& clock) {
+  std::optional<Result<std::unique_ptr<Sink>>> opened;
+  std::size_t at = 0;
+  for_each_output(config, [&](std::string_view key, const auto& output) {
+    if (at++ == index) opened = open_one(key, output, clock);
   });
-  if (!opening.outcome) return pass(opening.outcome);
-  return std::move(opening.sinks);
+  if (!opened) return fail(ErrorCode::NotFound, "outputs", "there is no such output");
+  return std::move(*opened);
 }
 
 std::size_t slots_of_all(const OutputsConfig& config) {

@@ -5,7 +5,9 @@
 // TrackerFrame to bytes (pure). outputs.cpp lists the protocols.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "common/base/config_reader.h"
@@ -54,8 +56,17 @@ struct OutputsConfig {
 /// Reads the section; the reader's finish() reports mistakes.
 void read_outputs(ConfigReader reader, OutputsConfig& out);
 
-/// Opens the enabled outputs.  Returns the error of the first one that cannot be opened, with a
-/// context that begins with "outputs.NAME".
+/// "mxtp", "dtrack", ...: the keys of all outputs; the functions below take an index into them.
+[[nodiscard]] const std::vector<std::string_view>& output_names();
+[[nodiscard]] bool is_enabled(const OutputsConfig& config, std::size_t index);
+[[nodiscard]] bool same_output(const OutputsConfig& a, const OutputsConfig& b, std::size_t index);
+
+/// Opens one output, enabled or not.  The error's context begins with "outputs.NAME".
+[[nodiscard]] Result<std::unique_ptr<Sink>> open_output(const OutputsConfig& config,
+                                                        std::size_t index,
+                                                        const std::shared_ptr<const Clock>& clock);
+
+/// Opens the enabled outputs.  Returns the error of the first one that cannot be opened.
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
     const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
 

@@ -62,9 +62,11 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
               number(s.failures), labels);
 }
 
-void add_output(service::MetricsText& out, const Sink& sink) {
-  const service::Labels labels{{"output", std::string(sink.name())}};
-  const SinkCounters counters = sink.counters();
+void add_output(service::MetricsText& out, const OutputStatus& output) {
+  const service::Labels labels{{"output", output.name}};
+  const SinkCounters& counters = output.counters;
+  out.gauge({"chorus_output_open", "0 while the output could not be opened; see /outputs/."},
+            output.error.empty() ? 1.0 : 0.0, labels);
   out.counter({"chorus_output_frames_total", "Fused frames handed to the protocol."},
               number(counters.frames), labels);
   out.counter({"chorus_output_dropped_total",
@@ -80,7 +82,7 @@ void add_output(service::MetricsText& out, const Sink& sink) {
 
 }  // namespace
 
-std::string metrics_text(const Status& status, const std::vector<std::unique_ptr<Sink>>& outputs,
+std::string metrics_text(const Status& status, const std::vector<OutputStatus>& outputs,
                          const http::ServerCounters& http) {
   service::MetricsText out;
   const Counters& counters = status.counters;
@@ -109,7 +111,7 @@ std::string metrics_text(const Status& status, const std::vector<std::unique_ptr
              "1 while the registration in use survives a restart; see /registration."},
             stored(status.progress) ? 1.0 : 0.0);
   for (const SensorStatus& sensor : status.sensors) add_sensor(out, sensor);
-  for (const auto& sink : outputs) add_output(out, *sink);
+  for (const OutputStatus& output : outputs) add_output(out, output);
   service::add_server(out, http);
   return out.text();
 }

@@ -1,7 +1,6 @@
 // /metrics of a fusion server, as Prometheus text.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,7 @@
 namespace chorus::rest {
 
 [[nodiscard]] std::string metrics_text(const Status& status,
-                                       const std::vector<std::unique_ptr<Sink>>& outputs,
+                                       const std::vector<OutputStatus>& outputs,
                                        const http::ServerCounters& http);
 
 }  // namespace chorus::rest

@@ -28,7 +28,8 @@ service::Self self_of(const std::string& title, bool with_viewer) {
                          {"skeletons/", "skeletons", "the bodies in the latest frame, one by one"},
                          {"floor-plane", "floorPlane", "where the floor is"},
                          {"sensors/", "sensorList", "state, age and clock of every sensor"},
-                         {"registration", "registration", "where the sensors stand"}});
+                         {"registration", "registration", "where the sensors stand"},
+                         {"outputs/", "", "which other protocols are served, and to how many"}});
   return self;
 }
 
@@ -40,7 +41,8 @@ void add_description_routes(http::Router& router, const service::Serving& servin
   router.get("/floor-plane",
              [floor](const http::Request&, const http::PathParams&) { return floor; });
   if (!viewer_dir.empty()) {
-    router.files("/viewer/", viewer_dir, resource::link_lines(resource::Kind::Other));
+    router.files("/viewer/", viewer_dir,
+                 {resource::link_lines(resource::Kind::Other), http::Page::Viewer});
   }
 }
 

@@ -25,9 +25,9 @@ struct OwnPort {
 };
 
 /// The ports that the server itself would bind.
-std::vector<OwnPort> own_ports(const StartSettings& config) {
-  std::vector<OwnPort> ports{{"http.port", config.http.port, true, false}};
-  const outputs::OutputsConfig& out = config.outputs;
+std::vector<OwnPort> own_ports(const FusionSettings& config) {
+  std::vector<OwnPort> ports{{"http.port", config.at_start.http.port, true, false}};
+  const outputs::OutputsConfig& out = config.live.outputs;
   if (out.vrpn.common.enabled)
     ports.push_back({"outputs.vrpn.port", out.vrpn.protocol.port, true, true});
   if (out.dtrack.common.enabled) {
@@ -41,7 +41,7 @@ std::vector<OwnPort> own_ports(const StartSettings& config) {
   return ports;
 }
 
-void compare_ports(const StartSettings& config, service::Concerns& all) {
+void compare_ports(const FusionSettings& config, service::Concerns& all) {
   const std::vector<OwnPort> ports = own_ports(config);
   for (std::size_t i = 0; i < ports.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -95,7 +95,7 @@ void look_at_files(const FusionSettings& settings, const std::string& state,
 service::Concerns setting_concerns(const FusionSettings& settings) {
   service::Concerns all;
   const LiveSettings& live = settings.live;
-  compare_ports(settings.at_start, all);
+  compare_ports(settings, all);
   if (live.sensors.empty()) return all;  // told by host_concerns; what is named cannot be compared
   const auto look_for = [&](const std::string& key, const SensorId& sensor) {
     if (!configured(live, sensor))

@@ -14,8 +14,10 @@
 #include "common/resource/link_lines.h"
 #include "common/service/common_resources.h"
 #include "common/service/http_config.h"
+#include "fusion-server/outputs/output_bank.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
+#include "fusion-server/rest/output_resources.h"
 #include "fusion-server/rest/registration_resources.h"
 #include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/rest/tracker_description.h"
@@ -39,7 +41,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   core::CoreConfig core;
   core.output = live.output;
   core.pipeline = live.pipeline;
-  core.pipeline.seating.front = outputs::slots_of_all(settings.at_start.outputs);
+  core.pipeline.seating.front = outputs::slots_of_all(settings.live.outputs);
   core.registration = live.registration;
   core.session = live.session;
   core.watch = live.watch;
@@ -66,6 +68,15 @@ service::Health health_of(const Status& status) {
   const StorageStatus& storage = status.progress.storage;
   if (!storage.trouble.empty()) return {true, "the registration is not stored: " + storage.trouble};
   return {true, storage.damage};
+}
+
+/// Adds the outputs that could not be opened by a reload.
+service::Health with_outputs(service::Health health, const std::vector<OutputStatus>& states) {
+  for (const OutputStatus& one : states) {
+    if (one.error.empty() || !health.ready) continue;
+    health.reason += (health.reason.empty() ? "" : "; ") + one.name + " is not open: " + one.error;
+  }
+  return health;
 }
 
 /// Logs for each unusable folder what is wrong with it; the server runs without that folder.
@@ -148,9 +159,11 @@ struct FusionServer::Impl {
   FusionSettings config;  ///< Its live part is guarded by mutex.
   std::shared_ptr<const Clock> clock;
   service::Serving serving;
-  std::vector<std::unique_ptr<Sink>> sinks;  ///< Filled before the first request.
+  std::optional<outputs::OutputBank> outputs;  ///< Set before the first request.
   mutable std::mutex mutex;
   Status status;  ///< Guarded by mutex.
+  std::shared_ptr<const service::Configuration> configuration =
+      std::make_shared<service::Configuration>();  ///< Guarded by mutex.
   std::atomic<std::chrono::steady_clock::time_point> status_at{};
   StateClaim state_claim;
   RegistrationStore store{""};
@@ -202,13 +215,19 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
                                viewer_folder(config.at_start.viewer_dir));
   service::CommonResources common;
   common.clock = clock;
-  common.health = [this] { return health_of(status_now()); };
+  common.health = [this] { return with_outputs(health_of(status_now()), outputs->states()); };
   common.metrics = [this] {
-    return rest::metrics_text(status_now(), sinks, http->counters()) + recordings->metrics_text();
+    return rest::metrics_text(status_now(), outputs->states(), http->counters()) +
+           recordings->metrics_text();
   };
   common.self = [self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty())] {
     return self;
   };
+  common.configuration = [this] {
+    const std::scoped_lock lock(mutex);
+    return configuration;
+  };
+  rest::add_output_routes(*router, serving, [this] { return outputs->states(); });
   service::add_routes(*router, common);
   return router;
 }
@@ -239,7 +258,7 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   options.clock = clock;
   options.sinks.push_back(&*frame_sink);
   options.sinks.push_back(&*tap);
-  for (const auto& sink : sinks) options.sinks.push_back(sink.get());
+  options.sinks.push_back(&*outputs);
   options.on_status = [this](const Status& next) { take_status(next); };
   options.on_amended = [this](const Snapshot& snapshot) { frame_sink->amend(snapshot); };
   options.poll_reports = [this] {
@@ -287,9 +306,8 @@ Result<void> FusionServer::start() {
     log::warn("the configuration may not be what is meant", {{"what", concern}});
   auto initial = initial_registration(s.config, s.store);
   if (!initial) return pass(initial);
-  auto sinks = outputs::open_outputs(s.config.at_start.outputs, s.clock);
-  if (!sinks) return pass(sinks);
-  s.sinks = std::move(*sinks);
+  s.outputs.emplace(s.clock);
+  if (auto opened = s.outputs->apply(s.config.live.outputs); !opened) return opened;
   http::ServerConfig http = s.config.at_start.http;
   http.tokens = s.config.live.tokens;
   http.identity = s.config.live.identity;
@@ -316,6 +334,8 @@ void FusionServer::take(const LiveSettings& live) {
     const std::scoped_lock lock(s.mutex);
     s.config.live = live;
   }
+  if (const auto opened = s.outputs->apply(live.outputs); !opened)
+    log::error("an output could not be opened", {{"reason", to_string(opened.error())}});
   s.loop->ask(core_config(s.config));
   s.follow(live.sensors);
   s.http->set_tokens(live.tokens);
@@ -334,7 +354,12 @@ void FusionServer::stop() {
   if (s.http) s.http->stop();
   if (s.followers) s.followers->stop();
   s.loop.reset();
-  s.sinks.clear();
+  s.outputs.reset();
+}
+
+void FusionServer::tell_of(std::shared_ptr<const service::Configuration> configuration) {
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->configuration = std::move(configuration);
 }
 
 service::About about_fusion() {

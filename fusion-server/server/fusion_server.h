@@ -7,6 +7,7 @@
 #include "common/base/result.h"
 #include "common/service/command_line.h"
 #include "common/service/concerns.h"
+#include "common/service/configuration.h"
 #include "common/time/clock.h"
 #include "fusion-server/server/fusion_settings.h"
 
@@ -26,6 +27,9 @@ class FusionServer {
 
   /// Applies everything that can change while the server runs.
   void take(const LiveSettings& live);
+
+  /// Whose facts /configuration shows.
+  void tell_of(std::shared_ptr<const service::Configuration> configuration);
 
   /// What would not work if the server started on this host now.
   [[nodiscard]] service::Concerns concerns() const;

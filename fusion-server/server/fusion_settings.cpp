@@ -296,7 +296,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   read_fusion(std::move(fusion), live.pipeline.fusion);
   read_sensors(root, client::read_trust(root.child("poll")), live);
   read_registration(root.child("registration"), settings);
-  outputs::read_outputs(root.child("outputs"), at_start.outputs);
+  outputs::read_outputs(root.child("outputs"), settings.live.outputs);
   root.read("state_dir", at_start.state_dir);
   root.read("viewer_dir", at_start.viewer_dir);
   service::read_recording(root.child("recording"), at_start.recording);

@@ -30,6 +30,7 @@ struct LiveSettings {
   registration::RegistrationConfig registration;
   core::SessionConfig session;
   watch::WatchConfig watch;
+  outputs::OutputsConfig outputs;
 
   bool operator==(const LiveSettings&) const = default;
 };
@@ -41,7 +42,6 @@ struct StartSettings {
   bool secure = false;                       ///< True if there is an identity.
   client::PollTimings poll;
   Duration history = std::chrono::seconds(10);  ///< How far back /frames/{seq} and ?at= reach.
-  outputs::OutputsConfig outputs;
   /// A file with given extrinsics; empty: the sensors are registered from a walk.
   std::string registration_file;
   /// The folder for state that is kept across restarts; "auto": see state_folder(); empty: none.

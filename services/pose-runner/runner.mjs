@@ -9,6 +9,9 @@ import { check, engine, load } from './models.js';
 
 const NANOSECONDS = 1e9;
 
+// Without these, SIGUSR1 opens node's debugger on a port, and SIGUSR2 ends the runner.
+for (const signal of ['SIGUSR1', 'SIGUSR2']) process.on(signal, () => {});
+
 function chosen() {
   const { values } = parseArgs({ options: { model: { type: 'string', default: 'movenet' }, check: { type: 'boolean', default: false } } });
   const model = MODELS[values.model];

@@ -104,8 +104,17 @@ std::shared_ptr<http::Router> SensorHost::routes() {
     return metrics_text(service_.counters(), server_.counters()) + recordings_.metrics_text();
   };
   options.self = [this] { return service_.description(); };
+  options.configuration = [this] {
+    const std::scoped_lock lock(configuration_mutex_);
+    return configuration_;
+  };
   service::add_routes(*router, options);
   return router;
+}
+
+void SensorHost::tell_of(std::shared_ptr<const service::Configuration> configuration) {
+  const std::scoped_lock lock(configuration_mutex_);
+  configuration_ = std::move(configuration);
 }
 
 SensorHost::~SensorHost() { stop(); }

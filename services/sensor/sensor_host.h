@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -9,6 +10,7 @@
 #include "common/http/server.h"
 #include "common/service/command_line.h"
 #include "common/service/concerns.h"
+#include "common/service/configuration.h"
 #include "common/service/recordings.h"
 #include "services/sensor/sensor_service.h"
 #include "services/sensor/sensor_settings.h"
@@ -41,6 +43,9 @@ class SensorHost {
   /// Applies everything that can change while the service runs.
   void take(const LiveSettings& live);
 
+  /// Whose facts /configuration shows.
+  void tell_of(std::shared_ptr<const service::Configuration> configuration);
+
   /// What would not work if the service started on this host now.
   [[nodiscard]] service::Concerns concerns() const;
 
@@ -57,6 +62,9 @@ class SensorHost {
   std::optional<Result<void>> run_once(const std::stop_token& stop, const FrameSource::Sink& sink);
 
   Setup setup_;
+  std::mutex configuration_mutex_;
+  std::shared_ptr<const service::Configuration> configuration_ =
+      std::make_shared<service::Configuration>();
   service::Recordings recordings_;
   SensorService service_;
   http::Server server_;

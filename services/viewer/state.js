@@ -135,7 +135,7 @@ export function stateOf(known) {
   const present = many(people, 'person', 'people') + (carried > 0 ? ` (${carried} out of sight)` : '');
   const seen = people === 0 ? 'Nobody is in sight.' : `Live: ${present}.`;
   if (missing) return { ...missing, sentence: `${seen} ${missing.sentence}` };
-  if (places) return { tone: 'warn', sentence: `${seen} The places are provisional.`, next: registration.reasons?.[0] ?? '' };
+  if (places) return { tone: 'warn', sentence: `${seen} The places are provisional.`, next: registration.awaits?.[0] ?? registration.reasons?.[0] ?? '' };
   const doubt = doubtOf(registration);
   if (doubt) return { tone: 'warn', sentence: `${seen} The places are in doubt.`, next: doubt };
   const unplaced = Object.keys(registration.unplaced ?? {});

@@ -138,6 +138,9 @@ follow(resource('registration'), 1000, (registration) => {
   followSession(registration).catch(failed);
 }, failed);
 
+// What is amiss with the service itself although it runs: its configuration, its outputs, its disk.
+follow(resource('healthz'), 5000, ({ warning }) => change({ warning: warning ?? '' }), failed);
+
 /// The map of the walk, while a session runs.
 let session = null;
 async function followSession(registration) {

@@ -77,6 +77,7 @@ export async function startFakeFusion(files, world = usualWorld()) {
     '/sensors/s1/frame': () => frame(sequence, SENSORS.s1),
     '/sensors/s2/frame': () => frame(sequence, SENSORS.s2),
     '/registration': () => world.registration,
+    '/healthz': () => world.health ?? { status: 'ok' },
     '/registration/sessions/7': () => world.session ?? {},
     '/recordings/': () => ({ recordings: world.recordings ?? [] }),
   };

@@ -109,6 +109,16 @@ test('green only while all is well: nobody there, no sensors, dead sensors', asy
   await page.close();
 });
 
+test('what is amiss with the service itself is shown', async () => {
+  const world = usualWorld();
+  world.health = { status: 'degraded', warning: 'these keys were changed and wait for a restart: http.port' };
+  const server = await startFusion(FILES, world);
+  const { page } = await openViewer(browser, server.url);
+  await page.waitForFunction(() => document.getElementById('warning')?.textContent.includes('http.port'), null, SOON);
+  assert.equal(await page.isVisible('#warning'), true);
+  await page.close();
+});
+
 test('reasons, what is awaited, and what is not stored are shown without a registration too', async () => {
   const world = usualWorld();
   world.sensors = { s1: live(), s2: live() };

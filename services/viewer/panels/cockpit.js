@@ -36,7 +36,7 @@ function Dialogs({ known, act }) {
 /// `known`: facts; `act`: what can be done.
 export function Cockpit({ known, act }) {
   return html`
-    <${Top} state=${known.state} alarms=${known.registration?.alarms} onKeys=${() => act.onDialog('keys')} onTheme=${act.onTheme} onPhone=${() => act.onDialog('phone')} />
+    <${Top} state=${known.state} alarms=${known.registration?.alarms} warning=${known.warning} onKeys=${() => act.onDialog('keys')} onTheme=${act.onTheme} onPhone=${() => act.onDialog('phone')} />
     <main>
       <aside id="left" aria-label="sensors">
         <${Sensors} sensors=${known.sensors} registration=${known.registration} colorOf=${act.colorOf} onLook=${(id) => act.onView('sensor', id)} />

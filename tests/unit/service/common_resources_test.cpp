@@ -53,6 +53,28 @@ TEST_F(EndpointTest, ClockTellsItsTimeAndWhatTheKernelKnows) {
   EXPECT_EQ(media_type("/clock"), "text/turtle");
 }
 
+TEST_F(EndpointTest, TheThingIsDescribedOnceForEachAddress) {
+  Self self{"one", "A thing.", "Sensor", {}, {}};
+  http::Router router;
+  add_routes(router, {clock_, {}, {}, [&] { return self; }});
+  const auto described = [&](const std::string& root) {
+    http::Request request;
+    request.root = root;
+    const auto match = router.match("/.well-known/wot");
+    return *match->entry->getter(request, {});
+  };
+  const auto first = described("http://10.0.0.1/");
+  EXPECT_EQ(described("http://10.0.0.1/"), first);
+  const auto other = described("http://10.0.0.2/");
+  EXPECT_NE(other, first);
+  EXPECT_THAT((*other->choose(""))->body(), HasSubstr("http://10.0.0.2/"));
+  for (int i = 0; i < 20; ++i) (void)described("http://10.0.1." + std::to_string(i) + "/");
+  EXPECT_NE(described("http://10.0.0.1/"), first) << "only the last few are kept";
+  const auto before = described("http://10.0.0.1/");
+  self.title = "another";
+  EXPECT_NE(described("http://10.0.0.1/"), before);
+}
+
 TEST_F(EndpointTest, ClockIsNeverCached) {
   const auto before = *get("/clock");
   clock_->advance(std::chrono::seconds(1));

@@ -24,6 +24,7 @@ class NotingProgram final : public Program {
  public:
   std::vector<std::string> asked;
   std::vector<int> signals{SIGTERM};  ///< One is sent after each start or reload.
+  std::vector<int> meaningless;       ///< Sent before each of them.
   bool starts = true;
   bool throws = false;
   std::function<void()> on_reload = [] {};
@@ -58,6 +59,7 @@ class NotingProgram final : public Program {
     return log;
   }
   void next_signal() {
+    for (const int idle : meaningless) kill(getpid(), idle);
     kill(getpid(), signals.front());
     signals.erase(signals.begin());
   }
@@ -74,6 +76,13 @@ std::string complaint_of(NotingProgram& program, const std::vector<const char*>&
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(run(program, words), kExitMistaken);
   return ::testing::internal::GetCapturedStderr();
+}
+
+TEST(ProgramShell, SignalsThatMeanNothingEndNothing) {
+  NotingProgram program;
+  program.meaningless = {SIGUSR1, SIGUSR2, SIGPIPE};
+  EXPECT_EQ(run(program, {}), kExitStopped);
+  EXPECT_THAT(program.asked, ElementsAre("prepare none", "start", "stop"));
 }
 
 TEST(ProgramShell, RunsUntilASignalAsksToStop) {
