@@ -102,14 +102,6 @@ Result<void> wait_for_end(Running& running, const HeldSignals& signals) {
 
 }  // namespace
 
-std::filesystem::path sibling_program(const std::string& name) {
-  std::error_code failed;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
-  if (!failed && std::filesystem::exists(self.parent_path() / name, failed))
-    return self.parent_path() / name;
-  return name;
-}
-
 Result<void> run_children(const std::vector<Child>& children) {
   const HeldSignals signals;
   Running running;

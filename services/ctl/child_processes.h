@@ -11,10 +11,6 @@
 
 namespace chorus::ctl {
 
-/// The program of this name in the folder of our own program; if there is none, the bare name,
-/// which is searched for in $PATH.
-[[nodiscard]] std::filesystem::path sibling_program(const std::string& name);
-
 struct Child {
   std::string label;  ///< Name in messages.
   std::vector<std::string> command;

@@ -1,12 +1,11 @@
 #include "services/ctl/discovery.h"
 
 #include <arpa/inet.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
+#include <map>
 #include <optional>
 #include <tuple>
 
@@ -18,8 +17,9 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr std::size_t kMostSensors = 256;
-constexpr std::size_t kMostBytes = 1u << 20;
+// So that one host that announces thousands cannot hide the others, and comparing them stays quick.
+constexpr std::size_t kMostOfAddress = 32;
+constexpr std::size_t kMostOfId = 64;
 constexpr std::size_t kLongestHost = 253;
 constexpr int kNotInstalled = 127;  // The shell's exit code when there is no such program.
 
@@ -52,10 +52,16 @@ bool is_host(std::string_view host) {
          std::all_of(host.begin(), host.end(), fits);
 }
 
+/// True for the numeric address of one host: no group, no broadcast, and not "any" (0.0.0.0, ::).
 bool is_address(const std::string& text) {
-  std::array<unsigned char, 16> bytes{};
-  return ::inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
-         ::inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
+  in_addr four{};
+  if (::inet_pton(AF_INET, text.c_str(), &four) == 1) {
+    const std::uint32_t value = ntohl(four.s_addr);
+    return (value >> 24U) != 0 && !IN_MULTICAST(value) && !IN_BADCLASS(value);
+  }
+  in6_addr six{};
+  return ::inet_pton(AF_INET6, text.c_str(), &six) == 1 && !IN6_IS_ADDR_UNSPECIFIED(&six) &&
+         !IN6_IS_ADDR_MULTICAST(&six) && !IN6_IS_ADDR_V4MAPPED(&six);
 }
 
 std::optional<FoundSensor> sensor_in(std::string_view line) {
@@ -92,17 +98,21 @@ bool same_sensor(const FoundSensor& a, const FoundSensor& b) {
   return a.id == b.id && a.host == b.host && a.port == b.port && a.tls == b.tls && same_place;
 }
 
-Error not_asked(int status, const std::string& said) {
-  const bool ended = WIFEXITED(status);
-  if (ended && WEXITSTATUS(status) == kNotInstalled)
+Error not_asked(const Asked& asked) {
+  if (asked.cut_short)
+    return {
+        ErrorCode::Timeout, "avahi-browse",
+        "said nothing in time: is avahi-daemon well (systemctl status avahi-daemon)?  A list of "
+        "sensors (--sensor ID=URL,TOKEN) needs neither"};
+  if (asked.code == kNotInstalled)
     return {ErrorCode::Unsupported, "avahi-browse",
             "is not installed: apt install avahi-daemon avahi-utils; a list of sensors "
             "(--sensor ID=URL,TOKEN) needs neither"};
-  if (said.find("Daemon not running") != std::string::npos)
+  if (asked.said.find("Daemon not running") != std::string::npos)
     return {ErrorCode::Unavailable, "avahi-daemon",
             "is not running on this host: systemctl start avahi-daemon; a list of sensors "
             "(--sensor ID=URL,TOKEN) needs none"};
-  return {ErrorCode::Unavailable, "avahi-browse", "failed: " + said};
+  return {ErrorCode::Unavailable, "avahi-browse", "failed: " + asked.said};
 }
 
 }  // namespace
@@ -131,21 +141,26 @@ std::string announcement(const std::string& id, std::uint16_t port, bool tls) {
 }
 
 std::vector<FoundSensor> read_browsed(std::string_view text) {
-  std::vector<FoundSensor> found;
-  while (!text.empty() && found.size() < kMostSensors) {
+  std::map<std::string, std::vector<FoundSensor>> by_id;
+  std::map<std::string, std::size_t> of_address;
+  while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
     const auto sensor = sensor_in(line);
     if (!sensor) continue;
-    const auto known = std::find_if(found.begin(), found.end(), [&](const FoundSensor& each) {
+    std::vector<FoundSensor>& alike = by_id[sensor->id];
+    const auto known = std::find_if(alike.begin(), alike.end(), [&](const FoundSensor& each) {
       return same_sensor(each, *sensor);
     });
-    if (known == found.end()) {
-      found.push_back(*sensor);
-    } else if (rank_of(sensor->address) < rank_of(known->address)) {
-      *known = *sensor;
+    if (known != alike.end()) {
+      if (rank_of(sensor->address) < rank_of(known->address)) *known = *sensor;
+    } else if (alike.size() < kMostOfId && of_address[sensor->address] < kMostOfAddress) {
+      ++of_address[sensor->address];
+      alike.push_back(*sensor);
     }
   }
+  std::vector<FoundSensor> found;
+  for (const auto& [id, alike] : by_id) found.insert(found.end(), alike.begin(), alike.end());
   std::sort(found.begin(), found.end(), [](const FoundSensor& a, const FoundSensor& b) {
     return std::tie(a.id, a.host, a.port, a.tls, a.address) <
            std::tie(b.id, b.host, b.port, b.tls, b.address);
@@ -153,20 +168,17 @@ std::vector<FoundSensor> read_browsed(std::string_view text) {
   return found;
 }
 
-Result<std::vector<FoundSensor>> discovered_sensors() {
+Result<std::vector<FoundSensor>> discovered_sensors(const AskLimits& limits) {
   // The command is fixed; it contains nothing from a caller or from the network.
-  FILE* const pipe = ::popen(
-      "avahi-browse --resolve --parsable --terminate --no-db-lookup _chorus-sensor._tcp 2>&1", "r");
-  if (pipe == nullptr) return fail(ErrorCode::Io, "avahi-browse", "cannot be started");
-  std::string said;
-  std::array<char, 4096> piece{};
-  for (std::size_t size = 1; size > 0;) {
-    size = std::fread(piece.data(), 1, piece.size(), pipe);
-    if (said.size() < kMostBytes) said.append(piece.data(), size);
-  }
-  const int status = ::pclose(pipe);
-  if (status != 0) return tl::unexpected<Error>(not_asked(status, said));
-  return read_browsed(said);
+  const auto asked = ask_program({"avahi-browse", "--resolve", "--parsable", "--terminate",
+                                  "--no-db-lookup", "_chorus-sensor._tcp"},
+                                 limits);
+  if (!asked) return pass(asked);
+  // What it said until it was ended is as good as the rest: a flood, or a host that does not
+  // resolve, must not hide the sensors that were found.
+  if (asked->cut_short && !asked->said.empty()) return read_browsed(asked->said);
+  if (asked->code != 0) return tl::unexpected<Error>(not_asked(*asked));
+  return read_browsed(asked->said);
 }
 
 }  // namespace chorus::ctl

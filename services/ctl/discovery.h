@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "services/ctl/asked_program.h"
 
 namespace chorus::ctl {
 
@@ -35,11 +36,13 @@ struct FoundSensor {
 /// the same id, host, port and TLS are one sensor, of which the best address is kept: IPv4, IPv6,
 /// link-local, loopback. But without TLS, different addresses are different sensors, because one
 /// may be a stranger's, unless one of them is loopback or begins with fe80. Anybody in the network
-/// may announce anything, so lines without a valid id, name, address and port are left out.
+/// may announce anything, so lines without a valid id, name, port and address of one host are left
+/// out, and of one address no more than 32 sensors are listed, of one id no more than 64.
 [[nodiscard]] std::vector<FoundSensor> read_browsed(std::string_view text);
 
-/// Asks Avahi; takes a second or two. Unsupported: avahi-browse is not installed; Unavailable: no
-/// daemon runs, or Avahi failed.
-[[nodiscard]] Result<std::vector<FoundSensor>> discovered_sensors();
+/// Asks Avahi; takes a second or two, and never longer than the limit: then what was found until
+/// then is returned. Unsupported: avahi-browse is not installed; Unavailable: no daemon runs, or
+/// Avahi failed; Timeout: it said nothing in time.
+[[nodiscard]] Result<std::vector<FoundSensor>> discovered_sensors(const AskLimits& limits = {});
 
 }  // namespace chorus::ctl

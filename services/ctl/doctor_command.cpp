@@ -13,6 +13,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/findings.h"
+#include "services/ctl/running_findings.h"
 #include "services/ctl/server_option.h"
 
 namespace chorus::ctl {
@@ -34,11 +35,14 @@ void examine(const std::string& kind, const std::string& file, Findings& all) {
                    "read it as root (sudo chorus doctor), or mend what the error names"});
     return;
   }
+  append(all, check_findings(*service));
   all.push_back(health_finding(*service));
+  append(all, configuration_findings(*service));
   all.push_back(token_finding(*service));
   append(all, certificate_findings(*service));
   append(all, disk_findings(*service));
   append(all, sensor_findings(*service));
+  append(all, followed_findings(*service));
 }
 
 Findings examine_all(const std::string& folder) {

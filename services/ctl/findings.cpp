@@ -220,6 +220,10 @@ std::string ExaminedService::read_token() const {
   return text_in(section, "bearer_token");
 }
 
+Result<http::ClientResponse> ask_service(const ExaminedService& service, const std::string& path) {
+  return ask(service.url(), path, service.read_token());
+}
+
 Result<ExaminedService> examined_service(const std::string& kind, const std::string& file) {
   constexpr std::uintmax_t kMaxFileBytes = 1u << 20;
   const auto text = read_file(file, kMaxFileBytes);
@@ -253,7 +257,12 @@ Finding health_finding(const ExaminedService& service) {
         false, subject, "does not answer at " + service.url(),
         fmt::format("systemctl start {0}; journalctl -u {0} says why it does not stay", subject)};
   }
-  if (answer->status == http::status::kOk) return {true, subject, "answers at " + service.url()};
+  if (answer->status == http::status::kOk) {
+    const auto told = nlohmann::json::parse(answer->body, nullptr, false);
+    const std::string warning = text_in(told, "warning");
+    if (warning.empty()) return {true, subject, "answers at " + service.url()};
+    return {false, subject, "answers, but " + warning, "chorus status says more"};
+  }
   if (answer->status != http::status::kUnavailable)
     return {
         false, subject, fmt::format("{} answers otherwise: {}", service.url(), words_of(*answer)),

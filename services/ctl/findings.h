@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/result.h"
+#include "common/http/client.h"
 #include "common/time/ntp_status.h"
 
 namespace chorus::ctl {
@@ -35,6 +36,10 @@ struct ExaminedService {
   /// A token that may read; empty when there is none.
   [[nodiscard]] std::string read_token() const;
 };
+
+/// Asks the service, as this host reaches it, with its own read token.
+[[nodiscard]] Result<http::ClientResponse> ask_service(const ExaminedService& service,
+                                                       const std::string& path);
 
 /// Io or Malformed; the error names the file.
 [[nodiscard]] Result<ExaminedService> examined_service(const std::string& kind,

@@ -2,6 +2,7 @@
 // program is installed as well (package chorus-tools: ../libexec/chorus/chorus next to our folder),
 // this one runs that program instead.
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <string>
 
@@ -18,6 +19,7 @@ bool is_elsewhere(const std::string& word) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  for (const int signal : {SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);  // As in main.cpp.
   chorus::service::become_whole_program("../libexec/chorus/chorus", argv);
   if (argc > 1 && is_elsewhere(argv[1])) {
     std::fprintf(stderr,

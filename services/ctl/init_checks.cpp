@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iostream>
 #include <set>
 
 #include "common/base/file.h"
@@ -9,6 +10,8 @@
 #include "common/net/asio.h"
 #include "common/service/http_config.h"
 #include "common/tls/certificate.h"
+#include "services/ctl/command.h"
+#include "services/ctl/console.h"
 
 namespace chorus::ctl {
 namespace {
@@ -63,6 +66,14 @@ std::string certified_name(const std::string& tls_folder, const std::string& own
   if (!facts || std::ranges::find(facts->names, own) != facts->names.end()) return own;
   const auto other = std::ranges::find_if_not(facts->names, of_this_host_alone);
   return other == facts->names.end() ? own : *other;
+}
+
+Result<int> told_as_usage(std::string_view command, Result<int> done) {
+  if (done) return done;
+  const ErrorCode code = done.error().code;
+  if (code != ErrorCode::InvalidArgument && code != ErrorCode::Malformed) return done;
+  std::cerr << command << ": " << printable(to_string(done.error())) << '\n';
+  return kExitUsage;
 }
 
 }  // namespace chorus::ctl

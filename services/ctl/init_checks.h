@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/ctl/written_config.h"
@@ -23,5 +24,9 @@ namespace chorus::ctl {
 /// A line that says how to make the certificate that this folder lacks on this host; empty if there
 /// is one, or none is wished for.
 [[nodiscard]] std::string certificate_note(const std::string& tls_folder);
+
+/// A value that cannot be meant is a wrong command line, as if the parser had found it: says so and
+/// becomes kExitUsage.  All else stays as it is.
+[[nodiscard]] Result<int> told_as_usage(std::string_view command, Result<int> done);
 
 }  // namespace chorus::ctl

@@ -394,7 +394,7 @@ Run add_init(CLI::App& options) {
   add_fusion_options(options, *arguments);
   add_discovery_options(options, *arguments);
   add_tls_options(options, *arguments);
-  return [arguments] { return run_init(*arguments); };
+  return [arguments] { return told_as_usage("chorus init", run_init(*arguments)); };
 }
 
 }  // namespace chorus::ctl

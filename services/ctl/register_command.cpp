@@ -95,6 +95,21 @@ Result<std::string> start(const ServiceClient& server, const RegisterArguments& 
   return session_of(*registration, arguments.url);
 }
 
+/// Says what a walk of this length cannot reach, before it is walked.
+void tell_of_short_walk(const ServiceClient& server, double seconds) {
+  const auto configuration = server.get("/configuration");
+  if (!configuration) return;  // An older server does not say.
+  const auto& registration = part_at(part_at(*configuration, "inForce"), "registration");
+  constexpr double kUsual = 20.0;  // RegistrationConfig::good_duration
+  const double told = client::number_at(registration, "good_duration_s");
+  const double good = std::isfinite(told) ? told : kUsual;
+  if (seconds >= good) return;
+  std::cerr << fmt::format(
+      "a walk of {:.0f} s gives places to sensors that have none, and makes none worse, but cannot "
+      "become Good: that takes {:.0f} s (--seconds)\n",
+      seconds, good);
+}
+
 /// Prints what is missing whenever that changes.  The bar shows how long the person still has to
 /// walk.
 class Advice {
@@ -327,6 +342,7 @@ Result<int> run_register(const RegisterArguments& arguments) {
   const CtrlC ctrl_c;
   const auto path = start(*server, arguments);
   if (!path) return pass(path);
+  tell_of_short_walk(*server, arguments.seconds);
   const auto session = follow(*server, *path, arguments.url);
   if (!session) return pass(session);
   const std::string state = text_at(*session, "state");

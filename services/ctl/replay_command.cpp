@@ -14,6 +14,7 @@
 #include "common/record/cell_outline.h"
 #include "common/record/cell_reader.h"
 #include "common/time/clock.h"
+#include "services/ctl/asked_program.h"
 #include "services/ctl/child_processes.h"
 #include "services/ctl/command.h"
 #include "services/ctl/number_range.h"

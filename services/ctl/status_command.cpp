@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "common/client/service_client.h"
@@ -109,6 +110,38 @@ std::string bodies_report(const nlohmann::json& frame) {
   return text;
 }
 
+/// What is amiss with the configuration; empty if nothing is, or if the server is too old to say.
+std::string configuration_report(const nlohmann::json& told) {
+  std::string text;
+  const std::string error = client::text_at(told, "lastReloadError", "");
+  if (!error.empty())
+    text += "configuration: the last reload changed nothing: " + printable(error) + "\n";
+  if (const auto keys = lines_at(told, "pendingRestart"); !keys.empty())
+    text += fmt::format("configuration: {} wait{} for a restart\n", fmt::join(keys, ", "),
+                        keys.size() == 1 ? "s" : "");
+  if (const auto keys = lines_at(told, "changedOnDisk"); !keys.empty())
+    text += fmt::format("configuration: {} differ{} in the file; a reload (SIGHUP) takes it\n",
+                        fmt::join(keys, ", "), keys.size() == 1 ? "s" : "");
+  return text;
+}
+
+/// A line for each output that is enabled.
+std::string outputs_report(const nlohmann::json& told) {
+  std::string text;
+  for (const auto& [name, output] : client::part_at(told, "outputs").items()) {
+    text += fmt::format("output {}: {}", printable(name), client::text_at(output, "state"));
+    const std::string error = client::text_at(output, "lastError", "");
+    if (!error.empty()) text += ": " + printable(error);
+    text += fmt::format(", {} clients, {} frames, {} refused\n",
+                        shown(client::number_at(output, "clients"), 0),
+                        shown(client::number_at(output, "frames"), 0),
+                        shown(client::number_at(output, "refused"), 0));
+    const std::string refusal = client::text_at(output, "lastRefusal", "");
+    if (!refusal.empty()) text += "  the last refusal: " + printable(refusal) + "\n";
+  }
+  return text;
+}
+
 Result<int> run_status(const StatusArguments& arguments) {
   const auto server = client::ServiceClient::of(arguments.url);
   if (!server) return pass(server);
@@ -123,12 +156,18 @@ Result<int> run_status(const StatusArguments& arguments) {
   nlohmann::json polled = client::part_at(*sensors, "sensors");
   ask_the_silent(polled);
   const bool alive = any_live(polled);
+  const nlohmann::json configuration = server->get("/configuration").value_or(nlohmann::json());
+  const nlohmann::json outputs = server->get("/outputs/").value_or(nlohmann::json());
   if (arguments.json) {
-    std::cout << json_text(
-        {{"sensors", polled}, {"registration", *registration}, {"frame", shown_frame}});
+    std::cout << json_text({{"sensors", polled},
+                            {"registration", *registration},
+                            {"frame", shown_frame},
+                            {"configuration", configuration},
+                            {"outputs", client::part_at(outputs, "outputs")}});
   } else {
     std::cout << sensors_report(polled) << registration_report(*registration)
-              << (frame ? bodies_report(shown_frame) : "no fused frame yet\n");
+              << (frame ? bodies_report(shown_frame) : "no fused frame yet\n")
+              << outputs_report(outputs) << configuration_report(configuration);
     if (!alive) std::cerr << "no sensor is live\n";
   }
   return alive ? kExitOk : kExitFailed;

@@ -106,12 +106,15 @@ std::string http_of(const ServiceWishes& wishes) {
 }
 
 /// s1 gets the first place on a ring of six, s2 the second, and so on: the simulated sensors of one
-/// workshop then see the same person from different sides.
-std::size_t ring_place_of(const std::string& id) {
+/// workshop then see the same person from different sides.  Where the id has no number, the port
+/// tells those of one host apart.
+std::size_t ring_place_of(const std::string& id, int port) {
   constexpr std::size_t kPlaces = 6;
+  constexpr int kUsualPort = 8081;
   const std::size_t digits = id.find_last_not_of("0123456789") + 1;
   const auto number = parse_number<std::size_t>(std::string_view(id).substr(digits));
-  return (number.value_or(1) + kPlaces - 1) % kPlaces;
+  if (number) return (*number + kPlaces - 1) % kPlaces;
+  return static_cast<std::size_t>(std::max(0, port - kUsualPort)) % kPlaces;
 }
 
 /// The device's own section of the configuration, which follows `kind`.
@@ -136,7 +139,7 @@ std::string section_of(const SensorWishes& wishes) {
     return fmt::format(
         "    // Where it stands among six around the room.\n"
         "    \"simulated\": {{ \"ring\": {{ \"index\": {} }} }}",
-        ring_place_of(wishes.id));
+        ring_place_of(wishes.id, wishes.service.port));
   }
   return "    \"replay\": { \"recording\": " + quoted(wishes.recording) + " }";
 }

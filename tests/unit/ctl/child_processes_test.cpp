@@ -1,5 +1,7 @@
 #include "services/ctl/child_processes.h"
 
+#include "services/ctl/asked_program.h"
+
 #include <csignal>
 
 #include <gmock/gmock.h>

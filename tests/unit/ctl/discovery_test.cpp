@@ -164,6 +164,38 @@ TEST(Discovery, WhatAStrangerMakesUpIsLeftOut) {
     EXPECT_THAT(read_browsed(bad), IsEmpty()) << bad;
 }
 
+TEST(Discovery, AnAddressIsThatOfOneHost) {
+  for (const char* bad : {"0.0.0.0", "0.1.2.3", "224.0.0.1", "239.255.255.250", "255.255.255.255",
+                          "::", "ff02::fb", "::ffff:10.0.0.1"})
+    EXPECT_THAT(read_browsed("=;d0;IPv4;x;_chorus-sensor._tcp;local;h.local;" + std::string(bad) +
+                             ";8081;\"id=s1\""),
+                IsEmpty())
+        << bad;
+}
+
+TEST(Discovery, AFloodDoesNotHideTheRealSensors) {
+  std::string text;
+  for (int i = 0; i < 20'000; ++i)
+    text += "=;d0;IPv4;x;_chorus-sensor._tcp;local;evil.local;10.9.0.66;" +
+            std::to_string(1 + i % 60'000) + ";\"tls=0\" \"id=x" + std::to_string(i) + "\"\n";
+  const auto found = read_browsed(text + kBrowsed);
+  EXPECT_EQ(found.size(), 32u + 2u);
+  EXPECT_THAT(found, ::testing::Contains(FoundSensor{"a2", "a2.local", "10.9.0.2", 9000, false}));
+  EXPECT_THAT(found, ::testing::Contains(FoundSensor{"s1", "s1.local", "10.9.0.1", 8081, true}));
+}
+
+TEST(Discovery, ABrowserThatHangsIsNotWaitedForAndWhatItSaidCounts) {
+  const AskLimits limits{std::chrono::milliseconds(300)};
+  const Browsed hanging(std::string(kBrowsed) + "END\nsleep 60\ncat <<'END'\n");
+  const auto found = discovered_sensors(limits);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->size(), 2u);
+  const Browsed silent("END\nexec sleep 60\ncat <<'END'\n");
+  const auto nothing = discovered_sensors(limits);
+  ASSERT_FALSE(nothing);
+  EXPECT_EQ(nothing.error().code, ErrorCode::Timeout);
+}
+
 TEST(Discovery, TheAnnouncementSaysWhatIsReadBack) {
   const std::string text = announcement("s1", 8081, true);
   for (const char* part :

@@ -48,13 +48,13 @@ TEST(Init, WritesAFusionConfigurationThatTheServerReads) {
   EXPECT_EQ(settings.live.tokens[0].role, http::Role::Control);
   EXPECT_EQ(settings.live.tokens[1].role, http::Role::Read);
   EXPECT_EQ(settings.live.tokens[0].secret.size(), 32u);
-  const auto& vrpn = settings.at_start.outputs.vrpn;
+  const auto& vrpn = settings.live.outputs.vrpn;
   EXPECT_TRUE(vrpn.common.enabled);
   EXPECT_EQ(vrpn.protocol.allow, net::AllowList::parse({"10.0.0.20", "10.0.1.0/24"}).value());
-  EXPECT_TRUE(settings.at_start.outputs.dtrack.common.enabled);
-  EXPECT_EQ(settings.at_start.outputs.dtrack.protocol.targets,
+  EXPECT_TRUE(settings.live.outputs.dtrack.common.enabled);
+  EXPECT_EQ(settings.live.outputs.dtrack.protocol.targets,
             std::vector<std::string>{"10.0.0.21:5000"});
-  EXPECT_FALSE(settings.at_start.outputs.natnet.common.enabled);
+  EXPECT_FALSE(settings.live.outputs.natnet.common.enabled);
   EXPECT_EQ(settings.at_start.state_dir, "/var/lib/chorus/fusion");
   EXPECT_EQ(settings.at_start.viewer_dir, "/usr/share/chorus/viewer");
 }
@@ -157,7 +157,7 @@ TEST(Init, SaysWhatIsWrongWithAWish) {
   const auto complaint = [](std::vector<std::string> words) {
     words.insert(words.end(), {"--out", "-"});
     const Outcome outcome = run(std::move(words));
-    EXPECT_EQ(outcome.code, kExitFailed);
+    EXPECT_EQ(outcome.code, kExitUsage) << outcome.error;
     EXPECT_EQ(outcome.out, "");
     return outcome.error;
   };
@@ -188,6 +188,11 @@ TEST(Init, SimulatedSensorsOfOneWorkshopStandInDifferentPlaces) {
   EXPECT_THAT(place("s3"), HasSubstr("\"index\": 2"));
   EXPECT_THAT(place("corner-7"), HasSubstr("\"index\": 0"));
   EXPECT_THAT(place("window"), HasSubstr("\"index\": 0"));
+  EXPECT_THAT(
+      run({"sensor", "--id", "window", "--port", "8082", "--device", "simulated", "--out", "-"})
+          .out,
+      HasSubstr("\"index\": 1"))
+      << "two of one host whose ids have no number";
 }
 
 class InitTls : public ::testing::Test {
