@@ -135,8 +135,8 @@ Result<void> foreign_websocket(Trial& trial) {
   return {};
 }
 
-/// A host may try ten tokens at once and then one a second.  The test counts the guesses that are
-/// checked during kGuessing; it does not wait for the first refusal.
+/// A host may try ten tokens at once and then one a second, because the answers to wrong ones wait.
+/// The test counts the guesses that are answered during kGuessing.
 Result<void> guessed_tokens(Trial& trial) {
   constexpr double kGuessing = 4.0;       // [s]
   constexpr int kMaxJudged = 10 + 4 + 2;  // at once, one a second, and two to spare
@@ -156,7 +156,7 @@ Result<void> guessed_tokens(Trial& trial) {
     judged += status_of(answer) == 401 ? 1 : 0;
     ++guesses;
   }
-  trial.check(judged <= kMaxJudged && guesses > judged,
+  trial.check(judged <= kMaxJudged,
               fmt::format("of {} guesses in {} s {} are judged", guesses, kGuessing, judged));
   const Timestamp asked = now();
   const auto own =

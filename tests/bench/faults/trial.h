@@ -65,6 +65,7 @@ using FaultCases = std::vector<FaultCase>;
 [[nodiscard]] FaultCases output_cases();
 [[nodiscard]] FaultCases access_cases();
 [[nodiscard]] FaultCases server_cases();
+[[nodiscard]] FaultCases stranger_cases();
 [[nodiscard]] FaultCases trust_cases();
 
 }  // namespace chorus::bench
