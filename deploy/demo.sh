@@ -11,6 +11,7 @@
 #   --cameras                       uses the videos of four cameras that ship with the tests: each has a sensor
 #                                   whose runner finds the person in its pictures, and the fusion server makes
 #                                   bodies of their rays, with the published extrinsics
+#   --until-good                    with --seconds: stops earlier, as soon as the places are good and it delivers
 #   --register                      with --recording: finds the extrinsics from the person alone
 #   --port N                        the fusion server's port (8080); the sensors use the ports after it, live posture scores
 #                                   the port 20 after it
@@ -24,7 +25,7 @@ readonly called_from=$PWD
 cd "$(dirname "$0")/.."
 
 readonly sensor_count=6
-readonly start_within_s=15
+readonly start_within_s=60  # a loaded machine; a program that ends is noticed at once
 readonly bundled_recording=tests/data/pose2sim_mediapipe
 readonly bundled_cameras=tests/data/pose2sim_videos/four
 readonly camera_count=4
@@ -33,7 +34,7 @@ usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 step() { printf '\n== %s\n' "$*"; }
 fail() { printf '\ndemo: %s\n' "$*" >&2; exit 1; }
 
-sheet='' seconds='' recording='' cameras='' register='' port=8080 overrides=() bin=build/release/bin build=yes
+sheet='' seconds='' until_good='' recording='' cameras='' register='' port=8080 overrides=() bin=build/release/bin build=yes
 read_arguments() {
   while (( $# > 0 )); do
     case $1 in
@@ -44,6 +45,7 @@ read_arguments() {
       --cameras) cameras=yes ;;
       --sheet) sheet=${2:?--sheet needs a file}; shift ;;
       --register) register=yes ;;
+      --until-good) until_good=yes ;;
       --port) port=${2:?--port needs a number}; shift ;;
       --set) overrides+=(--set "${2:?--set needs PATH=VALUE}"); shift ;;
       --bin) bin=${2:?--bin needs a folder}; build=''; shift ;;
@@ -280,6 +282,7 @@ start_scores
 
 watcher=(python3 -B deploy/watch_tracker.py --base "$base")
 [[ -z "$seconds" ]] || watcher+=(--seconds "$seconds")
+[[ -z "$until_good" ]] || watcher+=(--until-good)
 setpriv --pdeathsig TERM "${watcher[@]}" &
 watch_pid=$!
 children+=("$watch_pid")

@@ -3,6 +3,10 @@
 #   tests/run.sh [ctest arguments, such as -R fusion/]
 #   tests/run.sh --sanitize address|thread [ctest arguments]
 #     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
+#   tests/run.sh --sanitize address --changed [BASE]
+#     only the unit tests of the rooms whose files differ from BASE (default: HEAD~1); what CI runs beside the first line
+#   tests/run.sh --nightly
+#     instead, hours: everything under both sanitizers, and every fuzz target for ten minutes (CHORUS_FUZZ_SECONDS)
 #   tests/run.sh --workshop
 #     instead: makes the packages, installs them into fresh Debian roots without network, and tests them; boots one under systemd; makes a
 #     container image and runs it; then uses five roots as hosts of a workshop, each with its own network (as root, minutes)
@@ -49,6 +53,14 @@ if [ "${1:-}" = --sanitize ]; then
   shift 2
 fi
 
+if [ "${1:-}" = --changed ]; then
+  [ -n "$sanitizer" ] || { echo "--changed goes behind --sanitize address" >&2; exit 2; }
+  rooms=$(python3 -B tests/changed_rooms.py "${2:-HEAD~1}")
+  [ -n "$rooms" ] || { echo "no room with unit tests was changed"; exit 0; }
+  CHORUS_TARGETS=$(printf '%s.tests ' $rooms)
+  set -- -L unit -R "^($(tr '\n' '|' <<<"$rooms" | sed 's/|*$//'))/"
+fi
+
 launcher=()
 export CCACHE_SLOPPINESS=pch_defines,time_macros  # else it keeps nothing that reads a precompiled header
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
@@ -69,8 +81,24 @@ run_sanitized() {
   exec ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" -L '^(unit|integration|fusion-system)$' "$@"
 }
 
+# Every fuzz target on inputs as large as its reader takes; found inputs stay in the build tree and are where the next night goes on.
+run_nightly() {
+  for one in address thread; do tests/run.sh --sanitize "$one" || failed=yes; done
+  step "fuzz targets (clang), ${CHORUS_FUZZ_SECONDS:=600} s each"
+  cmake --preset fuzz "${launcher[@]}" -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1 -D_GLIBCXX_ASSERTIONS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all" --log-level=WARNING
+  cmake --build build/fuzz -j "$jobs" --target fuzzers
+  cmake --preset dev "${launcher[@]}" -DCHORUS_FUZZ_SECONDS="$CHORUS_FUZZ_SECONDS" --log-level=WARNING
+  ctest --test-dir build/dev --output-on-failure -j "$(nproc)" -L fuzz || failed=yes
+  cmake --preset dev -UCHORUS_FUZZ_SECONDS --log-level=WARNING
+  [ -z "${failed:-}" ]
+}
+
 step "packages"
 deploy/install-packages.sh build tests
+if [ "${1:-}" = --nightly ]; then
+  run_nightly
+  exit
+fi
 [ -z "$sanitizer" ] || run_sanitized "$@"
 npm_packages tests
 npm_packages services/viewer
@@ -81,6 +109,13 @@ cmake --preset dev "${launcher[@]}" --log-level=WARNING
 cmake --build build/dev -j "$jobs"
 step "every header compiles alone"
 cmake --build build/dev -j "$jobs" --target all_verify_interface_header_sets
+
+# What people run is built without assertions and with more optimisation, which finds other warnings.
+step "release, warnings are errors, and its demo"
+cmake --preset strict "${launcher[@]}" --log-level=WARNING
+cmake --build build/strict -j "$jobs" --target chorus-sensor chorus-fusion chorus
+free_ports='import sys; sys.path.insert(0, "tests/support"); from ports import free_ports; print(free_ports(8))'
+[ "$#" -gt 0 ] || deploy/demo.sh --bin build/strict/bin --port "$(python3 -B -c "$free_ports")" --seconds 20
 
 step "fuzz targets (clang)"
 cmake --preset fuzz "${launcher[@]}" --log-level=WARNING

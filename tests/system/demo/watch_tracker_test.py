@@ -17,14 +17,14 @@ RUN_S = 3
 class FakeTracker:
     """Answers /frame and /registration; `rate` frames per second, each with `bodies` bodies."""
 
-    def __init__(self, rate, bodies):
+    def __init__(self, rate, bodies, verdict="Provisional"):
         started = time.monotonic()
 
         class Handler(BaseHTTPRequestHandler):
             def do_GET(self):
                 frame = {"sequence": int(rate * (time.monotonic() - started)), "bodies": [{}] * bodies}
-                registration = {"verdict": "Provisional", "reasons": ["keep walking"],
-                                "sensors": {"s1": {"error": 0.012}},
+                registration = {"verdict": verdict, "reasons": ["keep walking"],
+                                "sensors": {"s1": {"error": 0.080, "presentRadius": 0.012}},
                                 "session": {"state": "collecting", "elapsedSeconds": 3, "targetSeconds": 30}}
                 body = json.dumps(frame if self.path == "/frame" else registration).encode()
                 self.send_response(200)
@@ -46,8 +46,8 @@ class FakeTracker:
         self.server.server_close()
 
 
-def start_watching(base):
-    return subprocess.Popen([sys.executable, "-B", WATCHER, "--base", base, "--seconds", str(RUN_S)],
+def start_watching(base, *more, seconds=RUN_S):
+    return subprocess.Popen([sys.executable, "-B", WATCHER, "--base", base, "--seconds", str(seconds), *more],
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
@@ -64,6 +64,7 @@ class Verdict(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.output)
         self.assertIn("first fused body", result.output)
         self.assertIn("keep walking", result.output)
+        self.assertIn("known to within 12 mm (95 %)", result.output, "the radius, not the error of the chain")
 
     def test_bad_trackers_did_not(self):
         bad = {"stuck": (0, 1), "half the rate": (15, 1), "doubled frames": (60, 1), "nobody": (30, 0)}
@@ -74,6 +75,17 @@ class Verdict(unittest.TestCase):
                 with self.subTest(what):
                     self.assertEqual(watcher.returncode, 1, output)
                     self.assertIn("FAILED", output)
+
+    def test_until_good_ends_early_and_only_when_good(self):
+        with FakeTracker(30, 1, verdict="Good") as base:
+            begun = time.monotonic()
+            output, _ = start_watching(base, "--until-good", seconds=10).communicate(timeout=60)
+            self.assertIn("delivered", output)
+            self.assertLess(time.monotonic() - begun, 10.0)
+        with FakeTracker(30, 1) as base:
+            begun = time.monotonic()
+            output, _ = start_watching(base, "--until-good").communicate(timeout=60)
+            self.assertGreaterEqual(time.monotonic() - begun, RUN_S)
 
     def test_nobody_listening_is_a_failure_not_a_crash(self):
         with FakeTracker(30, 1) as base:
