@@ -119,6 +119,44 @@ class Program(Rig):
         self.assertFalse(fusion.text().splitlines()[-1].startswith("{"), fusion.text())
         self.assertNotIn("wait for a restart", fusion.text())
 
+    def test_it_says_what_is_in_force_and_reloads_its_outputs(self):
+        vrpn = free_port()
+        config = self.write("fusion.json", '{"title": "a", "http": {"bearer_token": "a-secret-token"}}')
+        port = free_port()
+        fusion = Process("chorus-fusion", "--config", config, "--port", str(port))
+        self.processes.append(fusion)
+        url = f"http://127.0.0.1:{port}/"
+        told = wait_for("it answers", lambda: get_json(url + "configuration"))
+        self.assertEqual((told["file"], told["pendingRestart"], told["changedOnDisk"]), ("fusion.json", [], []))
+        self.assertNotIn("a-secret-token", json.dumps(told))
+        self.assertNotIn(str(self.folder.name), json.dumps(told), "no path of the host")
+        self.assertEqual(get_json(url + "outputs/")["outputs"], {})
+
+        def reloaded(text):
+            self.write("fusion.json", text)
+            fusion.child.send_signal(signal.SIGHUP)
+
+        reloaded('{"title": "a", "outputs": {"vrpn": {"enabled": true, "port": %d}}}' % vrpn)
+        wait_for("VRPN is served", lambda: get_json(url + "outputs/")["outputs"]["vrpn"]["state"] == "open")
+        with socket.create_connection(("127.0.0.1", vrpn), timeout=10) as client:
+            self.assertTrue(client.recv(6).startswith(b"vrpn"))
+        reloaded('{"title": 3}')
+        told = wait_for("the mistake is told", lambda: get_json(url + "configuration").get("lastReloadError"))
+        self.assertIn("title", told)
+        self.assertIn(b"chorus_configuration_reload_failed 1", get(url + "metrics", accept="*/*")[2])
+        self.assertEqual(get_json(url + "outputs/")["outputs"]["vrpn"]["state"], "open", "the old one stays")
+        reloaded('{"title": "b"}')
+        wait_for("it waits", lambda: get_json(url + "configuration")["pendingRestart"] == ["http.bearer_token", "title"]
+                 or get_json(url + "configuration")["pendingRestart"] == ["title"])
+        wait_for("VRPN is closed", lambda: get_json(url + "outputs/")["outputs"] == {})
+
+    def test_signals_that_mean_nothing_end_nothing(self):
+        fusion = self.fusion({"gone": "http://127.0.0.1:1/"})
+        for number in (signal.SIGUSR1, signal.SIGUSR2):
+            fusion.child.send_signal(number)
+        self.assertIn(get(fusion.url + "clock")[0], (200,))
+        self.assertEqual(fusion.stop(), 0)
+
     def test_sigterm_ends_with_0_even_with_long_polls_waiting(self):
         fusion = self.fusion({"gone": "http://127.0.0.1:1/"})
         tag = get(fusion.url + "registration")[1]["ETag"]

@@ -68,7 +68,9 @@ TEST(HostedProgram, TakesTheLivePartAndNamesTheOther) {
   EXPECT_EQ(Host::volume, 6);
   EXPECT_THAT(reloaded(program, R"({"port": 3, "volume": 6})"), HasSubstr("port"))
       << "it still waits";
+  EXPECT_EQ(program.configuration()->facts().waiting, std::vector<std::string>{"port"});
   EXPECT_EQ(reloaded(program, R"({"port": 2})"), "") << "as it was started";
+  EXPECT_TRUE(program.configuration()->facts().waiting.empty());
 }
 
 TEST(HostedProgram, AWrongConfigurationChangesNothing) {
