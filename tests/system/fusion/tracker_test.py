@@ -118,6 +118,25 @@ class Tracker(Rig):
                         lambda: get_json(fusion.url + f"frame?at={instant}")["bodies"][0].get("smoothedOver"))
         self.assertAlmostEqual(over, 1.2, delta=0.1)
         self.assertNotIn("smoothedOver", get_json(fusion.url + f"frames/{frame['sequence']}")["bodies"][0])
+        self.check_what_frames_say_beside_places(fusion)
+
+    def check_what_frames_say_beside_places(self, fusion):
+        """Velocities, the person's build, the method, and the version of the world, which rises when the origin moves."""
+        def walker():
+            bodies = get_json(fusion.url + "frame")["bodies"]
+            return bodies and "stature" in bodies[0] and abs(bodies[0].get("vx", 0)) + abs(bodies[0].get("vz", 0)) > 0.1 and bodies[0]
+        body = wait_for("somebody walks", walker)
+        self.assertLess(abs(body["vx"]) + abs(body["vz"]), 4)
+        self.assertGreater(body["velocityVariance"], 0)
+        self.assertEqual(body["fusionMethod"], "body-filter")
+        self.assertTrue(1.2 < body["stature"] < 2.2 and 0 < body["statureSigma"] < 0.3, body["stature"])
+        knee = body["joints"]["KneeLeft"]
+        self.assertTrue(0.25 < knee["boneLength"] < 0.6 and 0 < knee["boneSigma"] < 0.1, knee)
+        self.assertTrue({"vx", "vy", "vz", "velocityVariance"} <= set(body["joints"]["SpineMid"]))
+        version = get_json(fusion.url + "frame")["registrationVersion"]
+        self.assertEqual(version, get_json(fusion.url + "registration")["version"])
+        self.assertEqual(send("POST", fusion.url + "registration/origin", b'{"x": 0.5, "z": 0, "yawDegrees": 0}')[0], 200)
+        wait_for("a frame of the moved world", lambda: get_json(fusion.url + "frame")["registrationVersion"] == version + 1)
 
     def test_a_fusion_server_is_a_sensor_for_another(self):
         cell = self.start_all(count=3, **{"registration.file": self.given_ring(3)})
