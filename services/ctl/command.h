@@ -34,9 +34,9 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 11> kRecordingCommandNames{
+inline constexpr std::array<std::string_view, 12> kRecordingCommandNames{
     "import",       "replay", "fuse", "export", "train-error", "calibrate",
-    "characterise", "align",  "scan", "report", "score"};
+    "characterise", "align",  "scan", "report", "score",       "evaluate"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -54,6 +54,7 @@ Run add_camera(CLI::App& options);
 Run add_calibrate(CLI::App& options);
 Run add_characterise(CLI::App& options);
 Run add_align(CLI::App& options);
+Run add_evaluate(CLI::App& options);
 Run add_scan(CLI::App& options);
 Run add_report(CLI::App& options);
 Run add_score(CLI::App& options);

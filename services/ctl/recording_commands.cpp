@@ -112,6 +112,15 @@ constexpr std::array kRecordingCommands{
             "  chorus score http://localhost:8090 --seconds 60 --sheet sheet.html\n"
             "A screening, not a certified assessment.  The task file: docs/guide/ergonomics.md.",
             &add_score},
+    Command{
+        "evaluate", "Judges a tracker with inertial sensors that the person wears",
+        "Examples:\n"
+        "  chorus evaluate --tracking walk.mcap --inertial suit.sto --out judged\n"
+        "  chorus evaluate --tracking fused.ndjson --inertial MT_*.txt --limb 00B40C48=ShankLeft\n"
+        "  chorus evaluate --tracking walk.mcap --inertial suit.mvnx --annotations a1.csv a2.csv\n"
+        "Writes OUT/evaluation.html, .json and .csv: Baak et al.'s distances, scores and figures.\n"
+        "Exit code 0: no limb is in error for longer than --most; 1: one is, or why not judged.",
+        &add_evaluate},
 };
 
 }  // namespace

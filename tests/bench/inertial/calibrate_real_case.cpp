@@ -4,12 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include <opencv2/calib3d.hpp>
-
 #include "common/base/units.h"
 #include "common/evaluation/calibrate.h"
 #include "common/evaluation/park.h"
 #include "common/geometry/rotation.h"
+#include "tests/bench/inertial/hand_eye_opencv.h"
 #include "tests/bench/inertial/inertial_cases.h"
 #include "tests/bench/inertial/real_takes.h"
 #include "tests/judge/statistics.h"
@@ -51,47 +50,6 @@ auto predicted_by(const ParkCalibration& found) {
   };
 }
 
-cv::Mat matrix_of(const Eigen::Quaterniond& q) {
-  const Eigen::Matrix3d r = q.toRotationMatrix();
-  cv::Mat out(3, 3, CV_64F);
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) out.at<double>(i, k) = r(i, k);
-  return out;
-}
-
-/// OpenCV's calibrateHandEye (Park): gripper = limb in the world, target = the inertial world seen
-/// from the sensor; it returns limb_from_sensor.  It takes every pair of poses, so at most 60.
-std::optional<ParkCalibration> by_opencv(const OrientationPairs& pairs) {
-  constexpr std::size_t kMostPoses = 60;
-  const std::size_t step = std::max<std::size_t>(1, pairs.size() / kMostPoses);
-  std::vector<cv::Mat> world_from_limb, sensor_from_inertial, zeros;
-  for (std::size_t i = 0; i < pairs.size(); i += step) {
-    world_from_limb.push_back(matrix_of(pairs[i].tracked.world_from_limb));
-    sensor_from_inertial.push_back(matrix_of(pairs[i].inertial_from_sensor.conjugate()));
-    zeros.push_back(cv::Mat::zeros(3, 1, CV_64F));
-  }
-  cv::Mat rotation, translation;
-  try {
-    cv::calibrateHandEye(world_from_limb, zeros, sensor_from_inertial, zeros, rotation, translation,
-                         cv::CALIB_HAND_EYE_PARK);
-  } catch (const cv::Exception&) {
-    return std::nullopt;
-  }
-  Eigen::Matrix3d r;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) r(i, k) = rotation.at<double>(i, k);
-  if (!r.allFinite()) return std::nullopt;
-  ParkCalibration out;
-  out.limb_from_sensor = normalised_or_identity(Eigen::Quaterniond(r));
-  // q^G as the mean over the window of q^T q^L conj(q^I).
-  std::vector<Eigen::Quaterniond> each;
-  for (const auto& pair : pairs)
-    each.push_back(pair.tracked.world_from_limb * out.limb_from_sensor *
-                   pair.inertial_from_sensor.conjugate());
-  out.world_from_inertial = weighted_lerp(each, std::vector<double>(each.size(), 1.0));
-  return out;
-}
-
 struct Columns {
   std::vector<double> ours, park, opencv, answered;
   double within = 0.0, judged = 0.0, windows = 0.0, refused = 0.0, bad = 0.0;
@@ -102,7 +60,7 @@ void judge_window(const OrientationPairs& window, const OrientationPairs& rest, 
   const auto nothing = std::nan("");
   const auto park = evaluation::park_calibration(window);
   out.park.push_back(park ? judge(rest, 0, predicted_by(*park)).median_deg : nothing);
-  const auto opencv = by_opencv(window);
+  const auto opencv = hand_eye_by_opencv(window);
   out.opencv.push_back(opencv ? judge(rest, 0, predicted_by(*opencv)).median_deg : nothing);
   const auto fit = evaluation::fit_calibration(window);
   if (!fit) return out.ours.push_back(nothing);

@@ -9,9 +9,8 @@ namespace chorus::bench {
 namespace {
 
 constexpr InertialCase kCases[] = {
-    {"calibrate-real", run_calibrate_real},
-    {"time-real", run_time_real},
-    {"detect-real", run_detect_real},
+    {"calibrate", run_calibrate}, {"calibrate-real", run_calibrate_real},
+    {"time-real", run_time_real}, {"detect-real", run_detect_real},
     {"filter", run_filter},
 };
 

@@ -17,6 +17,9 @@ struct InertialCase {
 /// Orientation filters on BROAD: $CHORUS_BROAD, or the two trials of ../shared/data.
 [[nodiscard]] Result<void> run_filter(Report& report);
 
+/// Calibration of simulated pairs, with gross errors of the tracker.
+[[nodiscard]] Result<void> run_calibrate(Report& report);
+
 /// Calibration from windows of real takes, judged on their rest.
 [[nodiscard]] Result<void> run_calibrate_real(Report& report);
 

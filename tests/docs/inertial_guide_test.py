@@ -1,0 +1,158 @@
+"""Every `chorus` line of docs/guide/inertial.md runs as printed, on a made-up walk with five sensors whose tracker bends the left
+shank wrongly from 14 to 16 s; the report names that limb and no other."""
+
+import json
+import math
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = Path(os.environ.get("CHORUS_BIN", ROOT / "build/dev/bin"))
+GUIDE = ROOT / "docs/guide/inertial.md"
+BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
+LENGTH, WRONG = 20.0, (14.0, 16.0)
+SENSORS = {  # column of the table: (from, to, hinge, other), heading [rad], mount (w, x, y, z)
+    "femur_l_imu": (("HipLeft", "KneeLeft", "KneeLeft", "AnkleLeft"), 0.7, (0.5, 0.5, 0.5, 0.5)),
+    "tibia_l_imu": (("KneeLeft", "AnkleLeft", "KneeLeft", "HipLeft"), -1.1, (0.8, 0.0, 0.6, 0.0)),
+    "femur_r_imu": (("HipRight", "KneeRight", "KneeRight", "AnkleRight"), 2.0, (0.6, 0.8, 0.0, 0.0)),
+    "tibia_r_imu": (("KneeRight", "AnkleRight", "KneeRight", "HipRight"), 0.1, (0.0, 0.6, 0.8, 0.0)),
+    "humerus_r_imu": (("ShoulderRight", "ElbowRight", "ElbowRight", "WristRight"), -2.5, (0.5, -0.5, 0.5, 0.5)),
+}
+
+
+def mul(a, b):
+    w, x, y, z = a
+    v, p, q, r = b
+    return (w * v - x * p - y * q - z * r, w * p + x * v + y * r - z * q, w * q - x * r + y * v + z * p,
+            w * r + x * q - y * p + z * v)
+
+
+def conj(q):
+    return (q[0], -q[1], -q[2], -q[3])
+
+
+def sub(a, b):
+    return [a[i] - b[i] for i in range(3)]
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    n = math.sqrt(sum(c * c for c in a))
+    return [c / n for c in a]
+
+
+def frame(joints, row):
+    """world_from_limb: +y along the bone, +x across bone and neighbour (common/evaluation/limb_frame.h)."""
+    start, end, hinge, other = (joints[name] for name in row)
+    y = unit(sub(end, start))
+    x = unit(cross(y, sub(other, hinge)))
+    z = cross(x, y)
+    m = [[x[i], y[i], z[i]] for i in range(3)]
+    w = math.sqrt(max(1e-12, 1 + m[0][0] + m[1][1] + m[2][2])) / 2
+    if w > 1e-3:
+        return (w, (m[2][1] - m[1][2]) / (4 * w), (m[0][2] - m[2][0]) / (4 * w), (m[1][0] - m[0][1]) / (4 * w))
+    i = max(range(3), key=lambda k: m[k][k])
+    j, k = (i + 1) % 3, (i + 2) % 3
+    s = math.sqrt(1 + m[i][i] - m[j][j] - m[k][k]) * 2
+    q = [0.0] * 4
+    q[0], q[i + 1], q[j + 1], q[k + 1] = (m[k][j] - m[j][k]) / s, s / 4, (m[j][i] + m[i][j]) / s, (m[k][i] + m[i][k]) / s
+    return tuple(q)
+
+
+def body(t, wrong=False):
+    """A person who lifts, bends and turns the limbs in several directions."""
+    joints = {"SpineBase": [0, 1, 0], "SpineMid": [0, 1.25, 0], "SpineShoulder": [0, 1.5, 0], "Neck": [0, 1.6, 0],
+              "Head": [0, 1.75, 0]}
+    for side, s in (("Left", 1), ("Right", -1)):
+        hip = [0.1 * s, 0.95, 0]
+        swing = 0.6 * math.sin(1.9 * t + s)
+        aside = 0.35 * math.sin(1.3 * t + 0.5 * s) * s
+        bend = 0.9 + 0.5 * math.sin(2.3 * t + 2 * s)
+        knee = [hip[0] + 0.42 * math.sin(aside), hip[1] - 0.42 * math.cos(swing) * math.cos(aside),
+                hip[2] + 0.42 * math.sin(swing) * math.cos(aside)]
+        lower = swing - bend + (1.4 if wrong and s == 1 else 0.0)
+        ankle = [knee[0] + 0.4 * math.sin(aside), knee[1] - 0.4 * math.cos(lower) * math.cos(aside),
+                 knee[2] + 0.4 * math.sin(lower) * math.cos(aside)]
+        lift = 0.9 + 0.6 * math.sin(1.7 * t + s)
+        out = 0.5 * math.sin(1.1 * t) * s
+        elbow = [0.2 * s + 0.3 * math.sin(out), 1.45 - 0.3 * math.cos(lift) * math.cos(out), 0.3 * math.sin(lift) * math.cos(out)]
+        wrist = [elbow[0] - 0.12 * s * math.cos(t), elbow[1] + 0.2, elbow[2] + 0.15]
+        joints.update({f"Hip{side}": hip, f"Knee{side}": knee, f"Ankle{side}": ankle, f"Shoulder{side}": [0.2 * s, 1.45, 0],
+                       f"Elbow{side}": elbow, f"Wrist{side}": wrist})
+    return joints
+
+
+def write_tracking(file, wrong):
+    lines = []
+    for i in range(int(LENGTH * 30)):
+        t = i / 30
+        joints = body(t, wrong and WRONG[0] <= t <= WRONG[1])
+        ns = str(1795246200000000000 + round(t * 1e9))
+        placed = {name: {"x": round(p[0], 4), "y": round(p[1], 4), "z": round(p[2], 4), "state": "Tracked"}
+                  for name, p in joints.items()}
+        lines.append(json.dumps({"@type": "Frame", "sequence": i + 1, "capturedNanoseconds": ns, "source": "fusion",
+                                 "space": "WorldSpace", "sensors": ["s1"],
+                                 "bodies": [{"bodyId": 1, "capturedNanoseconds": ns, "joints": placed}]}))
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def write_sensors(file):
+    z_up = conj((0.5, -0.5, -0.5, -0.5))
+    rows = ["DataRate=100.000000", "DataType=Quaternion", "version=3", "endheader", "\t".join(["time", *SENSORS])]
+    for i in range(int(LENGTH * 100)):
+        joints = body(i / 100 + 0.08)  # the sensors' clock is 80 ms behind
+        cells = [f"{i / 100:.3f}"]
+        for row, heading, mount in SENSORS.values():
+            turned = (math.cos(heading / 2), 0, -math.sin(heading / 2), 0)
+            q = mul(z_up, mul(turned, mul(frame(joints, row), mount)))
+            cells.append(",".join(f"{part:.7f}" for part in q))
+        rows.append("\t".join(cells))
+    file.write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+def guide_lines():
+    blocks = BLOCK.findall(GUIDE.read_text(encoding="utf-8"))
+    return [line for block in blocks for line in block.splitlines() if line.startswith("chorus ")]
+
+
+class InertialGuide(unittest.TestCase):
+    def test_every_line_does_what_it_says(self):
+        lines = guide_lines()
+        self.assertGreaterEqual(len(lines), 3)
+        paths = {**os.environ, "PATH": f"{BIN.resolve()}:{os.environ['PATH']}"}
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            write_tracking(folder / "walk.ndjson", wrong=True)
+            write_tracking(folder / "calm.ndjson", wrong=False)
+            write_sensors(folder / "suit.sto")
+            (folder / "ann.csv").write_text("limb,begin_s,end_s\nShankLeft,14,16\n", encoding="utf-8")
+            (folder / "bob.csv").write_text("limb,begin_s,end_s\nShankLeft,14.2,15.8\n", encoding="utf-8")
+            for line in lines:
+                with self.subTest(line=line):
+                    done = subprocess.run(["bash", "-o", "pipefail", "-c", line], cwd=folder, env=paths,
+                                          capture_output=True, text=True, timeout=60)
+                    self.assertEqual(done.returncode, 0 if "--most 100" in line else 1, done.stderr + done.stdout)
+            self.judge(json.loads((folder / "judged/evaluation.json").read_text(encoding="utf-8")))
+            page = (folder / "scored/evaluation.html").read_text(encoding="utf-8")
+            self.assertIn("kappa of both", page)
+
+    def judge(self, report):
+        figures = {f["key"]: f for section in report["sections"] for f in section["figures"]}
+        self.assertGreater(figures["left_shank.in_error"]["value"], 10)
+        for limb in ("left_thigh", "right_thigh", "right_shank", "right_upper_arm"):
+            self.assertLess(figures[f"{limb}.in_error"]["value"], 5, limb)
+            self.assertLess(figures[f"{limb}.noise"]["value"], 10, limb)
+        self.assertEqual(report["judgement"], "bad")
+        clocks = report["subject"]["clocks"]
+        self.assertAlmostEqual(float(re.search(r"sensors ([+-][\d.]+)", clocks).group(1)), 80, delta=12)
+
+
+if __name__ == "__main__":
+    unittest.main()
