@@ -4,11 +4,14 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <utility>
 #include <vector>
 
+#include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -36,10 +39,34 @@ void ask_webcam(cv::VideoCapture& capture, const CameraSettings& settings) {
   capture.set(cv::CAP_PROP_BUFFERSIZE, 2);
 }
 
+/// Clockwise quarter turns that a player makes before it shows the pictures.  OpenCV before 4.7
+/// tells the angle anticlockwise (and turns phone videos upside down if it is left to turn them).
+int quarter_turns_of(const cv::VideoCapture& capture) {
+  constexpr bool kAnticlockwise = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 7;
+  const double told = capture.get(cv::CAP_PROP_ORIENTATION_META);
+  if (!(told > -1e4 && told < 1e4)) return 0;
+  const auto quarters = static_cast<int>(std::lround(told / 90.0));
+  return ((kAnticlockwise ? -quarters : quarters) % 4 + 4) % 4;
+}
+
+/// Turns pictures in place, clockwise.
+void turn(cv::Mat& pixels, int quarters) {
+  constexpr std::array kTurns{cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
+                              cv::ROTATE_90_COUNTERCLOCKWISE};
+  if (quarters == 0) return;
+  cv::Mat turned;
+  cv::rotate(pixels, turned, kTurns[static_cast<std::size_t>(quarters) - 1]);
+  pixels = turned;
+}
+
 class OpenCvVideo final : public Video {
  public:
   OpenCvVideo(cv::VideoCapture capture, std::string source)
-      : capture_(std::move(capture)), source_(std::move(source)), kind_(kind_of(source_)) {}
+      : capture_(std::move(capture)), source_(std::move(source)), kind_(kind_of(source_)) {
+    if (kind_ == SourceKind::Device) return;  // a webcam's driver delivers them upright
+    quarters_ = quarter_turns_of(capture_);
+    capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0.0);
+  }
 
   [[nodiscard]] Result<std::optional<VideoMoment>> next() override;
   [[nodiscard]] Result<Picture> picture() override;
@@ -54,6 +81,7 @@ class OpenCvVideo final : public Video {
   cv::VideoCapture capture_;
   std::string source_;
   SourceKind kind_;
+  int quarters_ = 0;  ///< Clockwise quarter turns that the file or stream asks for.
 };
 
 std::optional<Duration> OpenCvVideo::time_of_picture() const {
@@ -82,6 +110,7 @@ Result<Picture> OpenCvVideo::picture() {
   auto pixels = std::make_shared<cv::Mat>();
   try {
     if (capture_.retrieve(*pixels) && !pixels->empty() && pixels->type() == CV_8UC3) {
+      turn(*pixels, quarters_);
       const Size size{pixels->cols, pixels->rows};
       return Picture{std::move(pixels), size};
     }
