@@ -1,5 +1,8 @@
 #include "common/calibration/board.h"
 
+#include <set>
+#include <utility>
+
 #include <fmt/format.h>
 #include <opencv2/aruco/charuco.hpp>
 
@@ -36,6 +39,29 @@ void add_marker(const cv::Mat& bits, double left, double top, double side,
       begin = end + 1;
     }
   }
+}
+
+/// The squares without a marker are black.
+void add_black_squares(const Board& board, const std::set<std::pair<int, int>>& marked,
+                       std::vector<BlackPart>& parts) {
+  const double side = board.square_mm;
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = 0; column < board.columns; ++column) {
+      if (!marked.contains({column, row}))
+        parts.push_back({column * side, (board.rows - 1 - row) * side, side, side});
+    }
+  }
+}
+
+std::vector<BlackPart> chessboard_parts(const Board& board) {
+  std::set<std::pair<int, int>> white;
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = (row + 1) % 2; column < board.columns; column += 2)
+      white.insert({column, row});
+  }
+  std::vector<BlackPart> parts;
+  add_black_squares(board, white, parts);
+  return parts;
 }
 
 Result<void> refuse(const char* option, std::string why) {
@@ -78,23 +104,23 @@ std::string description(const Board& board) {
 }
 
 std::vector<BlackPart> black_parts(const Board& board) {
-  std::vector<BlackPart> parts;
+  if (board.kind == BoardKind::Chessboard) return chessboard_parts(board);
   const auto dictionary = dictionary_of(board);
-  const double side = board.square_mm;
-  const double inset = 0.5 * (board.square_mm - board.marker_mm);
-  int id = 0;
-  // Markers are numbered from the upper left, and the square at the lower left is black, as in
-  // OpenCV 4.6.
-  for (int row = board.rows - 1; row >= 0; --row) {
-    for (int column = 0; column < board.columns; ++column) {
-      if (row % 2 == column % 2) {
-        parts.push_back({column * side, row * side, side, side});
-      } else if (board.kind == BoardKind::Charuco) {
-        add_marker(marker_picture(*dictionary, id++), column * side + inset,
-                   (row + 1) * side - inset, board.marker_mm, parts);
-      }
-    }
+  const auto charuco = charuco_of(board);
+  const double height = board.rows * board.square_mm;
+  std::vector<BlackPart> parts;
+  std::set<std::pair<int, int>> marked;  // column and row, from the upper left
+  for (std::size_t i = 0; i < charuco->objPoints.size(); ++i) {
+    // Metres to the right of the board's upper left corner and down from it.
+    const cv::Point3f corner = charuco->objPoints[i].front();
+    const double left = 1e3 * static_cast<double>(corner.x);
+    const double down = 1e3 * static_cast<double>(corner.y);
+    marked.insert(
+        {static_cast<int>(left / board.square_mm), static_cast<int>(down / board.square_mm)});
+    add_marker(marker_picture(*dictionary, charuco->ids[i]), left, height - down, board.marker_mm,
+               parts);
   }
+  add_black_squares(board, marked, parts);
   return parts;
 }
 

@@ -14,6 +14,10 @@ enum class BoardKind {
   Chessboard  ///< Has no markers; must be entirely visible.
 };
 
+/// Colour of the square at the upper left of a ChArUco board: black up to OpenCV 4.6 and in ours;
+/// OpenCV 4.7 and later begin boards with an even number of rows with white.
+enum class FirstSquare { Black, White };
+
 struct Board {
   BoardKind kind = BoardKind::Charuco;
   int columns = 8;          ///< Number of squares, not of inner corners.
@@ -21,6 +25,7 @@ struct Board {
   double square_mm = 30.0;  ///< Side of a square.
   double marker_mm = 22.5;  ///< Side of a marker.
   int marker_bits = 4;      ///< 4 to 7, as in OpenCV's dictionaries DICT_4X4 to DICT_7X7.
+  FirstSquare first = FirstSquare::Black;  ///< How it is printed; both are found (board_finder.h).
 };
 
 /// Refuses a board that cannot be made: an InvalidArgument error whose context is the option to

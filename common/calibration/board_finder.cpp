@@ -1,5 +1,9 @@
 #include "common/calibration/board_finder.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <Eigen/Eigenvalues>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
@@ -51,10 +55,40 @@ std::vector<cv::Point2f> chessboard_in(const cv::Mat& grey, cv::Size inner) {
 
 }  // namespace
 
+namespace {
+
+using Markers = std::vector<std::vector<cv::Point2f>>;
+
+/// How badly the markers in the picture fit those of the board: the root mean square distance from
+/// where the best homography puts them [px].  Lens distortion adds the same to every board.
+double misfit(const cv::aruco::CharucoBoard& board, const Markers& markers,
+              const std::vector<int>& ids) {
+  std::vector<cv::Point2f> on_board;
+  std::vector<cv::Point2f> in_picture;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const auto known = std::find(board.ids.begin(), board.ids.end(), ids[i]);
+    if (known == board.ids.end()) continue;
+    for (std::size_t c = 0; c < markers[i].size(); ++c) {
+      const auto& place = board.objPoints[static_cast<std::size_t>(known - board.ids.begin())][c];
+      on_board.emplace_back(place.x, place.y);
+      in_picture.push_back(markers[i][c]);
+    }
+  }
+  if (on_board.size() < 8) return std::numeric_limits<double>::infinity();
+  const cv::Mat homography = cv::findHomography(on_board, in_picture);
+  if (homography.empty()) return std::numeric_limits<double>::infinity();
+  std::vector<cv::Point2f> fitted;
+  cv::perspectiveTransform(on_board, fitted, homography);
+  return cv::norm(fitted, in_picture) / std::sqrt(static_cast<double>(fitted.size()));
+}
+
+}  // namespace
+
 struct BoardFinder::Pattern {
   Board board;
   std::shared_ptr<cv::aruco::Dictionary> dictionary;
-  std::shared_ptr<cv::aruco::CharucoBoard> charuco;
+  /// The board as it may have been printed; one of the two with an even number of rows.
+  std::vector<std::shared_ptr<cv::aruco::CharucoBoard>> charucos;
 
   [[nodiscard]] std::vector<Corner> find_charuco(const cv::Mat& grey) const;
   [[nodiscard]] std::vector<Corner> find_chessboard(const cv::Mat& grey) const;
@@ -65,13 +99,22 @@ std::vector<Corner> BoardFinder::Pattern::find_charuco(const cv::Mat& grey) cons
   std::vector<int> ids;
   cv::aruco::detectMarkers(grey, dictionary, markers, ids);
   if (ids.size() < 2) return {};
+  const auto* charuco = &charucos.front();
+  double least = misfit(**charuco, markers, ids);
+  for (const auto& other : charucos) {
+    const double fit = misfit(*other, markers, ids);
+    if (fit < least) charuco = &other;
+    least = std::min(least, fit);
+  }
   std::vector<cv::Point2f> pixels;
   std::vector<int> corners;
-  cv::aruco::interpolateCornersCharuco(markers, ids, grey, charuco, pixels, corners);
+  cv::aruco::interpolateCornersCharuco(markers, ids, grey, *charuco, pixels, corners);
   std::vector<Corner> out;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto& place = charuco->chessboardCorners[static_cast<std::size_t>(corners[i])];
-    out.push_back({{place.x, place.y}, {pixels[i].x, pixels[i].y}});
+    const auto& place = (*charuco)->chessboardCorners[static_cast<std::size_t>(corners[i])];
+    // OpenCV 4.6 counts these corners, unlike its others, from the corner of the first pixel.
+    constexpr double kHalf = 0.5;
+    out.push_back({{place.x, place.y}, {pixels[i].x - kHalf, pixels[i].y - kHalf}});
   }
   return out;
 }
@@ -98,10 +141,14 @@ std::vector<Corner> BoardFinder::Pattern::find_chessboard(const cv::Mat& grey) c
 }
 
 BoardFinder::BoardFinder(const Board& board)
-    : pattern_(std::make_unique<Pattern>(Pattern{board, nullptr, nullptr})) {
+    : pattern_(std::make_unique<Pattern>(Pattern{board, nullptr, {}})) {
   if (board.kind != BoardKind::Charuco) return;
   pattern_->dictionary = dictionary_of(board);
-  pattern_->charuco = charuco_of(board);
+  Board other = board;
+  other.first = board.first == FirstSquare::Black ? FirstSquare::White : FirstSquare::Black;
+  pattern_->charucos = {charuco_of(board)};
+  // With an odd number of rows, later versions of OpenCV begin with black, too.
+  if (board.rows % 2 == 0) pattern_->charucos.push_back(charuco_of(other));
 }
 
 BoardFinder::~BoardFinder() = default;

@@ -15,7 +15,8 @@ namespace chorus::calibration {
 
 class BoardFinder {
  public:
-  /// The board must have passed check().
+  /// The board must have passed check().  A ChArUco board with an even number of rows is found
+  /// whichever colour it begins with; board.first only says which is tried first.
   explicit BoardFinder(const Board& board);
   ~BoardFinder();
 

@@ -18,7 +18,9 @@ inline constexpr std::array kDictionarySizes{50, 100, 250, 1000};
 
 [[nodiscard]] std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board);
 
-/// The board with its sizes in metres.
+/// The board with its sizes in metres: the one definition of where markers are, for the sheet and
+/// for the finder.  Its corners and markers follow board.first; getChessboardSize() may have a row
+/// more.
 [[nodiscard]] std::shared_ptr<cv::aruco::CharucoBoard> charuco_of(const Board& board);
 
 }  // namespace chorus::calibration

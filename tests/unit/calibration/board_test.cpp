@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "common/calibration/board_finder.h"
+#include "common/calibration/board_pattern.h"
 #include "common/calibration/board_sheet.h"
 #include "tests/support/matchers.h"
 
@@ -55,6 +58,63 @@ TEST(Board, ASheetIsFoundAgainAndStatesItsSize) {
     EXPECT_NEAR(picture.cols, (board.columns + 1) * board.square_mm / 25.4 * 300.0, 1.0);
     const auto corners = BoardFinder(board).find(picture);
     EXPECT_EQ(std::ssize(corners), (board.columns - 1) * (board.rows - 1)) << description(board);
+  }
+}
+
+/// The largest distance of a corner found in a picture of the board (`dots` pixels per mm, half a
+/// square of margin) from where it was drawn [px].
+double largest_error(const Board& printed, const Board& sought, std::size_t& found) {
+  constexpr double kDots = 4.0;
+  const double margin = 0.5 * printed.square_mm;
+  cv::Mat sheet(static_cast<int>(kDots * (printed.rows * printed.square_mm + 2 * margin)),
+                static_cast<int>(kDots * (printed.columns * printed.square_mm + 2 * margin)),
+                CV_8UC1, cv::Scalar(255));
+  for (const BlackPart& part : black_parts(printed)) {
+    const double down = printed.rows * printed.square_mm - part.y - part.height;
+    sheet(cv::Rect(cv::Point2d(kDots * (part.x + margin), kDots * (down + margin)),
+                   cv::Point2d(kDots * (part.x + part.width + margin),
+                               kDots * (down + part.height + margin))))
+        .setTo(0);
+  }
+  cv::GaussianBlur(sheet, sheet, {3, 3}, 0.0);
+  const auto corners = BoardFinder(sought).find(sheet);
+  found = corners.size();
+  double largest = 0.0;
+  for (const Corner& corner : corners) {
+    const Eigen::Vector2d there =
+        kDots * (1e3 * corner.on_board + Eigen::Vector2d::Constant(margin)) -
+        Eigen::Vector2d::Constant(0.5);
+    largest = std::max(largest, (corner.pixel - there).norm());
+  }
+  return largest;
+}
+
+TEST(Board, EveryCornerIsWhereTheSheetHasItWhicheverColourItBeginsWith) {
+  for (const FirstSquare first : {FirstSquare::Black, FirstSquare::White}) {
+    for (const int rows : {5, 6}) {
+      const Board printed{.rows = rows, .first = first};
+      std::size_t found = 0;
+      EXPECT_LT(largest_error(printed, Board{.rows = rows}, found), 0.1);
+      EXPECT_EQ(found, static_cast<std::size_t>(7 * (rows - 1)));
+    }
+  }
+}
+
+TEST(Board, OurSheetIsTheOneThatOpenCvDraws) {
+  for (const Board& board : {Board{}, Board{.columns = 7, .rows = 9, .marker_bits = 6}}) {
+    cv::Mat drawn;
+    charuco_of(board)->draw({board.columns * 60, board.rows * 60}, drawn);
+    cv::Mat ours(drawn.size(), CV_8UC1, cv::Scalar(255));
+    for (const BlackPart& part : black_parts(board)) {
+      const double dots = 60.0 / board.square_mm;
+      const double down = board.rows * board.square_mm - part.y - part.height;
+      ours(cv::Rect(cv::Point2d(dots * part.x, dots * down),
+                    cv::Point2d(dots * (part.x + part.width), dots * (down + part.height))))
+          .setTo(0);
+    }
+    cv::Mat differs;
+    cv::absdiff(drawn, ours, differs);
+    EXPECT_LT(cv::mean(differs)[0], 0.03 * 255.0) << description(board);
   }
 }
 
