@@ -29,10 +29,15 @@ struct Bvh {
   std::vector<BvhJoint> joints;
   std::size_t channel_count = 0;
   double frame_time = 0.0;  ///< [s]
-  /// Positions [m], rotations [rad], in the order of the channels.
+  /// Positions [m], rotations [rad], in the order of the channels; empty where a line between
+  /// others could not be read.
   std::vector<std::vector<double>> frames;
+  std::vector<std::string> notes = {};  ///< What was salvaged.
 };
 
+/// The lines that are there count, not the announced number of frames; a cut last line is left out;
+/// both with a note.  Names may contain blanks ("Bip01 L Thigh"), keywords and channels be written
+/// in any case, decimals have a comma.
 [[nodiscard]] Result<Bvh> parse_bvh(std::string_view text, std::string_view origin,
                                     double metres_per_unit = 0.01);
 

@@ -2,94 +2,22 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <map>
-#include <optional>
+#include <utility>
 
+#include "common/base/not_seen.h"
+#include "common/base/unit_name.h"
+#include "common/motion/c3d_parameters.h"
 #include "common/motion/text_lines.h"
 #include "common/sensor/limits.h"
 
 namespace chorus::motion {
 namespace {
 
-constexpr std::size_t kBlock = 512;
-constexpr std::uint8_t kKey = 0x50;  // The second byte of every C3D file.
-constexpr std::uint8_t kFirstProcessor = 84;
-constexpr std::array<std::string_view, 3> kProcessors{"Intel", "DEC", "MIPS"};
 constexpr std::size_t kMaxPoints = 4096;
 constexpr double kMaxFrameRateHz = 1e5;
-constexpr double kMaxWordFrames = 65535;
-
-enum Processor : std::uint8_t { kIntel, kDec, kMips };
-
-/// Reads numbers of one byte order; the caller has checked the offsets.
-class Numbers {
- public:
-  Numbers(std::string_view bytes, Processor processor) : bytes_(bytes), processor_(processor) {}
-
-  [[nodiscard]] std::uint8_t byte(std::size_t at) const {
-    return static_cast<std::uint8_t>(bytes_[at]);
-  }
-  /// A signed byte, -128 to 127.
-  [[nodiscard]] int small(std::size_t at) const {
-    const int value = byte(at);
-    return value < 128 ? value : value - 256;
-  }
-  [[nodiscard]] std::uint16_t word(std::size_t at) const {
-    const auto [low, high] = processor_ == kMips ? std::pair{at + 1, at} : std::pair{at, at + 1};
-    return static_cast<std::uint16_t>(byte(low) | byte(high) << 8);
-  }
-  [[nodiscard]] std::int16_t integer(std::size_t at) const {
-    return static_cast<std::int16_t>(word(at));
-  }
-  [[nodiscard]] float real(std::size_t at) const {
-    const std::uint32_t first = word(at);
-    const std::uint32_t second = word(at + 2);
-    if (processor_ == kIntel) return std::bit_cast<float>(second << 16 | first);
-    // A VAX F float is an IEEE float with its words swapped and its exponent larger by two.
-    const float value = std::bit_cast<float>(first << 16 | second);
-    return processor_ == kDec ? value / 4.0f : value;
-  }
-  [[nodiscard]] std::string_view text(std::size_t at, std::size_t count) const {
-    return bytes_.substr(at, count);
-  }
-
- private:
-  std::string_view bytes_;
-  Processor processor_;
-};
-
-struct Parameter {
-  int type = 0;  ///< Bytes per element: 1, 2, 4 (float) or -1 (text).
-  std::vector<std::size_t> dimensions;
-  std::size_t at = 0;     ///< File offset of its first element.
-  std::size_t count = 0;  ///< Number of elements.
-};
-
-std::string upper(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](char c) {
-    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  });
-  return out;
-}
-
-std::string trimmed(std::string_view text) {
-  const std::size_t end = text.find_last_not_of(std::string_view(" \t\0", 3));
-  return std::string(text.substr(0, end == std::string_view::npos ? 0 : end + 1));
-}
-
-struct Entry {
-  int group = 0;
-  std::string name;
-  Parameter parameter;
-};
-
-/// Where each parameter's value is, by names such as "POINT:RATE".
-using Parameters = std::map<std::string, Parameter>;
+constexpr double kWordFrames = 65536;  // what a count of 16 bits loses when it wraps
 
 struct Layout {
   std::size_t points = 0;
@@ -105,25 +33,23 @@ struct Layout {
 
 class C3dReader {
  public:
-  C3dReader(std::string_view bytes, std::string_view origin) : bytes_(bytes), origin_(origin) {}
-  Result<C3d> read();
+  C3dReader(std::string_view bytes, std::string_view origin, C3dParameters parameters)
+      : bytes_(bytes), origin_(origin), parameters_(std::move(parameters)) {}
+  Result<C3d> read(std::optional<double> unit);
 
  private:
-  Result<void> read_processor();
-  Result<void> read_parameters();
-  Result<std::size_t> read_entry(std::size_t at, std::size_t end);
-  [[nodiscard]] Result<Parameter> read_parameter(std::size_t at, std::size_t end) const;
   [[nodiscard]] Result<Layout> read_layout() const;
   [[nodiscard]] Result<double> metres_per_unit() const;
-  [[nodiscard]] Result<void> check_extent(const Layout& layout) const;
+  [[nodiscard]] Result<void> settle_extent(Layout& layout, std::vector<std::string>& notes) const;
+  [[nodiscard]] Result<std::size_t> start_of_points() const;
   void read_frames(const Layout& layout, C3d& out) const;
   [[nodiscard]] std::optional<Eigen::Vector3d> axis(const std::string& name) const;
   [[nodiscard]] Eigen::Matrix3d world_from_file() const;
-  [[nodiscard]] C3dPoint read_point(const Layout& layout, std::size_t at) const;
+  [[nodiscard]] MarkerPoint read_point(const Layout& layout, std::size_t at) const;
+  [[nodiscard]] bool is_zero(const Layout& layout, std::size_t at) const;
 
-  [[nodiscard]] std::optional<double> number(const std::string& name, std::size_t i = 0) const;
-  [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;
   [[nodiscard]] double frame_count() const;
+  [[nodiscard]] std::size_t filled_frames(const Layout& layout, std::size_t there) const;
   [[nodiscard]] std::vector<std::string> labels(std::size_t points) const;
   [[nodiscard]] tl::unexpected<Error> wrong(std::string message) const {
     return fail(ErrorCode::Malformed, std::string(origin_), std::move(message));
@@ -131,135 +57,30 @@ class C3dReader {
 
   std::string_view bytes_;
   std::string_view origin_;
-  std::size_t parameters_at_ = 0;
-  Processor processor_ = kIntel;
-  std::map<int, std::string> groups_;
-  std::vector<Entry> entries_;
-  Parameters parameters_;
+  C3dParameters parameters_;
+  std::optional<double> unit_;  ///< Metres; instead of what the file states.
 };
 
-Result<C3d> C3dReader::read() {
-  if (const auto ok = read_processor(); !ok) return pass(ok);
-  if (const auto ok = read_parameters(); !ok) return pass(ok);
-  const auto layout = read_layout();
+Result<C3d> C3dReader::read(std::optional<double> unit) {
+  unit_ = unit;
+  auto layout = read_layout();
   if (!layout) return pass(layout);
-  if (const auto ok = check_extent(*layout); !ok) return pass(ok);
   C3d out;
-  out.processor = std::string(kProcessors[processor_]);
+  if (const auto ok = settle_extent(*layout, out.notes); !ok) return pass(ok);
+  out.processor = parameters_.processor_name();
   out.labels = labels(layout->points);
-  out.rate_hz = number("POINT:RATE").value_or(Numbers(bytes_, processor_).real(20));
+  out.rate_hz = parameters_.number("POINT:RATE").value_or(parameters_.numbers().real(20));
   if (!(out.rate_hz > 0) || out.rate_hz > kMaxFrameRateHz) return wrong("has no rate of frames");
   out.world_from_file = world_from_file();
+  out.metres_per_unit = layout->metres_per_unit;
   read_frames(*layout, out);
   return out;
 }
 
-Result<void> C3dReader::read_processor() {
-  if (bytes_.size() < 2 * kBlock) return wrong("is too short for a C3D file");
-  const auto first = static_cast<std::uint8_t>(bytes_[0]);
-  if (static_cast<std::uint8_t>(bytes_[1]) != kKey || first < 2)
-    return wrong("does not begin as a C3D file does");
-  parameters_at_ = (first - 1u) * kBlock;
-  if (parameters_at_ + kBlock > bytes_.size())
-    return wrong("has its parameters beyond its end; is it cut off?");
-  const auto processor = static_cast<std::uint8_t>(bytes_[parameters_at_ + 3]);
-  if (processor < kFirstProcessor ||
-      processor - kFirstProcessor >= static_cast<int>(kProcessors.size()))
-    return fail(ErrorCode::Unsupported, std::string(origin_),
-                "names a processor that is neither Intel, DEC nor MIPS");
-  processor_ = static_cast<Processor>(processor - kFirstProcessor);
-  return {};
-}
-
-Result<void> C3dReader::read_parameters() {
-  const std::size_t blocks = static_cast<std::uint8_t>(bytes_[parameters_at_ + 2]);
-  // Some writers leave the count at 0; then the list of parameters ends by its own mark.
-  const std::size_t end =
-      std::min(bytes_.size(), parameters_at_ + (blocks == 0 ? 255 : blocks) * kBlock);
-  std::size_t at = parameters_at_ + 4;
-  while (at != 0 && at + 2 <= end && bytes_[at] != 0 && bytes_[at + 1] != 0) {
-    const auto next = read_entry(at, end);
-    if (!next) return pass(next);
-    at = *next;
-  }
-  for (Entry& entry : entries_) {
-    if (const auto found = groups_.find(entry.group); found != groups_.end())
-      parameters_.emplace(found->second + ":" + entry.name, std::move(entry.parameter));
-  }
-  return {};
-}
-
-/// Reads one group (negative number) or parameter; returns the next one's offset, 0 after the last.
-Result<std::size_t> C3dReader::read_entry(std::size_t at, std::size_t end) {
-  const Numbers numbers(bytes_, processor_);
-  // A negative length of the name means "locked".
-  const auto length = static_cast<std::size_t>(std::abs(numbers.small(at)));
-  const int group = numbers.small(at + 1);
-  if (at + 2 + length + 2 > end) return wrong("has a parameter that is cut off");
-  std::string name = upper(numbers.text(at + 2, length));
-  const std::size_t link = at + 2 + length;
-  const std::size_t step = numbers.word(link);
-  if (group < 0) {
-    groups_.emplace(-group, std::move(name));
-  } else {
-    auto parameter = read_parameter(link + 2, end);
-    if (!parameter) return wrong("has a parameter " + name + " that reaches beyond the parameters");
-    entries_.push_back({group, std::move(name), std::move(*parameter)});
-  }
-  return step == 0 ? 0 : link + step;
-}
-
-Result<Parameter> C3dReader::read_parameter(std::size_t at, std::size_t end) const {
-  const Numbers numbers(bytes_, processor_);
-  if (at + 2 > end) return wrong("is cut off");
-  Parameter out;
-  out.type = numbers.small(at);
-  const std::size_t dimensions = numbers.byte(at + 1);
-  if (at + 2 + dimensions > end || dimensions > 7) return wrong("is cut off");
-  out.at = at + 2 + dimensions;
-  out.count = 1;
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    out.dimensions.push_back(numbers.byte(at + 2 + d));
-    out.count *= out.dimensions.back();
-    if (out.count > bytes_.size()) return wrong("is cut off");
-  }
-  const auto width = static_cast<std::size_t>(std::abs(out.type));
-  if (out.at + out.count * width > end) return wrong("is cut off");
-  return out;
-}
-
-std::optional<double> C3dReader::number(const std::string& name, std::size_t i) const {
-  const auto found = parameters_.find(name);
-  if (found == parameters_.end() || i >= found->second.count) return std::nullopt;
-  const Numbers numbers(bytes_, processor_);
-  const std::size_t at = found->second.at;
-  switch (found->second.type) {
-    case 1:
-      return numbers.byte(at + i);
-    case 2:
-      return numbers.word(at + 2 * i);  // Counts above 32767 are stored unsigned.
-    case 4:
-      return numbers.real(at + 4 * i);
-    default:
-      return std::nullopt;
-  }
-}
-
-std::vector<std::string> C3dReader::texts(const std::string& name) const {
-  const auto found = parameters_.find(name);
-  if (found == parameters_.end() || found->second.type != -1) return {};
-  const Parameter& text = found->second;
-  if (text.dimensions.empty() || text.dimensions[0] == 0) return {};
-  std::vector<std::string> out;
-  for (std::size_t i = 0; i + text.dimensions[0] <= text.count; i += text.dimensions[0])
-    out.push_back(trimmed(bytes_.substr(text.at + i, text.dimensions[0])));
-  return out;
-}
-
 std::vector<std::string> C3dReader::labels(std::size_t points) const {
-  std::vector<std::string> all = texts("POINT:LABELS");
+  std::vector<std::string> all = parameters_.texts("POINT:LABELS");
   for (int more = 2; all.size() < points; ++more) {
-    const auto next = texts("POINT:LABELS" + std::to_string(more));
+    const auto next = parameters_.texts("POINT:LABELS" + std::to_string(more));
     if (next.empty()) break;
     all.insert(all.end(), next.begin(), next.end());
   }
@@ -267,49 +88,64 @@ std::vector<std::string> C3dReader::labels(std::size_t points) const {
   return all;
 }
 
-/// POINT:FRAMES, unless it has the largest value of its type; then POINT:LONG_FRAMES or the fields
-/// of TRIAL (c3d.org, "Reading the frame count").
+/// The largest of what the file says in its places for the number of frames: those of 16 bits
+/// (header, POINT:FRAMES) saturate or wrap in long files, for which there are POINT:LONG_FRAMES and
+/// the fields of TRIAL (c3d.org, "Reading the frame count").
 double C3dReader::frame_count() const {
-  const Numbers numbers(bytes_, processor_);
+  const Numbers numbers = parameters_.numbers();
   const double of_header = numbers.word(8) - numbers.word(6) + 1.0;
-  const double stated = number("POINT:FRAMES").value_or(of_header);
-  if (stated != kMaxWordFrames) return stated;
-  if (const auto longer = number("POINT:LONG_FRAMES")) return *longer;
+  const double stated = parameters_.number("POINT:FRAMES").value_or(of_header);
   const auto field = [&](const std::string& name) {
-    return number(name).value_or(0) + 65536.0 * number(name, 1).value_or(0);
+    return parameters_.number(name).value_or(0) +
+           kWordFrames * parameters_.number(name, 1).value_or(0);
   };
   const double of_trial = field("TRIAL:ACTUAL_END_FIELD") - field("TRIAL:ACTUAL_START_FIELD") + 1;
-  return of_trial > stated ? of_trial : stated;
+  double longer = parameters_.number("POINT:LONG_FRAMES").value_or(0);
+  // Only where it says the same but for what 16 bits lose: programs that cut a file leave it as is.
+  const double lost = std::fmod(of_trial - stated, kWordFrames);
+  if (stated == kWordFrames - 1 || lost == 0) longer = std::max(longer, of_trial);
+  return std::max(stated, longer);
 }
 
 Result<double> C3dReader::metres_per_unit() const {
-  constexpr std::array<std::pair<std::string_view, double>, 6> kUnits{
-      {{"MM", 0.001}, {"CM", 0.01}, {"M", 1.0}, {"DM", 0.1}, {"IN", 0.0254}, {"", 0.001}}};
-  const auto units = texts("POINT:UNITS");
-  const std::string unit = units.empty() ? "" : upper(units.front());
-  for (const auto& [name, metres] : kUnits) {
-    if (name == unit) return metres;
+  if (unit_) return *unit_;
+  const auto units = parameters_.texts("POINT:UNITS");
+  const std::string unit = units.empty() || units.front().empty() ? "mm" : units.front();
+  if (const auto metres = metres_in(unit)) return *metres;
+  return wrong("gives its points in \"" + unit.substr(0, 16) +
+               "\", a unit we do not know: say which with --unit mm, cm, m or in");
+}
+
+/// POINT:DATA_START, or the header's if that is none or lies beyond the file; 2 is the first block
+/// that it can be.
+Result<std::size_t> C3dReader::start_of_points() const {
+  const double of_header = parameters_.numbers().word(16);
+  for (const double block : {parameters_.number("POINT:DATA_START").value_or(0), of_header}) {
+    const auto start = (static_cast<std::size_t>(std::clamp(block, 1.0, 65535.0)) - 1) * kC3dBlock;
+    if (block >= 2 && start < bytes_.size()) return start;
   }
-  return wrong("gives its points in \"" + unit.substr(0, 16) + "\", a unit we do not know");
+  return wrong("says no place where its points begin; is it cut off, or without points?");
 }
 
 Result<Layout> C3dReader::read_layout() const {
-  const Numbers numbers(bytes_, processor_);
+  const Numbers numbers = parameters_.numbers();
   Layout layout;
-  const double points = number("POINT:USED").value_or(numbers.word(2));
+  const double points = parameters_.number("POINT:USED").value_or(numbers.word(2));
   const double frames = frame_count();
-  const double start = number("POINT:DATA_START").value_or(numbers.word(16));
-  layout.scale = number("POINT:SCALE").value_or(numbers.real(12));
+  layout.scale = parameters_.number("POINT:SCALE").value_or(numbers.real(12));
   if (!std::isfinite(layout.scale) || layout.scale == 0) return wrong("has no scale of points");
+  if (points == 0)
+    return wrong(parameters_.has_group("ROTATION")
+                     ? "holds rotations of segments and no points, which are "
+                       "needed here: export joint centres or markers, too"
+                     : "holds no points, only analog channels or nothing");
   if (!(points >= 1 && points <= static_cast<double>(kMaxPoints)))
-    return wrong("announces no points, or more than 4096");
-  if (!(frames >= 1)) return wrong("announces no frames");
-  if (frames > static_cast<double>(kMaxFrames))
-    return fail(ErrorCode::TooLarge, std::string(origin_), "has more than 200000 frames");
-  if (!(start >= 2 && start <= 65535)) return wrong("says no place where its points begin");
+    return wrong("announces more than 4096 points");
   layout.points = static_cast<std::size_t>(points);
-  layout.frames = static_cast<std::size_t>(frames);
-  layout.start = (static_cast<std::size_t>(start) - 1) * kBlock;
+  layout.frames = frames > 0 ? static_cast<std::size_t>(std::min(frames, 1e9)) : 0;
+  const auto start = start_of_points();
+  if (!start) return pass(start);
+  layout.start = *start;
   layout.analog = numbers.word(4);
   const auto unit = metres_per_unit();
   if (!unit) return pass(unit);
@@ -317,46 +153,106 @@ Result<Layout> C3dReader::read_layout() const {
   return layout;
 }
 
-Result<void> C3dReader::check_extent(const Layout& layout) const {
-  const std::size_t there =
-      layout.start < bytes_.size() ? (bytes_.size() - layout.start) / layout.frame_bytes() : 0;
-  if (there >= layout.frames) return {};
-  return wrong("announces " + std::to_string(layout.frames) + " frames and holds " +
-               std::to_string(there) + "; is it cut off?");
+/// The count that 16 bits wrapped, for files that hold `there` frames.
+std::size_t wrapped(std::size_t announced, std::size_t there) {
+  const auto wrap = static_cast<std::size_t>(kWordFrames);
+  return announced + (there - announced) / wrap * wrap;
 }
 
-C3dPoint C3dReader::read_point(const Layout& layout, std::size_t at) const {
-  const Numbers numbers(bytes_, processor_);
+/// Whether a count of 16 bits that wrapped explains what is there.
+bool wraps(std::size_t announced, std::size_t surely, std::size_t there) {
+  const std::size_t count = wrapped(announced, there);
+  return count > announced && count >= surely;
+}
+
+/// `there` without the frames of zeros at the end, which fill the last block.
+std::size_t C3dReader::filled_frames(const Layout& layout, std::size_t there) const {
+  const std::size_t size = layout.frame_bytes();
+  for (std::size_t spare = 0; there > 1 && (spare + 1) * size < kC3dBlock; ++spare) {
+    const std::string_view last = bytes_.substr(layout.start + (there - 1) * size, size);
+    if (last.find_first_not_of('\0') != std::string_view::npos) break;
+    --there;
+  }
+  return there;
+}
+
+/// Counts the frames that are there.  After the last one, up to a block may be left over.
+Result<void> C3dReader::settle_extent(Layout& layout, std::vector<std::string>& notes) const {
+  const std::size_t announced = layout.frames;
+  const std::size_t bytes = layout.start < bytes_.size() ? bytes_.size() - layout.start : 0;
+  const std::size_t there = bytes / layout.frame_bytes();
+  const std::size_t surely = (bytes - std::min(bytes, kC3dBlock - 1)) / layout.frame_bytes();
+  if (there == 0) return wrong("holds no frame; is it cut off?");
+  const auto wrap = static_cast<std::size_t>(kWordFrames);
+  if (there < announced || announced == 0) {
+    layout.frames = there;
+    notes.push_back("announces " + std::to_string(announced) + " frames and holds " +
+                    std::to_string(there) + ", which were read; is it cut off?");
+  } else if (surely > announced && (announced == wrap - 1 || wraps(announced, surely, there))) {
+    layout.frames =
+        announced == wrap - 1 ? filled_frames(layout, there) : wrapped(announced, there);
+    notes.push_back("holds " + std::to_string(layout.frames - announced) +
+                    " frames more than its count of 16 bits can say, which were read");
+  } else if (surely > announced) {
+    notes.push_back("holds " + std::to_string(surely - announced) +
+                    " frames more than it announces, which were not read");
+  }
+  if (layout.frames > kMaxFrames)
+    return fail(ErrorCode::TooLarge, std::string(origin_), "has more than 200000 frames");
+  return {};
+}
+
+MarkerPoint C3dReader::read_point(const Layout& layout, std::size_t at) const {
+  const Numbers numbers = parameters_.numbers();
   const bool floats = layout.scale < 0;
   std::array<double, 4> xyzw{};
   for (std::size_t i = 0; i < 4; ++i)
     xyzw[i] = floats ? static_cast<double>(numbers.real(at + 4 * i))
                      : static_cast<double>(numbers.integer(at + 2 * i));
   const double metres = (floats ? 1.0 : layout.scale) * layout.metres_per_unit;
-  C3dPoint point;
+  MarkerPoint point;
   const Eigen::Vector3d position = metres * Eigen::Vector3d(xyzw.data());
   // The fourth number contains camera bits in the high byte and residual / scale in the low byte.
   if (!(xyzw[3] >= 0 && xyzw[3] < 32768) || !position.allFinite() ||
       position.cwiseAbs().maxCoeff() > kMaxCoordinate)
     return point;
+  if (is_nowhere(position)) return point;
   point.position = position.cast<float>();
   point.residual = static_cast<float>((static_cast<int>(xyzw[3]) & 0xff) * std::abs(layout.scale) *
                                       layout.metres_per_unit);
   return point;
 }
 
+/// A point at the origin that claims to be there: how many programs write what was not seen.
+bool C3dReader::is_zero(const Layout& layout, std::size_t at) const {
+  const Numbers numbers = parameters_.numbers();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool zero =
+        layout.scale < 0 ? numbers.real(at + 4 * i) == 0.0f : numbers.integer(at + 2 * i) == 0;
+    if (!zero) return false;
+  }
+  return layout.scale < 0 ? numbers.real(at + 12) >= 0.0f : numbers.integer(at + 6) >= 0;
+}
+
 void C3dReader::read_frames(const Layout& layout, C3d& out) const {
   out.frames.resize(layout.frames);
+  std::size_t zeros = 0;
   for (std::size_t f = 0; f < layout.frames; ++f) {
     const std::size_t frame = layout.start + f * layout.frame_bytes();
     out.frames[f].reserve(layout.points);
-    for (std::size_t p = 0; p < layout.points; ++p)
-      out.frames[f].push_back(read_point(layout, frame + 4 * p * layout.word_bytes()));
+    for (std::size_t p = 0; p < layout.points; ++p) {
+      const std::size_t at = frame + 4 * p * layout.word_bytes();
+      out.frames[f].push_back(read_point(layout, at));
+      if (!out.frames[f].back().valid() && is_zero(layout, at)) ++zeros;
+    }
   }
+  if (zeros > 0)
+    out.notes.push_back(std::to_string(zeros) +
+                        " points at 0, 0, 0 with a residual of 0 or more are taken as not seen");
 }
 
 std::optional<Eigen::Vector3d> C3dReader::axis(const std::string& name) const {
-  const auto found = texts(name);
+  const auto found = parameters_.texts(name);
   if (found.empty() || found.front().size() != 2) return std::nullopt;
   const std::size_t i = std::string_view("XYZ").find(upper(found.front())[1]);
   if (i == std::string_view::npos) return std::nullopt;
@@ -375,10 +271,13 @@ Eigen::Matrix3d C3dReader::world_from_file() const {
 
 }  // namespace
 
-Result<C3d> parse_c3d(std::string_view bytes, std::string_view origin) {
+Result<C3d> parse_c3d(std::string_view bytes, std::string_view origin,
+                      std::optional<double> metres_per_unit) {
   if (bytes.size() > kMaxC3dBytes)
     return fail(ErrorCode::TooLarge, std::string(origin), "the file is larger than 128 MB");
-  return C3dReader(bytes, origin).read();
+  auto parameters = C3dParameters::read(bytes, origin);
+  if (!parameters) return pass(parameters);
+  return C3dReader(bytes, origin, std::move(*parameters)).read(metres_per_unit);
 }
 
 }  // namespace chorus::motion

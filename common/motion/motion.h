@@ -8,12 +8,15 @@
 #include "common/body/skeleton.h"
 #include "common/motion/asf_amc.h"
 #include "common/motion/bvh.h"
+#include "common/motion/joint_names.h"
 
 namespace chorus::motion {
 
 struct Motion {
   double rate_hz = 0.0;
   std::vector<Skeleton<WorldSpace>> frames;
+  /// Times of the frames [s], if the file states them; otherwise frame i is at i / rate_hz.
+  std::vector<double> times = {};
 };
 
 /// The frame rate of the CMU library; AMC files do not state it.
@@ -29,11 +32,15 @@ inline constexpr double kCmuRateHz = 120.0;
                                              const std::vector<AmcFrame>& frames,
                                              double rate_hz = kCmuRateHz);
 
-/// Finds joints by name: our own 25 names if the file has a SpineBase, otherwise the names of the
-/// usual BVH dialects.  A joint that the file lacks is not tracked; but in those dialects spine,
-/// neck, hands and hand tips are inferred from their neighbours.  A file in a dialect is refused
-/// unless it has a pelvis, head, shoulders, elbows, wrists, hips, knees and ankles.
-[[nodiscard]] Result<Motion> motion_from_bvh(const Bvh& bvh);
+/// Finds joints by name (joint_names.h): `chosen`, our own 25 names if the file has a SpineBase,
+/// otherwise the names of the usual dialects.  A joint that the file lacks is not tracked; but in
+/// those dialects spine, neck, hands and hand tips are inferred from their neighbours.  Frames that
+/// the parser could not read show nobody.  Unsupported when there are not two joints; the error
+/// lists the file's names.
+[[nodiscard]] Result<Motion> motion_from_bvh(const Bvh& bvh, const JointChoice& chosen = {});
+
+/// The names of a BVH file's joints, without end sites that no other joint needs.
+[[nodiscard]] std::vector<std::string> names_in(const Bvh& bvh);
 
 /// The skeleton at `time` [s] after the first frame: positions are interpolated linearly,
 /// orientations by sign-aligned LERP.  Before the first and after the last frame it is constant.

@@ -1,6 +1,7 @@
 #include "common/motion/mvnx.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -53,12 +54,17 @@ class MvnxReader {
   void start(std::string_view name, const XML_Char** attributes);
   void start_subject(const XML_Char** attributes);
   void start_frame(const XML_Char** attributes);
+  double time_of(const XML_Char** attributes);
   void end(std::string_view name);
   void end_point();
   void end_vectors();
   void end_quaternions(std::vector<Eigen::Quaterniond>& out, std::string_view what);
   void end_frame();
   void stop(ErrorCode code, std::string message);
+  /// True within the body's own segments, and not in those of fingers or of objects.
+  [[nodiscard]] bool in_body() const {
+    return std::find(path_.begin(), path_.end(), "segments") != path_.end();
+  }
   [[nodiscard]] std::string place() const;
 
   std::string origin_;
@@ -68,6 +74,8 @@ class MvnxReader {
   std::string text_;               ///< Text of the innermost element.
   MvnxFrame frame_;
   bool in_frame_ = false;  ///< True in a frame of type "normal".
+  std::optional<double> first_index_;
+  std::optional<double> first_time_;  ///< [ms]
   std::optional<Error> wrong_;
 };
 
@@ -109,9 +117,10 @@ void MvnxReader::start(std::string_view name, const XML_Char** attributes) {
   text_.clear();
   path_.emplace_back(name);
   if (path_.size() > kMaxDepth) return stop(ErrorCode::TooLarge, "elements are nested too deep");
+  if (name.starts_with("fingerTracking")) mvnx_.fingers = true;
   if (name == "subject") start_subject(attributes);
   if (name == "frame") start_frame(attributes);
-  if (name == "segment") {
+  if (name == "segment" && in_body()) {
     mvnx_.segments.push_back({std::string(attribute(attributes, "label")), {}});
     if (mvnx_.segments.size() > kMaxSegments) stop(ErrorCode::TooLarge, "more than 512 segments");
   }
@@ -119,7 +128,7 @@ void MvnxReader::start(std::string_view name, const XML_Char** attributes) {
     mvnx_.sensors.emplace_back(attribute(attributes, "label"));
     if (mvnx_.sensors.size() > kMaxSegments) stop(ErrorCode::TooLarge, "more than 512 sensors");
   }
-  if (name == "point" && !mvnx_.segments.empty()) {
+  if (name == "point" && in_body() && !mvnx_.segments.empty()) {
     auto& points = mvnx_.segments.back().points;
     points.push_back({std::string(attribute(attributes, "label")), Eigen::Vector3d::Zero()});
     if (points.size() > kMaxPointsPerSegment)
@@ -136,6 +145,23 @@ void MvnxReader::start_subject(const XML_Char** attributes) {
     stop(ErrorCode::Malformed, "the subject has no frameRate above zero");
 }
 
+/// Seconds since the first frame: by its index, unless "time" disagrees, which then wins.
+double MvnxReader::time_of(const XML_Char** attributes) {
+  double index = 0;
+  double milliseconds = 0;
+  const bool indexed = read_finite(attribute(attributes, "index"), index);
+  const bool timed = read_finite(attribute(attributes, "time"), milliseconds);
+  if (!first_index_ && indexed) first_index_ = index;
+  if (!first_time_ && timed) first_time_ = milliseconds;
+  const double by_index = indexed ? (index - *first_index_) / mvnx_.rate_hz : 0.0;
+  const double by_time = timed ? (milliseconds - *first_time_) / 1000.0 : 0.0;
+  // "time" is cut to milliseconds: where both agree, the index is exact.
+  constexpr double kCut = 0.0021;
+  if (indexed && (!timed || std::abs(by_index - by_time) < kCut)) return by_index;
+  if (timed) return by_time;
+  return static_cast<double>(mvnx_.frames.size()) / mvnx_.rate_hz;
+}
+
 void MvnxReader::start_frame(const XML_Char** attributes) {
   const std::string_view type = attribute(attributes, "type");
   in_frame_ = type.empty() || type == "normal";
@@ -143,13 +169,12 @@ void MvnxReader::start_frame(const XML_Char** attributes) {
   if (!in_frame_) return;
   if (mvnx_.frames.size() >= kMaxFrames)
     return stop(ErrorCode::TooLarge, "more than 200000 frames");
-  double milliseconds = 0;
-  if (read_finite(attribute(attributes, "time"), milliseconds)) frame_.time = milliseconds / 1000.0;
+  frame_.time = time_of(attributes);
 }
 
 void MvnxReader::end(std::string_view name) {
   if (wrong_) return;
-  if (name == "pos_b") end_point();
+  if (name == "pos_b" && in_body()) end_point();
   if (in_frame_ && name == "position") end_vectors();
   if (in_frame_ && name == "orientation") end_quaternions(frame_.orientations, "orientation");
   if (in_frame_ && name == "sensorOrientation")

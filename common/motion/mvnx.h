@@ -27,8 +27,8 @@ struct MvnxSegment {
 };
 
 struct MvnxFrame {
-  double time = 0.0;                             ///< Since the first frame [s].
-  std::vector<Eigen::Vector3d> positions;        ///< Origins of the segments [m].
+  double time = 0.0;                       ///< Since the first frame [s], by its index and "time".
+  std::vector<Eigen::Vector3d> positions;  ///< Origins of the segments [m].
   std::vector<Eigen::Quaterniond> orientations;  ///< world_from_segment, in the file's world.
   std::vector<Eigen::Quaterniond> sensor_orientations;  ///< One per sensor, if the file has them.
 };
@@ -38,6 +38,7 @@ struct Mvnx {
   double rate_hz = 0.0;
   std::vector<MvnxSegment> segments;
   std::vector<std::string> sensors;
+  bool fingers = false;           ///< The file also has finger tracking, which is not read.
   std::vector<MvnxFrame> frames;  ///< Calibration poses (types other than "normal") are left out.
 };
 
@@ -45,7 +46,8 @@ struct Mvnx {
 inline constexpr std::size_t kMaxMvnxBytes = 512u << 20;
 
 /// Parses a file.  Refuses entity declarations, elements nested deeper than 32, frames whose
-/// numbers do not match the segments, and text where a number should be.  Skips unknown elements.
+/// numbers do not match the segments, and text where a number should be.  Elements count by their
+/// path, so those of finger tracking and unknown ones are skipped.
 [[nodiscard]] Result<Mvnx> parse_mvnx(std::string_view xml, std::string_view origin);
 
 /// Computes joints from points on segments (the table is in mvnx_joints.cpp); the segments'

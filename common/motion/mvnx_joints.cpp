@@ -126,7 +126,10 @@ Result<Motion> motion_from_mvnx(const Mvnx& mvnx) {
     return fail(ErrorCode::Unsupported, "MVNX segments", "there is no Pelvis among them");
   Motion motion{mvnx.rate_hz, {}};
   motion.frames.reserve(mvnx.frames.size());
-  for (const MvnxFrame& frame : mvnx.frames) motion.frames.push_back(skeleton_of(frame, sources));
+  for (const MvnxFrame& frame : mvnx.frames) {
+    motion.frames.push_back(skeleton_of(frame, sources));
+    motion.times.push_back(frame.time);
+  }
   return motion;
 }
 

@@ -67,7 +67,7 @@ Captured from_amc(const MotionFile& file, const std::string& text) {
 Captured from_c3d(const MotionFile& file, const std::string& bytes) {
   const auto c3d = motion::parse_c3d(bytes, file.path.string());
   if (!c3d) return pass(c3d);
-  auto found = motion::motion_from_c3d(*c3d);
+  auto found = motion::motion_from_markers(*c3d);
   if (!found) return fail(found.error().code, file.path.string(), to_string(found.error()));
   std::vector<motion::Motion> people;
   for (auto& subject : found->subjects) people.push_back(std::move(subject.motion));

@@ -24,7 +24,7 @@ void read_c3d(std::string_view bytes) {
   for (const auto& frame : c3d->frames) {
     if (frame.size() != c3d->labels.size()) __builtin_trap();
   }
-  const auto motion = chorus::motion::motion_from_c3d(*c3d);
+  const auto motion = chorus::motion::motion_from_markers(*c3d);
   if (!motion) return;
   for (const auto& subject : motion->subjects) check(subject.motion);
 }

@@ -203,7 +203,7 @@ TEST(C3dExport, OurOwnReaderGivesTheSameJoints) {
   const Take take = two_frames();
   const auto read = motion::parse_c3d(c3d_of(take).value(), "two.c3d");
   ASSERT_THAT(read, IsOk());
-  const auto found = motion::motion_from_c3d(*read);
+  const auto found = motion::motion_from_markers(*read);
   ASSERT_THAT(found, IsOk());
   ASSERT_EQ(found->subjects.size(), 1u);
   EXPECT_TRUE(found->unused_labels.empty());

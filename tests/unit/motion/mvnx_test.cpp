@@ -61,10 +61,32 @@ TEST(Mvnx, ReadsSegmentsAndNormalFramesOnly) {
   ASSERT_EQ(mvnx->segments.size(), 3u);
   EXPECT_EQ(mvnx->segments[0].points[0].in_segment, Eigen::Vector3d(0, 0, 0.1));
   ASSERT_EQ(mvnx->frames.size(), 2u);
-  EXPECT_NEAR(mvnx->frames[1].time, 0.017, 1e-12);
+  EXPECT_NEAR(mvnx->frames[1].time, 1.0 / 60.0, 1e-12) << "by its index, which is not cut to ms";
   EXPECT_NEAR(mvnx->frames[0].orientations[1].w(), std::sqrt(0.5), 1e-7) << "w first";
   ASSERT_EQ(mvnx->frames[0].sensor_orientations.size(), 1u);
   EXPECT_EQ(mvnx->frames[0].sensor_orientations[0].x(), 1.0);
+}
+
+TEST(Mvnx, FingersAreReadByTheirPathAndLeftOut) {
+  const std::string text = mvnx_with(
+      "  <sensors>",
+      "  <fingerTrackingSegmentsLeft><segment label=\"LeftCarpus\"><points><point label=\"x\">"
+      "<pos_b>9 9 9</pos_b></point></points></segment></fingerTrackingSegmentsLeft>\n  <sensors>");
+  const auto mvnx = parse_mvnx(text, "gloves.mvnx");
+  ASSERT_THAT(mvnx, IsOk());
+  EXPECT_EQ(mvnx->segments.size(), 3u);
+  EXPECT_TRUE(mvnx->fingers);
+}
+
+TEST(Mvnx, LostFramesLeaveAGapInTime) {
+  const auto mvnx =
+      parse_mvnx(mvnx_with("time=\"17\" index=\"1\"", "time=\"200\" index=\"12\""), "a");
+  ASSERT_THAT(mvnx, IsOk());
+  EXPECT_NEAR(mvnx->frames[1].time, 0.2, 1e-12);
+  EXPECT_EQ(motion_from_mvnx(*mvnx)->times, (std::vector<double>{0.0, mvnx->frames[1].time}));
+  const auto odd =
+      parse_mvnx(mvnx_with("time=\"17\" index=\"1\"", "time=\"200\" index=\"1\""), "b");
+  EXPECT_NEAR(odd->frames[1].time, 0.2, 1e-12) << "where they disagree, the time counts";
 }
 
 TEST(Mvnx, AheadLeftUpBecomesOurWorld) {
