@@ -33,6 +33,21 @@ bool says_world_space(std::string_view json) {
 
 }  // namespace
 
+namespace {
+
+/// The standard deviation of an imported sensor's capture times [s] by its notes; kUnknownClock for
+/// what was not imported.
+double imported_clock_sigma(const std::map<std::string, std::string>& notes) {
+  constexpr double kOwnClock = 0.1;  // of a host whose clock somebody has set
+  if (!notes.contains("set_origin")) return kUnknownClock;
+  const auto clocks = notes.find("clocks");
+  if (clocks == notes.end()) return 0.0;  // all imports had one clock before they said so
+  if (clocks->second == "unknown") return kUnknownClock;
+  return clocks->second == "own" ? kOwnClock : 0.0;
+}
+
+}  // namespace
+
 Result<Duration> read_shift(std::string_view text) {
   constexpr std::int64_t kMax = 100ll * 365 * 24 * 3600 * 1'000'000'000;  // a hundred years
   const auto json = parse_json(text).value_or(nlohmann::json());
@@ -121,8 +136,7 @@ Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
     if (source_.single) stream.recording = source_.description;
     stream.recording.sensor = sensor;
     stream.floor = stream.recording.floor;
-    // Streams that were imported together share one clock.
-    if (stream.recording.notes.contains("set_origin")) stream.clock_sigma = 0.0;
+    stream.clock_sigma = imported_clock_sigma(stream.recording.notes);
   }
   if (stream.line.newest == files_) return &stream;
   if (!begins_or_follows(stream.line)) {

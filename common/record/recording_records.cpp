@@ -61,7 +61,9 @@ Result<std::string> unpack(const ChunkHead& chunk, const ReadLimits& limits) {
     return std::string(chunk.packed);
   }
   if (chunk.compression != "zstd") {
-    return fail(ErrorCode::Unsupported, "chunk", "its compression is neither zstd nor none");
+    return fail(ErrorCode::Unsupported, "chunk",
+                "its compression, " + std::string(chunk.compression.substr(0, 16)) +
+                    ", is neither zstd nor none");
   }
   const auto stated = ZSTD_getFrameContentSize(chunk.packed.data(), chunk.packed.size());
   if (stated == ZSTD_CONTENTSIZE_ERROR ||
