@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/fnv.h"
 #include "common/base/median.h"
 #include "common/importers/datasets/keraal_text.h"
 #include "common/importers/datasets/labanotation_csv.h"
@@ -30,6 +31,7 @@ Result<ImportedSet> import_motion(const std::filesystem::path& file, const Impor
   if (!motion) return pass(motion);
   ImportedSet set;
   set.world_from_sensor.emplace(motion->recording.sensor, Eigen::Isometry3d::Identity());
+  set.spaces.emplace(motion->recording.sensor, motion->space);
   set.recordings.push_back(std::move(motion->recording));
   set.truth = std::move(motion->truth);
   return set;
@@ -40,6 +42,8 @@ struct ReaderRow {
   FileFormat format;
   FileReader file = nullptr;
   SetReader set = nullptr;
+  /// Metres in its unit, for formats whose reader applies options.metres_per_unit itself.
+  std::optional<double> metres = {};
 };
 
 constexpr std::array<ReaderRow, kFormats.size()> kReaders{{
@@ -49,11 +53,12 @@ constexpr std::array<ReaderRow, kFormats.size()> kReaders{{
     {FileFormat::Keraal, &read_keraal_text},
     {FileFormat::Pose2Sim, nullptr, &import_cameras},
     {FileFormat::C3d, nullptr, &import_motion<MotionFormat::C3d>},
+    {FileFormat::Trc, nullptr, &import_motion<MotionFormat::Trc>},
     {FileFormat::Bvh, nullptr, &import_motion<MotionFormat::Bvh>},
     {FileFormat::Mvnx, nullptr, &import_motion<MotionFormat::Mvnx>},
-    {FileFormat::Csv, &read_joint_csv},
+    {FileFormat::Csv, &read_joint_csv, nullptr, 1.0},
     {FileFormat::Ndjson, &read_frame_lines},
-    {FileFormat::AzureKinect, &read_azure_kinect_csv},
+    {FileFormat::AzureKinect, &read_azure_kinect_csv, nullptr, 0.001},
 }};
 
 const ReaderRow& reader_of(FileFormat format) {
@@ -99,7 +104,7 @@ bool is_empty(const std::filesystem::path& input, const Error& why) {
 
 Result<ImportedSet> import_each(const ReadRecording& read,
                                 const std::vector<std::filesystem::path>& inputs,
-                                const ImportOptions& options) {
+                                const ImportOptions& options, double metres_per_unit) {
   ImportedSet set;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     ImportOptions own = options;
@@ -110,6 +115,11 @@ Result<ImportedSet> import_each(const ReadRecording& read,
       continue;
     }
     if (!recording) return pass(recording);
+    FileSpace space{metres_per_unit};
+    if (own.up) space.ours_from_file = ours_from_up(*own.up);
+    drop_nowhere(*recording);
+    convert(*recording, 1.0, space.ours_from_file);
+    set.spaces.emplace(recording->sensor, space);
     set.recordings.push_back(std::move(*recording));
   }
   if (set.recordings.empty()) return tl::unexpected<Error>(set.empty.front());
@@ -145,6 +155,16 @@ void keep_common_counter(std::vector<record::FrameRecording>& recordings) {
   }
 }
 
+Result<void> check_statures(const ImportedSet& set) {
+  for (const auto& recording : set.recordings) {
+    const auto space = set.spaces.find(recording.sensor);
+    const auto ok =
+        check_stature(recording, space == set.spaces.end() ? FileSpace{} : space->second);
+    if (!ok) return pass(ok);
+  }
+  return {};
+}
+
 Result<void> refuse_repeated_sensors(const std::vector<record::FrameRecording>& recordings) {
   std::set<SensorId> seen;
   for (const auto& recording : recordings) {
@@ -178,14 +198,35 @@ void note_set_times(std::vector<record::FrameRecording>& recordings) {
   }
 }
 
+/// Several files of these formats come from hosts of their own more often than not.
+bool has_own_clocks(FileFormat format, std::size_t files) {
+  return files > 1 && (format == FileFormat::Csv || format == FileFormat::Ndjson);
+}
+
+/// Notes what is known of the clocks, and which recordings were imported together: other imports
+/// have other clocks.
+void note_clocks(std::vector<record::FrameRecording>& recordings, Clocks clocks) {
+  constexpr std::array<const char*, 3> kNames{"one", "own", "unknown"};
+  std::string all;
+  for (const auto& recording : recordings)
+    all += recording.sensor.str() + ' ' + to_iso8601(recording.frames.front().captured) + ' ' +
+           std::to_string(recording.frames.size()) + '\n';
+  for (auto& recording : recordings) {
+    recording.notes["clocks"] = kNames[static_cast<std::size_t>(clocks)];
+    recording.notes["set"] = fmt::format("{:016x}", fnv1a(all));
+  }
+}
+
 /// Finishes any imported set: refuses copies and repeated sensors, and makes the times of its files
 /// consistent.
-Result<ImportedSet> finished(Result<ImportedSet> set) {
+Result<ImportedSet> finished(Result<ImportedSet> set, Clocks clocks) {
   if (!set) return set;
   if (const auto distinct = refuse_copies(set->recordings); !distinct) return pass(distinct);
   if (const auto named = refuse_repeated_sensors(set->recordings); !named) return pass(named);
+  if (const auto sizes = check_statures(*set); !sizes) return pass(sizes);
   keep_common_counter(set->recordings);
   note_set_times(set->recordings);
+  note_clocks(set->recordings, clocks);
   return set;
 }
 
@@ -199,7 +240,8 @@ std::optional<FileFormat> format_named(std::string_view name) {
 }
 
 Result<ImportedSet> import_recordings(const std::vector<std::filesystem::path>& inputs,
-                                      const ImportOptions& options, const ReadRecording& read) {
+                                      const ImportOptions& options, const ReadRecording& read,
+                                      double metres_per_unit) {
   if (inputs.empty())
     return fail(ErrorCode::InvalidArgument, "import", "needs at least one input.");
   if (options.sensor && inputs.size() != 1)
@@ -208,7 +250,8 @@ Result<ImportedSet> import_recordings(const std::vector<std::filesystem::path>& 
     return fail(ErrorCode::InvalidArgument, "import",
                 fmt::format("takes one floor for all, or one for each of the {} inputs, not {}.",
                             inputs.size(), options.floors.size()));
-  return finished(import_each(read, inputs, options));
+  return finished(import_each(read, inputs, options, metres_per_unit),
+                  options.clocks.value_or(Clocks::One));
 }
 
 Result<ImportedSet> import_files(FileFormat format,
@@ -220,10 +263,19 @@ Result<ImportedSet> import_files(FileFormat format,
                 "takes one folder of camera views, or one file of motion, at a time.");
   if (row.set != nullptr && !options.floors.empty())
     return fail(ErrorCode::InvalidArgument, "import", "takes one floor of this format.");
-  if (row.set != nullptr) return finished(row.set(inputs.front(), options));
-  auto set = import_recordings(inputs, options,
-                               [&](const std::filesystem::path& file, const ImportOptions& own,
-                                   std::size_t) { return row.file(file, own); });
+  if (row.set != nullptr)
+    return finished(row.set(inputs.front(), options), options.clocks.value_or(Clocks::One));
+  const double metres = options.metres_per_unit.value_or(row.metres.value_or(1.0));
+  ImportOptions asked = options;
+  if (!asked.clocks && has_own_clocks(format, inputs.size())) asked.clocks = Clocks::Unknown;
+  auto set = import_recordings(
+      inputs, asked,
+      [&](const std::filesystem::path& file, const ImportOptions& own, std::size_t) {
+        auto recording = row.file(file, own);
+        if (recording && !row.metres) convert(*recording, metres, Eigen::Matrix3d::Identity());
+        return recording;
+      },
+      metres);
   const bool plain = format == FileFormat::Csv || format == FileFormat::Ndjson;
   if (set && plain && inputs.size() == 1 && !options.floor)
     set->world_from_sensor.emplace(set->recordings.front().sensor, Eigen::Isometry3d::Identity());

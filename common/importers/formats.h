@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "common/importers/camera_views.h"
+#include "common/importers/file_space.h"
 #include "common/importers/import_options.h"
 #include "common/record/frame_recording.h"
 
@@ -24,6 +25,7 @@ enum class FileFormat {
   Keraal,
   Pose2Sim,
   C3d,
+  Trc,
   Bvh,
   Mvnx,
   Csv,
@@ -37,7 +39,7 @@ struct FormatRow {
   std::string_view reads;  ///< One line for --help.
 };
 
-inline constexpr std::array<FormatRow, 11> kFormats{{
+inline constexpr std::array<FormatRow, 12> kFormats{{
     {FileFormat::Labanotation, "labanotation",
      "LabanotationSuite csv, Kinect v2 with capture times"},
     {FileFormat::Ntu, "ntu", "NTU RGB+D .skeleton, Kinect v2, 30 Hz assumed"},
@@ -45,6 +47,7 @@ inline constexpr std::array<FormatRow, 11> kFormats{{
     {FileFormat::Keraal, "keraal", "KERAAL Kinect text, Kinect v2, 30 Hz assumed"},
     {FileFormat::Pose2Sim, "pose2sim", "a folder of camera landmarks with cameras.json"},
     {FileFormat::C3d, "c3d", "C3D, points named as joints, joint centres or markers; as truth"},
+    {FileFormat::Trc, "trc", "TRC of OpenSim, Pose2Sim and others, named points; as truth"},
     {FileFormat::Bvh, "bvh", "Biovision BVH, the usual joint names; as truth"},
     {FileFormat::Mvnx, "mvnx", "Xsens MVN XML; as truth"},
     {FileFormat::Csv, "csv", "joints in columns, also those that chorus export writes"},
@@ -59,16 +62,17 @@ struct ImportedSet {
   std::vector<record::FrameRecording> recordings;
   std::map<SensorId, Eigen::Isometry3d> world_from_sensor;  ///< Published extrinsics, if any.
   std::vector<TruthFrame> truth;                            ///< Published truth, if any.
+  FileSpaces spaces = {};         ///< How the files' coordinates became ours.
   std::vector<Error> empty = {};  ///< Inputs without frames, which were left out.
 };
 
 /// Reads a set of files.  Usually each input is one sensor.  For pose2sim the only input is the
 /// folder.  For c3d, bvh and mvnx, and for a single csv or ndjson file without a floor, the only
 /// input is a file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs
-/// would be the same sensor or have the same numbers.  The notes of every recording say when the
-/// set begins and how long it lasts (set_origin, set_period_ns), so that several replays stay in
-/// step when they loop.  If files count from the start of one sensor, the time between them is
-/// kept.
+/// would be the same sensor or have the same numbers, and people of an impossible size.  The notes
+/// of every recording say when the set begins and how long it lasts (set_origin, set_period_ns), so
+/// that several replays stay in step when they loop.  If files count from the start of one sensor,
+/// the time between them is kept.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
                                                const std::vector<std::filesystem::path>& inputs,
                                                const ImportOptions& options = {});
@@ -77,9 +81,11 @@ struct ImportedSet {
 using ReadRecording = std::function<Result<record::FrameRecording>(
     const std::filesystem::path& file, const ImportOptions& options, std::size_t index)>;
 
-/// Like import_files(), but the caller's function reads each file, one sensor per file.
+/// Like import_files(), but the caller's function reads each file, one sensor per file, in metres;
+/// options.up is applied here.  `metres_per_unit` is that of the files, for what is said about
+/// them.
 [[nodiscard]] Result<ImportedSet> import_recordings(
     const std::vector<std::filesystem::path>& inputs, const ImportOptions& options,
-    const ReadRecording& read);
+    const ReadRecording& read, double metres_per_unit = 1.0);
 
 }  // namespace chorus::importers

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/importers/up_axis.h"
+#include "common/motion/joint_names.h"
 #include "common/sensor/sensor_frame.h"
 
 namespace chorus::importers {
@@ -33,6 +35,13 @@ inline constexpr double kMaxImported = 100.0;
 /// Limit of the time from the first frame of a recording to its last: a week [s].
 inline constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 
+/// What relates the capture times of the files of one import (--clocks).
+enum class Clocks {
+  One,     ///< All are times of one clock, or of clocks that are synchronised: fused as they are.
+  Own,     ///< Each file has a clock of its own that is right to about half a second.
+  Unknown  ///< The files begin at unknown times, or nothing is known.
+};
+
 /// The id of the person in formats that know only one.
 inline constexpr BodyId kOnlyBody{1};
 
@@ -43,7 +52,13 @@ struct ImportOptions {
   std::vector<FloorPlane> floors = {};
   Timestamp start = kDefaultStart;  ///< Time of the first frame, if the file has no UTC.
   bool rays = false;  ///< Turns camera landmarks into rays instead of estimating their depth.
-  double metres_per_unit = 0.01;  ///< For BVH files, which do not state it; usually cm.
+  /// Instead of the unit that the file states or its format has (--unit).  None for BVH, which does
+  /// not state it: cm, or whatever makes people of a person's size.
+  std::optional<double> metres_per_unit = {};
+  std::optional<UpAxis> up = {};    ///< The file's axis that points up (--up), instead of its own.
+  motion::JointChoice joints = {};  ///< For motion files: points of joints (--joints).
+  /// What is known of the clocks of the files of one import; none: what is usual for the format.
+  std::optional<Clocks> clocks = {};
   ImportLimits limits;
 };
 

@@ -10,40 +10,15 @@
 #include <fmt/format.h>
 
 #include "common/base/json.h"
+#include "common/base/not_seen.h"
 #include "common/importers/text_rows.h"
 
 namespace chorus::importers {
-namespace {
-
-/// The text with null for NaN and Infinity, which JSON does not have, but which Python's json
-/// writes for landmarks that were not seen.  Texts in quotes stay as they are.
-std::string without_nan(std::string_view text) {
-  constexpr std::array<std::string_view, 3> kWords{"NaN", "-Infinity", "Infinity"};
-  std::string out;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto word = std::find_if(kWords.begin(), kWords.end(), [&](std::string_view each) {
-      return !quoted && text.substr(i).starts_with(each);
-    });
-    if (word != kWords.end()) {
-      out += "null";
-      i += word->size();
-      continue;
-    }
-    if (text[i] == '"') quoted = !quoted;
-    if (quoted && text[i] == '\\' && i + 1 < text.size()) out += text[i++];
-    out += text[i++];
-  }
-  return out;
-}
-
-}  // namespace
-
 Result<nlohmann::json> read_json(const std::filesystem::path& file, std::uintmax_t max_bytes,
                                  Nan nan_in_file) {
   auto text = read_bounded(file, max_bytes);
   if (!text) return pass(text);
-  if (nan_in_file == Nan::IsNull) text = without_nan(*text);
+  if (nan_in_file == Nan::IsNull) text = null_for_nan(*text);
   auto parsed = parse_json(*text, {.bytes = max_bytes});
   if (!parsed) {
     const bool nan = text->find("NaN") != std::string::npos;

@@ -35,7 +35,7 @@ Result<Timestamp> instant_of(const Table& row, const ImportOptions& options) {
   return options.start + from_seconds(**since);
 }
 
-/// The numbers in these columns; none if all these fields are empty.
+/// The numbers in these columns; none if one of them is missing.
 template <std::size_t Count>
 Result<std::optional<std::array<double, Count>>> numbers(
     const Table& row, const std::array<std::string_view, Count>& columns, double bound) {
@@ -48,8 +48,7 @@ Result<std::optional<std::array<double, Count>>> numbers(
     values[i] = **value;
     ++given;
   }
-  if (given == 0) return std::nullopt;
-  if (given < Count) return row.wrong(columns[0], "and its companions: some are missing");
+  if (given < Count) return std::nullopt;
   return values;
 }
 
@@ -64,12 +63,12 @@ Result<Covariance> covariance_of(const Table& row) {
   return Covariance(Eigen::Matrix3d(sigma * sigma * Eigen::Matrix3d::Identity()));
 }
 
-Result<Joint> joint_of(const Table& row) {
+Result<Joint> joint_of(const Table& row, double metres_per_unit) {
   Joint joint;
-  const auto place = numbers(row, kPosition, kMaxImported);
+  const auto place = numbers(row, kPosition, kMaxImported / metres_per_unit);
   if (!place) return pass(place);
   if (!*place) return joint;
-  joint.position = {(**place)[0], (**place)[1], (**place)[2]};
+  joint.position = metres_per_unit * Eigen::Vector3d((*place)->data());
   joint.state = JointState::Tracked;
   if (const std::string_view state = row.field("state"); !state.empty()) {
     const auto* const known = std::ranges::find(kStates, state);
@@ -111,6 +110,12 @@ Result<void> check_columns(const LineReader& lines, const Table& table) {
   return {};
 }
 
+Result<void> note_unseen(std::size_t unseen, record::FrameRecording& recording) {
+  if (unseen > 0)
+    recording.notes["missing"] = fmt::format("{} joints are marked as not seen", unseen);
+  return {};
+}
+
 Result<void> read_joint_rows(LineReader& lines, const ImportOptions& options,
                              record::FrameRecording& recording) {
   auto table = Table::open(lines);
@@ -120,19 +125,21 @@ Result<void> read_joint_rows(LineReader& lines, const ImportOptions& options,
                                 ? "UTC as recorded"
                                 : "seconds of the file count from " + to_iso8601(options.start);
   Instants instants(options, recording);
+  std::size_t unseen = 0;
   while (true) {
     const auto more = table->next();
     if (!more) return pass(more);
-    if (!*more) return {};
+    if (!*more) return note_unseen(unseen, recording);
     const auto captured = instant_of(*table, options);
     if (!captured) return pass(captured);
     const auto person = table->natural("person", 1);
     if (!person) return pass(person);
     const auto id = joint_named(table->field("joint"));
     if (!id) return table->wrong("joint", no_joint(table->field("joint")));
-    const auto joint = joint_of(*table);
+    const auto joint = joint_of(*table, options.metres_per_unit.value_or(1.0));
     if (!joint) return pass(joint);
     if (auto ok = instants.reach(lines, *captured); !ok) return ok;
+    if (!joint->given()) ++unseen;
     if (!joint->given()) continue;  // A missing joint has a row too.
     const auto body = instants.body(lines, *captured, BodyId{*person});
     if (!body) return pass(body);
@@ -161,32 +168,34 @@ Result<void> read_ndjson_lines(LineReader& lines, const ImportOptions& options,
   return {};
 }
 
+constexpr double kAzureUnit = 1e-3;  // [m]
 constexpr std::string_view kAzureLayout = "azure_kinect_32";
 
 /// Reads a landmark, which the file states in millimetres along camera axes (x right, y down), as
 /// one in sensor space.
 Result<layout::Landmark> azure_landmark(const Table& row, const std::string& name,
-                                        const layout::Layout& layout) {
-  constexpr double kFarthest = 1e3 * kMaxImported;  // [mm]
+                                        const layout::Layout& layout, double metres_per_unit) {
+  const double farthest = kMaxImported / metres_per_unit;
   layout::Landmark landmark;
   const auto confidence = row.number(name + " (c)", 3.0);
   if (!confidence) return pass(confidence);
   const std::string x_name = name + " (x)";
   const std::string y_name = name + " (y)";
   const std::string z_name = name + " (z)";
-  const auto place = numbers<3>(row, {x_name, y_name, z_name}, kFarthest);
+  const auto place = numbers<3>(row, {x_name, y_name, z_name}, farthest);
   if (!place) return pass(place);
   if (!*place || !*confidence) return landmark;
   const auto [x, y, z] = **place;
-  landmark.position = Eigen::Vector3d(-x, -y, z) * 1e-3;
+  landmark.position = Eigen::Vector3d(-x, -y, z) * metres_per_unit;
   landmark.state = layout::state_of(0.5 * **confidence, layout.tracked_from, layout.inferred_from);
   return landmark;
 }
 
-Result<Skeleton<SensorSpace>> azure_body(const Table& row, const layout::Layout& layout) {
+Result<Skeleton<SensorSpace>> azure_body(const Table& row, const layout::Layout& layout,
+                                         double metres_per_unit) {
   std::vector<layout::Landmark> landmarks;
   for (const std::string_view name : layout.landmarks) {
-    const auto landmark = azure_landmark(row, std::string(name), layout);
+    const auto landmark = azure_landmark(row, std::string(name), layout, metres_per_unit);
     if (!landmark) return pass(landmark);
     landmarks.push_back(*landmark);
   }
@@ -214,7 +223,7 @@ Result<void> read_azure_rows(LineReader& lines, const ImportOptions& options,
     if (!first) first = *stamp;
     if (*stamp < *first || static_cast<double>(*stamp - *first) > 1e6 * kMaxSeconds)
       return table->wrong("timestamp", "goes back, or jumps by more than a week");
-    auto skeleton = azure_body(*table, **layout);
+    auto skeleton = azure_body(*table, **layout, options.metres_per_unit.value_or(kAzureUnit));
     if (!skeleton) return pass(skeleton);
     const auto body = instants.body(
         lines, options.start + std::chrono::microseconds(*stamp - *first), BodyId{*person});

@@ -1,5 +1,6 @@
 #include "common/importers/picture_numbers.h"
 
+#include <algorithm>
 #include <cctype>
 #include <map>
 #include <optional>
@@ -54,9 +55,24 @@ std::optional<std::size_t> numbering_run(const std::vector<const Runs*>& names) 
   return longest;
 }
 
+/// The digits of a name as numbers, from left to right.
+std::vector<std::uint64_t> values_of(const Runs& runs) {
+  std::vector<std::uint64_t> values;
+  for (const std::string& run : runs) values.push_back(number_of(run).value_or(0));
+  return values;
+}
+
+/// The members in the order of all their digits.
+std::vector<std::size_t> in_order(std::vector<std::size_t> members, const std::vector<Runs>& runs) {
+  std::stable_sort(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
+    return values_of(runs[a]) < values_of(runs[b]);
+  });
+  return members;
+}
+
 }  // namespace
 
-std::vector<std::uint64_t> picture_numbers(const std::vector<std::string>& names) {
+PictureNumbers picture_numbers(const std::vector<std::string>& names) {
   std::vector<Runs> runs;
   std::map<std::string, std::vector<std::size_t>> alike;  // by shape
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -64,14 +80,20 @@ std::vector<std::uint64_t> picture_numbers(const std::vector<std::string>& names
     runs.push_back(runs_of(names[i], shape));
     alike[shape].push_back(i);
   }
-  std::vector<std::uint64_t> numbers(names.size());
+  PictureNumbers out{std::vector<std::uint64_t>(names.size())};
+  auto& numbers = out.numbers;
   for (const auto& [shape, members] : alike) {
     std::vector<const Runs*> of_members;
     for (const std::size_t i : members) of_members.push_back(&runs[i]);
     const auto run = numbering_run(of_members);
     for (const std::size_t i : members) numbers[i] = run ? number_of(runs[i][*run]).value_or(i) : i;
+    const auto ordered = in_order(members, runs);
+    const auto goes_back = [&](std::size_t a, std::size_t b) { return numbers[a] > numbers[b]; };
+    if (std::adjacent_find(ordered.begin(), ordered.end(), goes_back) == ordered.end()) continue;
+    out.by_order = true;
+    for (std::size_t k = 0; k < ordered.size(); ++k) numbers[ordered[k]] = k;
   }
-  return numbers;
+  return out;
 }
 
 }  // namespace chorus::importers

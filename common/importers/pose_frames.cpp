@@ -9,197 +9,20 @@
 
 #include "common/importers/json_values.h"
 #include "common/importers/picture_numbers.h"
+#include "common/importers/pose_document.h"
 #include "common/importers/pose_people.h"
-#include "common/layout/tables.h"
-#include "common/sensor/limits.h"
 #include "common/sensor/pixel_ray.h"
 
 namespace chorus::importers {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
-constexpr double kMaxConfidence = 1e3;  // some networks exceed 1, which then counts as 1
-constexpr std::uint64_t kMostId = 1'000'000'000;
-// [s] after the first picture: 115 days.  A larger number is surely wrong, and could overflow a
-// Timestamp.
-constexpr double kLongest = 1e7;
 /// Standard deviation of a landmark, relative to the height of the person: about 8 px at 500 px.
 constexpr double kSigmaByHeight = 0.016;
 constexpr double kLeastSigma = 2.0;  // [px]
 // If this share of the landmarks is outside the picture, the size is wrong.
 constexpr double kOutside = 0.2;
-
-struct Count {
-  std::size_t points;
-  const layout::Layout* layout;
-};
-const std::array<Count, 6> kCounts{{{17, &layout::kCoco17},
-                                    {18, &layout::kCoco18},
-                                    {25, &layout::kBody25},
-                                    {26, &layout::kHalpe26},
-                                    {133, &layout::kCoco17},
-                                    {136, &layout::kHalpe26}}};
-
-using People = std::vector<PosePerson>;
-/// People, by the number of the picture.
-struct Pictures {
-  double rate_hz = 30.0;
-  std::map<std::uint64_t, People> people = {};
-
-  /// Malformed: `number` is too large for the number of a picture.  Conflict: another picture has
-  /// that number.
-  [[nodiscard]] Result<void> add(std::uint64_t number, People&& found, const std::string& at) {
-    if (!(static_cast<double>(number) <= kLongest * rate_hz))
-      return fail(ErrorCode::Malformed, at,
-                  fmt::format("is picture {}, which is more than {:g} s from the first.", number,
-                              kLongest));
-    if (people.try_emplace(number, std::move(found)).second) return {};
-    return fail(ErrorCode::Conflict, at,
-                fmt::format("is picture {}, and another one is that too; each picture of a camera "
-                            "needs a number of its own, and each camera a folder.",
-                            number));
-  }
-};
-
-const layout::Layout* layout_of(const PosePerson& person) {
-  const auto found = std::find_if(kCounts.begin(), kCounts.end(), [&](const Count& each) {
-    return each.points == person.points.size();
-  });
-  return found == kCounts.end() ? nullptr : found->layout;
-}
-
-Result<PosePerson> checked(PosePerson person, const std::string& at) {
-  if (layout_of(person) != nullptr) return person;
-  return fail(ErrorCode::Unsupported, at,
-              fmt::format("has {} landmarks; known are 17 (COCO), 18 (COCO of OpenPose), 25 "
-                          "(BODY_25), 26 (HALPE), 133 and 136 (their whole bodies).",
-                          person.points.size()));
-}
-
-double confidence_of(double value) { return std::clamp(value, 0.0, 1.0); }
-
-/// A tracker's id plus 1.  The file has a number, or an array with one; none if it is negative or
-/// absurdly large.
-std::optional<std::uint64_t> id_in(const json& person) {
-  for (const char* key : {"person_id", "track_id"}) {
-    const auto found = person.find(key);
-    if (found == person.end()) continue;
-    const json& value = found->is_array() && found->size() == 1 ? (*found)[0] : *found;
-    if (value.is_number_unsigned() && value.get<std::uint64_t>() < kMostId)
-      return value.get<std::uint64_t>() + 1;  // ours begin at 1
-  }
-  return std::nullopt;
-}
-
-/// A landmark; not seen where a number is NaN.
-PosePoint point_of(double u, double v, double confidence) {
-  if (std::isnan(u + v + confidence)) return {{0.0, 0.0}, 0.0};
-  return {{u, v}, confidence_of(confidence)};
-}
-
-Result<PosePerson> read_flat(const json& numbers, const std::string& at) {
-  constexpr std::size_t kEach = 3;
-  if (!numbers.is_array() || numbers.size() % kEach != 0)
-    return fail(ErrorCode::Malformed, at, "must be u, v and confidence of each landmark.");
-  std::vector<double> values(numbers.size());
-  if (const auto read = read_numbers_or_null(numbers, values, kMaxPixel, at); !read)
-    return pass(read);
-  PosePerson person;
-  for (std::size_t i = 0; i < values.size(); i += kEach)
-    person.points.push_back(point_of(values[i], values[i + 1], values[i + 2]));
-  return checked(std::move(person), at);
-}
-
-Result<PosePerson> read_pairs(const json& instance, const std::string& at) {
-  const auto points = member(instance, "keypoints", at);
-  if (!points) return pass(points);
-  const auto scores = member(instance, "keypoint_scores", at);
-  if (!scores) return pass(scores);
-  if (!(*points)->is_array())
-    return fail(ErrorCode::Malformed, at, "\"keypoints\" must be an array.");
-  std::vector<double> confidence((*points)->size());
-  if (const auto read =
-          read_numbers_or_null(**scores, confidence, kMaxConfidence, at + ".keypoint_scores");
-      !read)
-    return pass(read);
-  PosePerson person;
-  for (std::size_t i = 0; i < confidence.size(); ++i) {
-    std::array<double, 2> pixel{};
-    const auto read = read_numbers_or_null((**points)[i], pixel, kMaxPixel, at + ".keypoints");
-    if (!read) return pass(read);
-    person.points.push_back(point_of(pixel[0], pixel[1], confidence[i]));
-  }
-  return checked(std::move(person), at);
-}
-
-Result<PosePerson> read_person(const json& person, const std::string& at) {
-  if (!person.is_object()) return fail(ErrorCode::Malformed, at, "must be an object.");
-  const auto flat = person.find("pose_keypoints_2d");
-  auto read =
-      flat != person.end() ? read_flat(*flat, at + ".pose_keypoints_2d") : read_pairs(person, at);
-  if (read) read->id = id_in(person);
-  return read;
-}
-
-Result<People> read_people(const json& list, const std::string& at) {
-  if (!list.is_array()) return fail(ErrorCode::Malformed, at, "must be an array of people.");
-  People people;
-  for (std::size_t i = 0; i < list.size() && people.size() < kMaxBodies; ++i) {
-    auto person = read_person(list[i], fmt::format("{}[{}]", at, i));
-    if (!person) return pass(person);
-    people.push_back(std::move(*person));
-  }
-  return people;
-}
-
-/// The list of pictures in a video's file; none if the document describes a single picture.
-const json* pictures_in(const json& document) {
-  const json* list = &document;
-  if (document.is_object()) {
-    const auto found = document.find("instance_info");
-    if (found == document.end()) return nullptr;
-    list = &*found;
-  }
-  const bool numbered = list->is_array() && !list->empty() && list->front().is_object() &&
-                        list->front().contains("instances");
-  return numbered ? list : nullptr;
-}
-
-Result<void> read_video(const json& list, const std::string& at, Pictures& out) {
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string here = fmt::format("{}: [{}]", at, i);
-    const auto instances = member(list[i], "instances", here);
-    if (!instances) return pass(instances);
-    auto people = read_people(**instances, here + ".instances");
-    if (!people) return pass(people);
-    const auto number = list[i].find("frame_id");
-    const bool numbered = number != list[i].end() && number->is_number_unsigned();
-    const auto added =
-        out.add(numbered ? number->get<std::uint64_t>() : i, std::move(*people), here);
-    if (!added) return pass(added);
-  }
-  return {};
-}
-
-/// `number` is that of the picture, for a file that describes a single one.
-Result<void> read_document(const fs::path& file, std::uint64_t number, const ImportLimits& limits,
-                           Pictures& out) {
-  const std::string at = file.string();
-  const auto document = read_json(file, limits.max_json_bytes, Nan::IsNull);
-  if (!document) return pass(document);
-  if (const json* pictures = pictures_in(*document)) return read_video(*pictures, at, out);
-  const json* people = &*document;
-  if (document->is_object()) {
-    const auto listed = member(*document, "people", at);
-    if (!listed) return pass(listed);
-    people = *listed;
-  }
-  auto read = read_people(*people, at + ": people");
-  if (!read) return pass(read);
-  return out.add(number, std::move(*read), at);
-}
 
 struct Damage {
   std::size_t files = 0;
@@ -211,7 +34,7 @@ Result<Pictures> read_pictures(const fs::path& input, double rate_hz, const Impo
   Pictures pictures{rate_hz};
   std::error_code failed;
   if (!fs::is_directory(input, failed)) {
-    if (auto read = read_document(input, 0, limits, pictures); !read) return pass(read);
+    if (auto read = read_pose_document(input, 0, limits, pictures); !read) return pass(read);
     return pictures;
   }
   std::vector<fs::path> files;
@@ -224,8 +47,9 @@ Result<Pictures> read_pictures(const fs::path& input, double rate_hz, const Impo
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.stem().string());
   const auto numbers = picture_numbers(names);
+  pictures.by_order = numbers.by_order;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto read = read_document(files[i], numbers[i], limits, pictures);
+    const auto read = read_pose_document(files[i], numbers.numbers[i], limits, pictures);
     if (read) continue;
     if (read.error().code == ErrorCode::Conflict) return pass(read);
     if (damage.files++ == 0) damage.first = to_string(read.error());
@@ -330,6 +154,24 @@ record::FrameRecording header_of(const fs::path& input, const PoseCamera& camera
   return recording;
 }
 
+void note_people(const Pictures& pictures, record::FrameRecording& out) {
+  if (pictures.by_order)
+    out.notes["damage.3"] =
+        "the last numbers in the names go back, as those of a time of day do, and are no numbers "
+        "of "
+        "pictures: the pictures are taken in the order of the names, at --rate, without gaps";
+  if (pictures.unreadable > 0)
+    out.notes["damage.2"] =
+        fmt::format("{} people could not be read and were left out; the first: {}",
+                    pictures.unreadable, pictures.first_unreadable);
+  if (pictures.without_landmarks > 0)
+    out.notes["absent"] =
+        fmt::format("{} people without landmarks were skipped", pictures.without_landmarks);
+  if (pictures.at_origin > 0)
+    out.notes["unseen"] =
+        fmt::format("{} landmarks at the pixel 0, 0 are taken as not seen", pictures.at_origin);
+}
+
 void add_frames(const Pictures& pictures, const PoseCamera& camera, const ImportOptions& options,
                 record::FrameRecording& out) {
   PeopleNumbers numbers;
@@ -361,6 +203,7 @@ Result<record::FrameRecording> read_pose_frames(const fs::path& input, const Pos
   if (damage.files > 0)
     recording.notes["damage.1"] =
         fmt::format("{} files have no frame; the first: {}", damage.files, damage.first);
+  note_people(*pictures, recording);
   add_frames(*pictures, camera, options, recording);
   return recording;
 }

@@ -1,12 +1,6 @@
-// Landmarks in pictures, as OpenPose, RTMPose (RTMLib, Pose2Sim) and MMPose write them: a folder
-// per camera with one JSON file per picture, or one file per video.  They become rays.
-//
-//   OpenPose  {"people": [{"person_id": [-1], "pose_keypoints_2d": [u, v, confidence, ...]}]}
-//   MMPose    [{"keypoints": [[u, v], ...], "keypoint_scores": [...]}] for a picture;
-//             [{"frame_id": 0, "instances": [...]}] or {"instance_info": [...]} for a video
-//
-// The layout follows from the number of landmarks of a person: BODY_25, COCO 17 and 18, HALPE 26,
-// and the bodies of COCO wholebody (133) and HALPE (136).
+// Landmarks in pictures, as OpenPose, RTMPose (RTMLib, Pose2Sim), MMPose, AlphaPose and COCO's
+// tools write them (pose_document.h): a folder per camera with one JSON file per picture, or one
+// file per video.  They become rays.
 #pragma once
 
 #include <filesystem>

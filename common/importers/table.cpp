@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/not_seen.h"
 #include "common/base/parse.h"
 #include "common/importers/text_rows.h"
 
@@ -29,14 +30,11 @@ std::string_view unquoted(std::string_view field) {
   return field.substr(1, field.size() - 2);
 }
 
-/// As numpy, pandas and R write what is not there.
-bool is_nan(std::string_view text) { return text == "nan" || text == "NaN" || text == "NA"; }
-
 /// The unit of a column's numbers, which its name ends in, and the mistake that takes them beyond
 /// their bound.
 std::string_view unit_of(std::string_view column) {
   if (column.ends_with("_mm")) return " mm";
-  if (column.ends_with("_m")) return " m; is it in millimetres?";
+  if (column.ends_with("_m")) return " m; is it in millimetres? Then say --unit mm";
   if (column.ends_with("_s")) return " s; is it in milliseconds?";
   return "";
 }
@@ -87,7 +85,7 @@ std::string_view Table::field(std::string_view column) const {
 
 Result<std::optional<double>> Table::number(std::string_view column, double bound) const {
   const std::string_view text = field(column);
-  if (text.empty() || is_nan(text)) return std::nullopt;
+  if (is_not_seen(text)) return std::nullopt;
   const auto value = parse_finite(text);
   if (!value && text.find(',') != std::string_view::npos)
     return wrong(column, "is not a number; decimals need a point instead of the comma");

@@ -82,7 +82,7 @@ TEST(MotionFile, OtherSubjectsAreNumberedInTheOrderOfTheFile) {
   }
   const auto c3d = motion::parse_c3d(motion::C3dBuilder(spec).bytes(), "two.c3d");
   ASSERT_THAT(c3d, IsOk());
-  const auto found = motion::motion_from_c3d(*c3d);
+  const auto found = motion::motion_from_markers(*c3d);
   ASSERT_THAT(found, IsOk());
   ASSERT_EQ(found->subjects.size(), 2u);
   EXPECT_EQ(found->subjects[0].name, "Zoe");

@@ -135,6 +135,59 @@ TEST_F(PoseFrames, ADamagedOrEmptyFileCostsItsPictureOnly) {
   EXPECT_THAT(read_->notes.at("damage.1"), HasSubstr("1.json"));
 }
 
+TEST_F(PoseFrames, WhoHasNoLandmarksIsSkippedAndWhoCannotBeReadIsLeftOut) {
+  json broken = flat_person(25, 100);
+  broken["pose_keypoints_2d"].erase(0);
+  write("0.json", frame_text({json::object(), flat_person(25, 300), broken}));
+  const auto read_ = read();
+  ASSERT_THAT(read_, IsOk());
+  EXPECT_EQ(read_->frames.at(0).bodies.size(), 1u);
+  EXPECT_THAT(read_->notes.at("absent"), HasSubstr("1 people"));
+  EXPECT_THAT(read_->notes.at("damage.2"), HasSubstr("people[2]"));
+}
+
+TEST_F(PoseFrames, ThePixelZeroIsALandmarkThatWasNotSeen) {
+  json person = flat_person(25, 300);
+  const auto head = read_pose_frames(folder_.write("a.json", frame_text({person})), kCamera);
+  for (int i = 0; i < 2; ++i) person["pose_keypoints_2d"][4 * 3 + i] = 0;  // the right wrist
+  const auto lost = read_pose_frames(folder_.write("b.json", frame_text({person})), kCamera);
+  ASSERT_THAT(head, IsOk());
+  ASSERT_THAT(lost, IsOk());
+  const auto wrist = [](const auto& read) {
+    return read->frames[0].bodies.at(0).skeleton[JointId::WristRight].given();
+  };
+  EXPECT_TRUE(wrist(head));
+  EXPECT_FALSE(wrist(lost));
+  EXPECT_THAT(lost->notes.at("unseen"), HasSubstr("1 landmarks"));
+}
+
+json coco_person(const json& image, double u) {
+  return {{"image_id", image},
+          {"category_id", 1},
+          {"keypoints", flat_person(17, u)["pose_keypoints_2d"]},
+          {"score", 2.5}};
+}
+
+TEST_F(PoseFrames, ResultsOfAlphaPoseAndCocoNameTheirPictures) {
+  const json named = {coco_person("2.jpg", 300), coco_person("10.jpg", 310),
+                      coco_person("2.jpg", 50)};
+  const json numbered = {
+      {"images", {{{"id", 77}, {"file_name", "2.jpg"}}, {{"id", 78}, {"file_name", "10.jpg"}}}},
+      {"annotations", {coco_person(77, 300), coco_person(78, 310), coco_person(77, 50)}}};
+  const json by_picture = {
+      {"2.jpg", {{"people", {flat_person(17, 300), flat_person(17, 50)}}}},
+      {"10.jpg", {{"bodies", {{{"joints", flat_person(17, 310)["pose_keypoints_2d"]}}}}}}};
+  for (const json& document : {named, numbered, by_picture}) {
+    const auto read_ = read_pose_frames(folder_.write("r.json", document.dump()), kCamera);
+    ASSERT_THAT(read_, IsOk()) << document.dump(2);
+    ASSERT_EQ(read_->frames.size(), 2u);
+    EXPECT_EQ(read_->frames[0].bodies.size(), 2u);
+    EXPECT_EQ(read_->frames[1].captured - read_->frames[0].captured,
+              std::chrono::milliseconds(320));
+    EXPECT_EQ(read_->notes.at("layout"), "coco_17");
+  }
+}
+
 TEST_F(PoseFrames, NanIsALandmarkThatWasNotSeen) {
   const auto without_left_wrist = [](std::string text) {  // landmark 9, at 100 + 5 * 9
     return text.replace(text.find("145.0"), 5, "NaN");
@@ -239,24 +292,36 @@ TEST(PeopleNumbers, ForgetWhoWasThereWhileNobodyIs) {
 }
 
 TEST(PictureNumbers, AreTheDigitsThatTellTheNamesApart) {
-  EXPECT_THAT(picture_numbers({"cam1_000_keypoints", "cam1_012_keypoints"}), ElementsAre(0, 12));
-  EXPECT_THAT(picture_numbers({"cam_000012_pose2d", "cam_000013_pose2d"}), ElementsAre(12, 13));
-  EXPECT_THAT(picture_numbers({"7_of_2", "8_of_1", "9_of_2"}), ElementsAre(7, 8, 9));
-  EXPECT_THAT(picture_numbers({"1700000000_8", "1700000001_9"}), ElementsAre(8, 9));
-  EXPECT_THAT(picture_numbers({"9", "10"}), ElementsAre(9, 10));
+  EXPECT_THAT(picture_numbers({"cam1_000_keypoints", "cam1_012_keypoints"}).numbers,
+              ElementsAre(0, 12));
+  EXPECT_THAT(picture_numbers({"cam_000012_pose2d", "cam_000013_pose2d"}).numbers,
+              ElementsAre(12, 13));
+  EXPECT_THAT(picture_numbers({"7_of_2", "8_of_1", "9_of_2"}).numbers, ElementsAre(7, 8, 9));
+  EXPECT_THAT(picture_numbers({"1700000000_8", "1700000001_9"}).numbers, ElementsAre(8, 9));
+  EXPECT_THAT(picture_numbers({"9", "10"}).numbers, ElementsAre(9, 10));
+}
+
+TEST(PictureNumbers, OfATimeOfDayAreThePlacesInItsOrder) {
+  const auto times = picture_numbers({"12-30-00-960", "12-30-00-990", "12-30-01-023"});
+  EXPECT_TRUE(times.by_order);
+  EXPECT_THAT(times.numbers, ElementsAre(0, 1, 2));
+  EXPECT_FALSE(picture_numbers({"cam_10", "cam_9"}).by_order)
+      << "numbers without zeros before them";
 }
 
 TEST(PictureNumbers, OfOneNameAreItsLongestRun) {
-  EXPECT_THAT(picture_numbers({"cam_000012_pose2d"}), ElementsAre(12));
-  EXPECT_THAT(picture_numbers({"a1b2"}), ElementsAre(2));
-  EXPECT_THAT(picture_numbers({"0", "also_5_x"}), ElementsAre(0, 5)) << "names unlike each other";
+  EXPECT_THAT(picture_numbers({"cam_000012_pose2d"}).numbers, ElementsAre(12));
+  EXPECT_THAT(picture_numbers({"a1b2"}).numbers, ElementsAre(2));
+  EXPECT_THAT(picture_numbers({"0", "also_5_x"}).numbers, ElementsAre(0, 5))
+      << "names unlike each other";
 }
 
 TEST(PictureNumbers, AreThePlaceInTheListWithoutDigits) {
-  EXPECT_THAT(picture_numbers({"a", "b"}), ElementsAre(0, 1));
-  EXPECT_THAT(picture_numbers({"20261123101530123456", "20261123101530123457"}), ElementsAre(0, 1));
-  EXPECT_THAT(picture_numbers({"", "5"}), ElementsAre(0, 5));
-  EXPECT_THAT(picture_numbers({}), ::testing::IsEmpty());
+  EXPECT_THAT(picture_numbers({"a", "b"}).numbers, ElementsAre(0, 1));
+  EXPECT_THAT(picture_numbers({"20261123101530123456", "20261123101530123457"}).numbers,
+              ElementsAre(0, 1));
+  EXPECT_THAT(picture_numbers({"", "5"}).numbers, ElementsAre(0, 5));
+  EXPECT_THAT(picture_numbers({}).numbers, ::testing::IsEmpty());
 }
 
 }  // namespace
