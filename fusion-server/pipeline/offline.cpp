@@ -47,8 +47,7 @@ Result<void> check_rate(const OfflineConfig& config) {
 }
 
 tl::unexpected<Error> no_frame() {
-  return fail(ErrorCode::InvalidArgument, "recordings",
-              "hold no frames of a sensor; were they recorded with --fused alone?");
+  return fail(ErrorCode::InvalidArgument, "recordings", "hold no frames of a sensor");
 }
 
 Result<void> check(const std::vector<registration::WalkTrack>& sensors,

@@ -156,9 +156,9 @@ std::string reason_for(const SensorId& sensor, const Standing& standing) {
                              ? fmt::format(", who place it {:.2f} m apart", standing.widest)
                              : std::string();
   return fmt::format(
-      "sensor {} contradicts {}{}: it followed somebody else, is mirrored, or its clock is wrong; "
+      "sensor {}{}{}{}: it followed somebody else, is mirrored, or its clock is wrong; "
       "walk alone",
-      sensor.str(), fmt::join(accusers, ", "), by);
+      sensor.str(), kContradicts, fmt::join(accusers, ", "), by);
 }
 
 /// A sensor that reports the same numbers as another, that is, a copy; none if there is none.

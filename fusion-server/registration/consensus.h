@@ -10,6 +10,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fusion-server/flow/pairwise_registration.h"
@@ -21,6 +22,9 @@ struct Contradiction {
   SensorId target;
   SensorId source;
 };
+
+/// What the reason for an outcast says, which its verdict then has.
+inline constexpr std::string_view kContradicts = " contradicts ";
 
 struct Outcast {
   SensorId sensor;

@@ -10,15 +10,12 @@
 #include "common/geometry/error_radius.h"
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
-#include "fusion-server/registration/common_scale.h"
 #include "fusion-server/registration/consensus.h"
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/impossible_place.h"
 #include "fusion-server/registration/known_places.h"
-#include "fusion-server/registration/latency.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
-#include "fusion-server/registration/time_offset.h"
 #include "fusion-server/registration/transform_graph.h"
 
 namespace chorus::registration {
@@ -329,6 +326,13 @@ void judge_accuracy(Work& work) {
   }
 }
 
+/// What few sensors agree on is no good registration of all.
+void judge_majority(Work& work) {
+  const std::size_t placed = work.result.sensors.size();
+  if (2 * placed <= work.walkers.size())
+    work.doubt(fmt::format("only {} of {} sensors have a place", placed, work.walkers.size()));
+}
+
 /// Sets the verdict of each sensor by the doubts about it, and that of all placed ones together.
 void pass_sentence(Work& work) {
   work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
@@ -360,6 +364,7 @@ void judge(Work& work) {
     work.result.verdict = Verdict::Refused;
     return;
   }
+  if (sensors > 1) judge_majority(work);
   if (sensors > 1) judge_accuracy(work);
   pass_sentence(work);
 }
@@ -379,22 +384,6 @@ Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTra
   refuse_wide(work);
   judge(work);
   return work.result;
-}
-
-Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
-                   const RegistrationConfig& wanted) {
-  const RegistrationConfig config = suited_to(walk, wanted);
-  const WalkClocks clocks = clocks_of(walk, config);
-  const PairEstimator estimate =
-      unless_open([&](const Walker& target,
-                      const Walker& source) { return register_walkers(target, source, config); },
-                  clocks);
-  std::vector<WalkTrack> in_step = walk;
-  bring_in_step(in_step, clocks);
-  Registration found = without_latencies(
-      in_step, [&] { return solve_with(estimate, in_step, now, config); }, config);
-  found.clocks = offsets_of_placed(clocks, found);
-  return with_scale(std::move(found), in_step, config);
 }
 
 }  // namespace chorus::registration
