@@ -251,16 +251,27 @@ TEST(PushedFrame, ABodyInMillimetresIsRefusedAndAWrongPointIsNot) {
   EXPECT_THAT(read_frame(frame_of("points", landmarks({}))), IsOk()) << "nothing was seen";
 }
 
-TEST(PushedFrame, JointsExactlyAtTheSensorAreNotSeen) {
+TEST(PushedFrame, PointsExactlyAtTheSensorAreNotSeenAndCounted) {
   const Json lost{0, 0, 0};
-  expect_refused(frame_of("points", landmarks({{5, {0, 0, 2}}, {9, lost}, {10, lost}})),
-                 "bodies[0].points", "send null for joints that are not seen");
-  EXPECT_THAT(read_frame(frame_of("points", landmarks({{5, {0, 0, 2}}, {9, lost}}))), IsOk())
-      << "one may be a tracker's own origin";
-  const Json unseen{0, 0, 0, 0.0};
-  EXPECT_THAT(
-      read_frame(frame_of("points", landmarks({{5, {0, 0, 2}}, {9, unseen}, {10, unseen}}))),
-      IsOk());
+  const auto read =
+      read_frame(frame_of("points", landmarks({{5, {0, 0, 2}}, {9, lost}, {10, {0, 0, 0, 0.9}}})));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->zeros, 2u);
+  EXPECT_TRUE(joint_of(read, JointId::ShoulderLeft).seen());
+  EXPECT_FALSE(joint_of(read, JointId::WristLeft).given());
+}
+
+TEST(PushedFrame, NanInEverySpellingIsNotSeen) {
+  const Hello hello = hello_of(kHelloMessage);
+  for (const char* word : {"NaN", "-nan(ind)", "nan", "Infinity", "None"}) {
+    std::string text = frame_of("points", landmarks({{5, {0, 0, 2}}, {9, {1, 7777, 3}}})).dump();
+    text.replace(text.find("7777"), 4, word);
+    const auto read = read_push_message(text, &hello);
+    ASSERT_TRUE(read) << word << ' ' << to_string(read.error());
+    const auto& body = std::get<PushedFrame>(*read).bodies.at(0);
+    EXPECT_FALSE(body.skeleton[JointId::WristLeft].given());
+    EXPECT_TRUE(body.skeleton[JointId::ShoulderLeft].seen());
+  }
 }
 
 TEST(PushedFrame, NormalisedPixelsAreRefusedAndThoseOutsideThePictureNoted) {
@@ -313,10 +324,6 @@ TEST(PushMessage, GarbageIsRefusedWithAReason) {
     EXPECT_NE(read.error().message, "") << garbage;
   }
   EXPECT_THAT(read_push_message(std::string(100, '['), &hello), FailsWith(ErrorCode::TooLarge));
-  const auto nan =
-      read_push_message(R"({"type":"frame","bodies":[{"points":[[NaN,1,2]]}]})", &hello);
-  ASSERT_FALSE(nan);
-  EXPECT_THAT(nan.error().message, HasSubstr("send null for what is not seen"));
 }
 
 }  // namespace

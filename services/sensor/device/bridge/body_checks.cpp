@@ -29,21 +29,12 @@ Result<void> check_distance(const Skeleton<SensorSpace>& skeleton, const At& at)
                                nearest));
 }
 
-Result<void> check_origin(const Skeleton<SensorSpace>& skeleton, const At& at) {
-  const auto count = std::ranges::count_if(skeleton.joints, [](const Joint& joint) {
-    return joint.seen() && joint.position.isZero(0.0);
-  });
-  if (count < 2) return {};
-  return wrong(at, fmt::format("have {} joints exactly at the sensor, [0, 0, 0]: send null for "
-                               "joints that are not seen",
-                               count));
-}
-
 std::vector<Eigen::Vector2d> pixels_given(const nlohmann::json& pixels) {
   std::vector<Eigen::Vector2d> places;
   for (const auto& one : pixels) {
     if (one.is_null()) continue;
     const auto& at = one.is_object() ? one.at("at") : one;
+    if (!at.is_array() || at.size() < 2 || !at[0].is_number() || !at[1].is_number()) continue;
     places.emplace_back(at.at(0).get<double>(), at.at(1).get<double>());
   }
   return places;

@@ -17,10 +17,6 @@ namespace chorus::bridge {
 /// measure some wrongly.
 [[nodiscard]] Result<void> check_distance(const Skeleton<SensorSpace>& skeleton, const At& at);
 
-/// Refuses a body of which several joints are at the sensor's origin: SDKs send that for joints
-/// that they do not see.  A single joint there may be the origin of the tracker's own coordinates.
-[[nodiscard]] Result<void> check_origin(const Skeleton<SensorSpace>& skeleton, const At& at);
-
 /// The places of the landmarks in `pixels`, which has been read without an error [px].
 [[nodiscard]] std::vector<Eigen::Vector2d> pixels_given(const nlohmann::json& pixels);
 

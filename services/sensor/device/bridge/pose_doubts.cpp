@@ -50,7 +50,7 @@ std::optional<bool> all_of(const PushedFrame& frame, const Eigen::Vector3d& up, 
   return all;
 }
 
-std::array<Error, 3> doubts() {
+std::array<Error, 4> doubts() {
   return {Error{ErrorCode::InvalidArgument, "bodies",
                 "everybody has been behind the sensor for 2 s: does z point back? The hello's "
                 "\"axes\" say where x, y and z point"},
@@ -59,7 +59,10 @@ std::array<Error, 3> doubts() {
                 "\"axes\" say so: \"right down ahead\""},
           Error{ErrorCode::InvalidArgument, "bodies",
                 "all landmarks have been outside the picture for 2 s: are the intrinsics for "
-                "another picture size?"}};
+                "another picture size?"},
+          Error{ErrorCode::InvalidArgument, "bodies",
+                "for 2 s every frame has had points at exactly [0, 0, 0], which are taken as not "
+                "seen: send null for them"}};
 }
 
 }  // namespace
@@ -67,8 +70,11 @@ std::array<Error, 3> doubts() {
 void PoseDoubts::look(const PushedFrame& frame, const Hello& hello, SteadyTime now) {
   const auto& floor = frame.floor ? frame.floor : hello.floor;
   const Eigen::Vector3d up = floor ? floor->normal : Eigen::Vector3d::UnitY();
-  const std::array<std::optional<bool>, kDoubts> shown{
-      all_of(frame, up, &is_behind), all_of(frame, up, &is_upside_down), frame.outside_picture};
+  const std::optional<bool> zeros =
+      frame.bodies.empty() ? std::nullopt : std::optional(frame.zeros > 0);
+  const std::array<std::optional<bool>, kDoubts> shown{all_of(frame, up, &is_behind),
+                                                       all_of(frame, up, &is_upside_down),
+                                                       frame.outside_picture, zeros};
   for (std::size_t i = 0; i < kDoubts; ++i) {
     Watched& watched = watched_[i];
     if (shown[i] == false) watched = {};

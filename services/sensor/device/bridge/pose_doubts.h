@@ -29,7 +29,7 @@ class PoseDoubts {
     std::optional<SteadyTime> since;
     bool raised = false;
   };
-  static constexpr std::size_t kDoubts = 3;
+  static constexpr std::size_t kDoubts = 4;
 
   std::array<Watched, kDoubts> watched_;
   std::optional<Error> fresh_;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/json.h"
+#include "common/base/not_seen.h"
 #include "common/sensor/limits.h"
 #include "common/sensor/pixel_ray.h"
 #include "services/sensor/device/bridge/body_checks.h"
@@ -112,10 +113,36 @@ Result<Covariance> read_covariance(const Json& value, const Hello& hello, const 
   return wrong(at, "must be [xx, xy, xz, yy, yz, zz] in m^2 without a negative variance");
 }
 
+/// The place in an element of `points` or `pixels`.
+const Json& place_in(const Json& value) {
+  const Json* at = value.is_object() ? find(value, "at") : nullptr;
+  return at != nullptr ? *at : value;
+}
+
+/// Whether an element is null, or has null for a number, as NaN is read.
+bool is_unseen(const Json& value) {
+  const Json& place = place_in(value);
+  return place.is_null() || (place.is_array() &&
+                             std::ranges::any_of(place, [](const Json& x) { return x.is_null(); }));
+}
+
+/// Whether an element is [0, 0, 0], which many programs send for what they did not see.
+bool is_zero(const Json& value) {
+  const Json& place = place_in(value);
+  return place.is_array() && place.size() >= 3 &&
+         std::all_of(place.begin(), place.begin() + 3, [](const Json& x) { return x == 0; });
+}
+
+std::size_t zeros_in(const Json* points) {
+  if (points == nullptr) return 0;
+  return static_cast<std::size_t>(std::ranges::count_if(*points, is_zero));
+}
+
 Result<Landmark> read_point(const Json& value, const Hello& hello, const At& at) {
-  if (value.is_null()) return Landmark{};
+  if (is_unseen(value)) return Landmark{};
   const auto element = read_element<3>(value, {-kMaxCoordinate, kMaxCoordinate}, at);
   if (!element) return pass(element);
+  if (is_nowhere(element->place)) return Landmark{};
   const auto& [x, y, z] = element->place;
   Landmark landmark{hello.sensor_from_pusher * Eigen::Vector3d(x, y, z),
                     state_of(element->sure, hello)};
@@ -129,7 +156,7 @@ Result<Landmark> read_point(const Json& value, const Hello& hello, const At& at)
 }
 
 Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at) {
-  if (value.is_null()) return Landmark{};
+  if (is_unseen(value)) return Landmark{};
   const auto element = read_element<2>(value, {-kMaxPixels, kMaxPixels}, at);
   if (!element) return pass(element);
   std::optional<double> sigma = hello.pixel_sigma;
@@ -149,7 +176,7 @@ Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at)
 
 /// Reads the position of a landmark of `world`; its state and its error are those of its pixel.
 Result<Landmark> read_shape_point(const Json& value, const Hello& /*hello*/, const At& at) {
-  if (value.is_null()) return Landmark{};
+  if (is_unseen(value)) return Landmark{};
   const auto element = read_element<3>(value, {-kMaxShape, kMaxShape}, at);
   if (!element) return pass(element);
   const auto& [x, y, z] = element->place;
@@ -241,7 +268,6 @@ Result<PushedBody> read_body(const Json& value, const Hello& hello, const At& at
                           : read_joints(places->pixels, &read_pixel, hello, at["pixels"]);
   if (!joints) return pass(joints);
   if (const auto ok = check_distance(*joints, at["points"]); !ok) return pass(ok);
-  if (const auto ok = check_origin(*joints, at["points"]); !ok) return pass(ok);
   const auto pixels =
       places->pixels != nullptr ? pixels_given(*places->pixels) : std::vector<Eigen::Vector2d>();
   if (const auto ok = check_pixels(pixels, at["pixels"]); !ok) return pass(ok);
@@ -272,6 +298,7 @@ Result<void> read_bodies(const Json& value, const Hello& hello, PushedFrame& out
     if (std::find(ids.begin(), ids.end(), one->body.id) != ids.end())
       return wrong(at[i]["id"], "two bodies of one frame have this id");
     ids.push_back(one->body.id);
+    out.zeros += zeros_in(find(value[i], "points"));
     if (empty(*one)) continue;
     one->body.captured = out.captured;
     out.bodies.push_back(std::move(one->body));
@@ -318,18 +345,19 @@ Result<ClockAnswer> read_clock(const Json& message) {
   return ClockAnswer{stamps[0], stamps[1], stamps[2]};
 }
 
-/// Why a message is no JSON, with advice for the usual reason.
-Error unparsed(Error error, std::string_view text) {
-  if (text.find("NaN") != std::string_view::npos || text.find("Infinity") != std::string_view::npos)
-    error.message += "; JSON has no NaN: send null for what is not seen";
-  return error;
+/// The message; NaN and the like in it count as null, which JSON does not have.
+Result<Json> parsed(std::string_view text) {
+  auto message = parse_json(text, kLimits);
+  if (message || message.error().code != ErrorCode::Malformed) return message;
+  auto again = parse_json(null_for_nan(text), kLimits);
+  return again ? again : message;
 }
 
 }  // namespace
 
 Result<PushMessage> read_push_message(std::string_view text, const Hello* hello) {
-  const auto message = parse_json(text, kLimits);
-  if (!message) return tl::unexpected<Error>(unparsed(message.error(), text));
+  const auto message = parsed(text);
+  if (!message) return pass(message);
   const Json* type = message->is_object() ? find(*message, "type") : nullptr;
   const auto into = [](auto&& read) { return PushMessage(std::move(read)); };
   if (type != nullptr && *type == "hello") return read_hello(*message).map(into);

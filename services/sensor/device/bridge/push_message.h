@@ -29,6 +29,7 @@ struct PushedFrame {
   std::optional<FloorPlane> floor;
   /// Whether all landmarks in pixels lie outside the picture; none if there are too few to tell.
   std::optional<bool> outside_picture;
+  std::size_t zeros = 0;  ///< Points at exactly 0, 0, 0, which are taken as not seen.
 };
 
 using PushMessage = std::variant<Hello, ClockAnswer, PushedFrame>;
