@@ -20,6 +20,7 @@
 #include "services/ctl/offline_options.h"
 #include "services/ctl/recorded_cell.h"
 #include "services/ctl/recorded_places.h"
+#include "services/ctl/sniffed.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -293,7 +294,7 @@ Run add_characterise(CLI::App& options) {
       ->take_all()
       ->allow_extra_args(false);
   options.add_flag("--json", arguments->json, "Report as JSON");
-  return [arguments] { return run_characterise(*arguments); };
+  return [arguments] { return sniffed(run_characterise(*arguments), arguments->inputs); };
 }
 
 }  // namespace chorus::ctl

@@ -21,6 +21,7 @@
 #include "services/ctl/recorded_cell.h"
 #include "services/ctl/recorded_places.h"
 #include "services/ctl/registration_report.h"
+#include "services/ctl/sniffed.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -210,7 +211,7 @@ Run add_fuse(CLI::App& options) {
   options.add_flag("--smooth", arguments->smooth,
                    "Fuse each instant knowing the seconds after it (fusion.smoothing)");
   options.add_flag("--json", arguments->json, "Summary as JSON");
-  return [arguments] { return run_fuse(*arguments); };
+  return [arguments] { return sniffed(run_fuse(*arguments), arguments->inputs); };
 }
 
 }  // namespace chorus::ctl

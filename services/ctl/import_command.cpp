@@ -3,26 +3,23 @@
 #include <array>
 #include <iostream>
 #include <memory>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/base/file.h"
+#include "common/base/unit_name.h"
+#include "common/importers/captured.h"
 #include "common/importers/doubts.h"
 #include "common/importers/formats.h"
-#include "common/record/frame_recording.h"
-#include "common/record/frame_schema.h"
-#include "common/record/fused_frames.h"
-#include "common/record/recording_stream.h"
-#include "common/resource/frame_resource.h"
-#include "fusion-server/server/registration_store.h"
-#include "fusion-server/wire/registration_file.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/import_output.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/pose_import.h"
+#include "services/ctl/sniffed.h"
 #include "services/ctl/text_file.h"
 #include "services/ctl/video_import.h"
 
@@ -38,21 +35,33 @@ struct ImportArguments {
   std::vector<std::string> floors;
   std::string start;
   std::string sensor;
-  std::string unit = "cm";
+  std::string unit;
+  std::string up;
+  std::string joints;
+  std::string clocks;
   bool rays = false;
   bool json = false;
   std::vector<std::string> lenses;
   std::string model = "movenet";
   double rate_hz = 30.0;
-  bool unit_given = false;
   bool rate_given = false;
 };
 
 /// The formats that come from cameras: only these take the cameras' lenses (--intrinsics).
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCameraFormats{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kCameraFormats{
     {{"video", "what a runner finds in videos, one camera each, as rays"},
      {"openpose", "OpenPose's JSON, also that of RTMLib and Pose2Sim: a folder a camera, as rays"},
-     {"mmpose", "MMPose's predictions in JSON: a file a video, or a folder of pictures, as rays"}}};
+     {"mmpose", "MMPose's predictions in JSON: a file a video, or a folder of pictures, as rays"},
+     {"alphapose", "AlphaPose's results in JSON, a file a video, as rays"},
+     {"coco", "landmarks in COCO's form (results or annotations), a file a video, as rays"}}};
+constexpr std::array<std::pair<std::string_view, importers::MotionFormat>, 3> kNamedPoints{
+    {{"c3d", importers::MotionFormat::C3d},
+     {"trc", importers::MotionFormat::Trc},
+     {"bvh", importers::MotionFormat::Bvh}}};
+constexpr std::array<std::pair<std::string_view, importers::Clocks>, 3> kClocks{
+    {{"one", importers::Clocks::One},
+     {"own", importers::Clocks::Own},
+     {"unknown", importers::Clocks::Unknown}}};
 
 bool is_of_cameras(std::string_view name) {
   return std::any_of(kCameraFormats.begin(), kCameraFormats.end(),
@@ -76,131 +85,13 @@ std::string check_format(const std::string& name) {
   return fmt::format("there is no format \"{}\"; known are{}", name, known);
 }
 
-/// Published extrinsics as a registration that is valid: the first sensor is the master.
-Registration registration_of(const importers::ImportedSet& set) {
-  Registration registration;
-  registration.version = 1;
-  registration.verdict = Verdict::Good;
-  registration.solved = set.recordings.front().frames.front().captured;
-  registration.master = set.recordings.front().sensor;
-  for (const auto& [sensor, world_from_sensor] : set.world_from_sensor) {
-    Extrinsics& place = registration.sensors[sensor];
-    place.world_from_sensor = world_from_sensor;
-    place.chain = {sensor};
-  }
-  return registration;
-}
-
-resource::BodyResource truth_body(const importers::TruthFrame& truth, Timestamp captured) {
-  resource::BodyResource body;
-  body.id = truth.person;
-  body.captured = captured;
-  for (std::size_t j = 0; j < kJointCount; ++j)
-    body.joints[j] = {truth.skeleton.joints[j], std::nullopt, 0};
-  return body;
-}
-
-/// Writes the true poses at the capture times of the first recording.
-Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set) {
-  const auto& frames = set.recordings.front().frames;
-  std::string text;
-  for (auto truth = set.truth.begin(); truth != set.truth.end();) {
-    if (truth->index >= frames.size()) break;
-    resource::FrameResource frame;
-    frame.sequence = truth->index + 1;
-    frame.captured = frames[truth->index].captured;
-    frame.source = "truth";
-    frame.space = resource::SpaceKind::World;
-    for (; truth != set.truth.end() && truth->index + 1 == frame.sequence; ++truth)
-      frame.bodies.push_back(truth_body(*truth, frame.captured));
-    text += record::frame_line(frame);
-  }
-  return write_text(file.string(), text);
-}
-
-/// True unless the file is known to be an import: one that cannot be read may be a recording whose
-/// head is damaged, and can perhaps be salvaged.
-bool may_be_recorded(const fs::path& file) {
-  std::error_code unknown;
-  if (!fs::exists(file, unknown)) return false;
-  const auto recording = record::RecordingStream::open(file);
-  if (!recording) return true;
-  const auto& metadata = recording->metadata();
-  const auto found = metadata.find(std::string(record::kMetadataName));
-  return found != metadata.end() && found->second.contains("recording");
-}
-
-/// Refuses to overwrite a recording; an import may be replaced, because it can be repeated.
-Result<void> spare_recordings(const fs::path& folder, const importers::ImportedSet& set) {
-  for (const auto& recording : set.recordings) {
-    const fs::path file = folder / (recording.sensor.str() + ".mcap");
-    if (may_be_recorded(file))
-      return fail(ErrorCode::Conflict, file.string(),
-                  "was recorded, not imported, or cannot be read, and is never overwritten. Name "
-                  "another --out or --sensor.");
-  }
-  return {};
-}
-
-/// Refuses to replace extrinsics that also place sensors which are not imported here: these would
-/// have no place any more.
-Result<void> spare_places(const fs::path& file, const importers::ImportedSet& set) {
-  std::error_code unknown;
-  if (set.world_from_sensor.empty() || !fs::exists(file, unknown)) return {};
-  const auto there = server::load_registration_file(file.string());
-  std::string others;
-  for (const auto& [sensor, place] : there ? there->sensors : decltype(there->sensors){}) {
-    if (!set.world_from_sensor.contains(sensor))
-      others += (others.empty() ? "" : ", ") + sensor.str();
-  }
-  if (there && others.empty()) return {};
-  return fail(ErrorCode::Conflict, file.string(),
-              there ? "says where " + others + " stand, and would be replaced. Name another --out."
-                    : "is there, and is no registration. Name another --out.");
-}
-
-Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers::ImportedSet& set) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) return fail(ErrorCode::Io, folder.string(), failed.message());
-  if (auto ok = spare_recordings(folder, set); !ok) return pass(ok);
-  if (auto ok = spare_places(folder / "registration.json", set); !ok) return pass(ok);
-  std::vector<fs::path> written;
-  for (const auto& recording : set.recordings) {
-    written.push_back(folder / (recording.sensor.str() + ".mcap"));
-    const auto done = record::write_frame_recording(written.back(), recording);
-    if (!done) return pass(done);
-  }
-  if (!set.world_from_sensor.empty()) {
-    written.push_back(folder / "registration.json");
-    const auto done =
-        write_text(written.back().string(), wire::write_registration(registration_of(set)));
-    if (!done) return pass(done);
-  }
-  if (!set.truth.empty()) {
-    written.push_back(folder / "truth.ndjson");
-    if (const auto done = write_truth(written.back(), set); !done) return pass(done);
-  }
-  return written;
-}
-
-/// Warns of other recordings in the folder, because they would be fused along with this import.
-void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& written) {
-  const std::set<fs::path> ours(written.begin(), written.end());
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().extension() == ".mcap" && ours.count(entry.path()) == 0)
-      std::cerr << fmt::format("note: {} was there before and is not part of this import.\n",
-                               entry.path().string());
-  }
-}
-
 /// Reports damaged ends and inputs without content; everything else has been imported.
 void tell_what_is_missing(const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
-    const auto damage = recording.notes.find("damage.1");
-    if (damage != recording.notes.end())
-      std::cerr << fmt::format("note: {}: {}\n", recording.notes.at("origin"), damage->second);
+    for (const auto& [key, note] : recording.notes) {
+      if (key.starts_with("damage."))
+        std::cerr << fmt::format("note: {}: {}\n", recording.notes.at("origin"), note);
+    }
   }
   for (const Error& error : set.empty)
     std::cerr << fmt::format("chorus: {}; the other files were imported\n", to_string(error));
@@ -209,12 +100,12 @@ void tell_what_is_missing(const importers::ImportedSet& set) {
 std::vector<std::string> doubts_of(const ImportArguments& arguments,
                                    const importers::ImportOptions& options,
                                    const importers::ImportedSet& set) {
-  std::vector<std::string> doubts = importers::doubts_about(set.recordings);
+  std::vector<std::string> doubts = importers::doubts_about(set.recordings, set.spaces);
   if (arguments.format == "video" && arguments.lenses.empty())
     doubts.emplace_back(
         "no --intrinsics: a field of view of 65 +- 6 degrees is assumed for each camera "
         "(chorus calibrate camera measures it)");
-  if (arguments.format != "openpose" && arguments.format != "mmpose") return doubts;
+  if (arguments.format == "video" || !is_of_cameras(arguments.format)) return doubts;
   const auto more = importers::numbering_doubts(set.recordings, options.start, arguments.rate_hz);
   doubts.insert(doubts.end(), more.begin(), more.end());
   return doubts;
@@ -247,18 +138,33 @@ void print_summary(const importers::ImportedSet& set, const std::vector<fs::path
   std::cout << table(rows);
   for (const auto& recording : set.recordings) {
     for (const char* note :
-         {"time", "states", "repeated", "unfitted", "joints", "labels", "sensors"}) {
+         {"time", "clocks", "gaps", "states", "repeated", "unfitted", "missing", "unseen", "absent",
+          "unit", "joints", "labels", "sensors", "fingers"}) {
       const auto found = recording.notes.find(note);
       if (found == recording.notes.end()) continue;
-      const bool states = found->first == "states";  // "none in the file", which needs its subject
+      // "none in the file" and "one" need their subject
+      const bool states = found->first == "states";
+      const bool clocks = found->first == "clocks";
       std::cout << fmt::format("{}: {}{}\n", recording.sensor.str(),
-                               states ? "tracking states: " : "", found->second);
+                               states   ? "tracking states: "
+                               : clocks ? "clocks: "
+                                        : "",
+                               found->second);
     }
   }
   for (const fs::path& file : written) std::cout << "wrote " << file.string() << '\n';
 }
 
-importers::ImportOptions options_of(const ImportArguments& arguments) {
+/// The joints in a file for --joints; empty without one.
+Result<motion::JointChoice> joints_in(const std::string& file) {
+  if (file.empty()) return motion::JointChoice{};
+  constexpr std::uintmax_t kLargest = 1u << 20;
+  const auto text = read_file(file, kLargest);
+  if (!text) return pass(text);
+  return motion::parse_joint_choice(*text, file);
+}
+
+Result<importers::ImportOptions> options_of(const ImportArguments& arguments) {
   importers::ImportOptions options;  // the texts were checked while parsing
   for (const std::string& floor : arguments.floors)
     options.floors.push_back(importers::parse_floor(floor).value());
@@ -267,7 +173,14 @@ importers::ImportOptions options_of(const ImportArguments& arguments) {
   if (!arguments.start.empty()) options.start = parse_iso8601(arguments.start).value();
   if (!arguments.sensor.empty()) options.sensor = SensorId::parse(arguments.sensor).value();
   options.rays = arguments.rays;
-  options.metres_per_unit = arguments.unit == "m" ? 1.0 : 0.01;
+  if (!arguments.unit.empty()) options.metres_per_unit = unit_or_factor(arguments.unit);
+  if (!arguments.up.empty()) options.up = importers::parse_up(arguments.up).value();
+  for (const auto& [name, clocks] : kClocks) {
+    if (name == arguments.clocks) options.clocks = clocks;
+  }
+  auto joints = joints_in(arguments.joints);
+  if (!joints) return pass(joints);
+  options.joints = std::move(*joints);
   return options;
 }
 
@@ -282,12 +195,27 @@ Result<void> check_inputs(const std::vector<std::string>& inputs) {
   return {};
 }
 
+/// The format as one of points with names; none for others.
+std::optional<importers::MotionFormat> named_points(std::string_view format) {
+  for (const auto& [name, points] : kNamedPoints) {
+    if (name == format) return points;
+  }
+  return std::nullopt;
+}
+
 /// Refuses options that the format has no use for, because whoever gives one expects an effect.
 Result<void> check_options(const ImportArguments& arguments) {
   if (auto ok = check_inputs(arguments.inputs); !ok) return ok;
   const bool cameras = is_of_cameras(arguments.format);
-  if (arguments.unit_given && arguments.format != "bvh")
-    return fail(ErrorCode::InvalidArgument, "--unit", "is for bvh only; leave it out");
+  const bool calibrated = arguments.format == "pose2sim";
+  if (!arguments.unit.empty() && (cameras || calibrated))
+    return fail(ErrorCode::InvalidArgument, "--unit",
+                "is for points; pictures of cameras have no lengths: leave it out");
+  if (!arguments.up.empty() && calibrated)
+    return fail(ErrorCode::InvalidArgument, "--up",
+                "is not for pose2sim, whose cameras.json says it; leave it out");
+  if (!arguments.joints.empty() && !named_points(arguments.format))
+    return fail(ErrorCode::InvalidArgument, "--joints", "is for c3d, trc and bvh; leave it out");
   if (arguments.rate_given && !cameras)
     return fail(ErrorCode::InvalidArgument, "--rate",
                 "is for pictures of cameras only; leave it out");
@@ -309,17 +237,48 @@ Result<importers::ImportedSet> read_set(const ImportArguments& arguments,
   return importers::import_files(*importers::format_named(arguments.format), inputs, options);
 }
 
+/// Writes a template for --joints beside the output, where joints were not found by name; returns
+/// its name, "" if there is none to write.
+std::string write_joint_template(const ImportArguments& arguments) {
+  const auto format = named_points(arguments.format);
+  if (!format || !arguments.joints.empty()) return {};
+  const fs::path input = arguments.inputs.front();
+  const auto text = importers::joint_template(input, *format);
+  if (!text) return {};
+  std::error_code failed;
+  fs::create_directories(arguments.out, failed);
+  const fs::path file = fs::path(arguments.out) / (input.stem().string() + ".joints.txt");
+  return write_text(file.string(), *text) ? file.string() : std::string();
+}
+
+/// Says where the template for --joints is.
+void tell_template(const ImportArguments& arguments) {
+  const std::string file = write_joint_template(arguments);
+  if (!file.empty())
+    std::cerr << fmt::format(
+        "note: {} lists the names in the file; fill it in, and import again with --joints {}\n",
+        file, file);
+}
+
+bool has_few_joints(const std::vector<std::string>& doubts) {
+  return std::ranges::any_of(
+      doubts, [](const std::string& doubt) { return doubt.find(": only ") != std::string::npos; });
+}
+
 Result<int> run_import(const ImportArguments& arguments) {
   if (auto ok = check_options(arguments); !ok) return pass(ok);
-  const importers::ImportOptions options = options_of(arguments);
-  const auto set = read_set(arguments, options);
+  const auto options = options_of(arguments);
+  if (!options) return pass(options);
+  const auto set = read_set(arguments, *options);
+  if (!set && set.error().code == ErrorCode::Unsupported) tell_template(arguments);
   if (!set) return pass(set);
   const auto written = write_set(arguments.out, *set);
   if (!written) return pass(written);
   warn_of_strangers(arguments.out, *written);
   tell_what_is_missing(*set);
-  const auto doubts = doubts_of(arguments, options, *set);
+  const auto doubts = doubts_of(arguments, *options, *set);
   for (const std::string& doubt : doubts) std::cerr << "note: " << doubt << '\n';
+  if (has_few_joints(doubts)) tell_template(arguments);
   if (arguments.json) {
     auto summary = summary_json(*set, *written);
     summary["doubts"] = doubts;
@@ -344,6 +303,31 @@ void add_input_options(CLI::App& options, ImportArguments& arguments) {
       ->check(readable_by(parse_iso8601));
   options.add_option("--sensor", arguments.sensor, "Name of the sensor, for a single input")
       ->check(readable_by(SensorId::parse));
+}
+
+std::string check_unit(const std::string& text) {
+  if (unit_or_factor(text)) return {};
+  return "must be mm, cm, m, in, another unit of length, or its number of metres, such as 0.0564";
+}
+
+void add_space_options(CLI::App& options, ImportArguments& arguments) {
+  options
+      .add_option("--unit", arguments.unit,
+                  "Of lengths, instead of what the file says: mm, cm, m, in, or metres as a number")
+      ->check(check_unit);
+  options
+      .add_option("--up", arguments.up,
+                  "Axis of the file that points up: x, y or z, with - if it points down")
+      ->check(readable_by(importers::parse_up));
+  options
+      .add_option("--joints", arguments.joints,
+                  "File of lines JOINT = NAME for c3d, trc and bvh, where the names are not known")
+      ->check(CLI::ExistingFile);
+  options
+      .add_option(
+          "--clocks", arguments.clocks,
+          "Of several files: one (synchronised), own (each right to about 0.1 s), or unknown")
+      ->check(CLI::IsMember({"one", "own", "unknown"}));
 }
 
 /// Returns the option --rate.
@@ -381,18 +365,16 @@ Run add_import(CLI::App& options) {
   options.add_option("--out", arguments->out, "Folder for the recordings; made if absent")
       ->required();
   add_input_options(options, *arguments);
-  const auto* unit =
-      options.add_option("--unit", arguments->unit, "Of lengths in BVH, which does not say")
-          ->check(CLI::IsMember({"cm", "m"}))
-          ->capture_default_str();
+  add_space_options(options, *arguments);
   const auto* rate = add_picture_options(options, *arguments);
   options.add_flag("--rays", arguments->rays,
                    "Of camera landmarks only their directions, without the depth of a fit");
   options.add_flag("--json", arguments->json, "Report as JSON");
-  return [arguments, unit, rate] {
-    arguments->unit_given = unit->count() > 0;
+  return [arguments, rate] {
     arguments->rate_given = rate->count() > 0;
-    return run_import(*arguments);
+    const bool cameras = arguments->format != "video" && is_of_cameras(arguments->format);
+    return sniffed(run_import(*arguments), arguments->inputs,
+                   cameras && arguments->format != "mmpose" ? "openpose" : arguments->format);
   };
 }
 

@@ -1,21 +1,40 @@
 #include "services/ctl/recorded_cell.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include "common/record/cell_reader.h"
+#include "common/record/frame_schema.h"
+#include "common/record/recording_stream.h"
+#include "common/time/clock_estimate.h"
 #include "fusion-server/wire/registration_file.h"
 
 namespace chorus::ctl {
 namespace {
 
 /// The next sensor frame of a cell; everything else in it is skipped.  None at the end.
-Result<std::optional<SensorFrame>> next_frame(record::CellStream& stream) {
+Result<std::optional<SensorFrame>> next_frame(record::CellStream& stream, bool claims_time) {
   for (auto item = stream.next(); true; item = stream.next()) {
     if (!item) return pass(item);
     if (!*item) return std::nullopt;
-    if (auto* frame = std::get_if<SensorFrame>(&**item)) return std::move(*frame);
+    auto* frame = std::get_if<SensorFrame>(&**item);
+    if (frame == nullptr) continue;
+    if (!claims_time) frame->clock_sigma = kUnknownClock;
+    return std::move(*frame);
   }
+}
+
+/// The note "set" of an import, which its files have in common; empty for what was recorded.
+std::string import_of(const record::CellLine& line) {
+  const auto stream = record::RecordingStream::open(line.files.front());
+  if (!stream) return {};
+  const auto found = stream->metadata().find(std::string(record::kMetadataName));
+  if (found == stream->metadata().end()) return {};
+  record::FrameRecording about;
+  record::read_metadata(found->second, about);
+  const auto set = about.notes.find("set");
+  return set == about.notes.end() ? std::string() : set->second;
 }
 
 }  // namespace
@@ -34,6 +53,14 @@ Result<std::optional<std::filesystem::path>> registration_beside(
               "several of their folders have a registration.json, such as " +
                   found.begin()->string() + " and " + found.rbegin()->string() +
                   "; name one with --registration, or register from the person with --from-walk");
+}
+
+RecordedCell::RecordedCell(std::vector<record::CellLine> lines) : lines_(std::move(lines)) {
+  std::vector<std::string> imports;
+  for (const record::CellLine& line : lines_) imports.push_back(import_of(line));
+  const bool recorded = std::ranges::find(imports, "") != imports.end();
+  for (const std::string& each : imports)
+    claims_time_.push_back(each.empty() || (!recorded && each == imports.front()));
 }
 
 Result<RecordedCell> RecordedCell::open(const std::vector<std::filesystem::path>& files) {
@@ -61,10 +88,13 @@ std::set<SensorId> RecordedCell::sensors() const {
 pipeline::OfflineInput RecordedCell::input() {
   pipeline::OfflineInput input;
   streams_.clear();
-  for (const record::CellLine& line : lines_) {
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const record::CellLine& line = lines_[i];
     const auto stream = std::make_shared<record::CellStream>(line.files);
+    const bool claims = claims_time_[i] && !clocks_dropped_;
     streams_.push_back(stream);
-    input.lanes.push_back({line.files.front().string(), [stream] { return next_frame(*stream); }});
+    input.lanes.push_back(
+        {line.files.front().string(), [stream, claims] { return next_frame(*stream, claims); }});
     input.sensors.insert(input.sensors.end(), line.sensors.begin(), line.sensors.end());
   }
   return input;

@@ -30,7 +30,12 @@ class RecordedCell {
   /// The last registration that was recorded.
   [[nodiscard]] Result<std::optional<Registration>> registration() const;
 
-  /// Reads from the beginning.
+  /// From now on, frames are read as those of unknown clocks: a walk showed that they are not in
+  /// step as stated.
+  void drop_clock_claims() { clocks_dropped_ = true; }
+
+  /// Reads from the beginning.  Of several imports, only the first one's clock counts; the clocks
+  /// of the others are unknown, and those of all imports beside what was recorded.
   [[nodiscard]] pipeline::OfflineInput input();
 
   /// What is known once the newest input has been read to its end: the parts that were left out,
@@ -42,9 +47,11 @@ class RecordedCell {
   [[nodiscard]] Told told();
 
  private:
-  explicit RecordedCell(std::vector<record::CellLine> lines) : lines_(std::move(lines)) {}
+  explicit RecordedCell(std::vector<record::CellLine> lines);
 
   std::vector<record::CellLine> lines_;
+  std::vector<bool> claims_time_;  ///< Of each line: whether its frames' clock_sigma counts.
+  bool clocks_dropped_ = false;
   std::vector<std::shared_ptr<record::CellStream>> streams_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "fusion-server/registration/overruled_clocks.h"
 #include "fusion-server/server/registration_store.h"
 
 namespace chorus::ctl {
@@ -68,6 +69,7 @@ Result<Places> places_of(const PlaceOptions& options,
   if (!given || given->registration) return given;
   auto solved = pipeline::register_recordings(cell.input(), config);
   if (!solved) return pass(solved);
+  if (registration::claims_overruled(*solved)) cell.drop_clock_claims();
   given->registration = std::move(*solved);
   given->solved = true;
   return given;

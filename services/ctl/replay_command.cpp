@@ -19,6 +19,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/number_range.h"
 #include "services/ctl/replay_round.h"
+#include "services/ctl/sniffed.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -95,8 +96,7 @@ Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellL
   }
   auto stays = record::sensor_stays(lines);
   if (stays && stays->empty())
-    return fail(ErrorCode::NotFound, "recordings",
-                "hold no frames of a sensor; were they recorded with --fused alone?");
+    return fail(ErrorCode::NotFound, "recordings", "hold no frames of a sensor");
   if (stays) tell_absent(lines, *stays);
   return stays;
 }
@@ -188,7 +188,7 @@ Run add_replay(CLI::App& options) {
       "--save-registration", arguments->save_registration,
       "Write the registration of the recording to this file, for chorus-fusion --set "
       "registration.file=FILE");
-  return [arguments] { return run_replay(*arguments); };
+  return [arguments] { return sniffed(run_replay(*arguments), arguments->inputs); };
 }
 
 }  // namespace chorus::ctl

@@ -17,6 +17,7 @@
 #include "services/ctl/offline_options.h"
 #include "services/ctl/recorded_cell.h"
 #include "services/ctl/recorded_places.h"
+#include "services/ctl/sniffed.h"
 #include "services/ctl/text_file.h"
 #include "services/ctl/true_bodies.h"
 
@@ -194,7 +195,7 @@ Run add_train_error(CLI::App& options) {
   add_place_options(options, arguments->places);
   add_offline_options(options, arguments->options);
   options.add_flag("--json", arguments->json, "Summary as JSON");
-  return [arguments] { return run_train_error(*arguments); };
+  return [arguments] { return sniffed(run_train_error(*arguments), arguments->inputs); };
 }
 
 }  // namespace chorus::ctl

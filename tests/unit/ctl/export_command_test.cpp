@@ -172,7 +172,7 @@ TEST(ImportCommand, TakesNoSensorItsPlace) {
 
 TEST(ImportCommand, RefusesOptionsWithoutAnEffect) {
   for (const std::vector<std::string>& option :
-       {std::vector<std::string>{"--unit", "m"}, {"--rate", "50"}, {"--rays"}}) {
+       {std::vector<std::string>{"--joints", kLabanotation}, {"--rate", "50"}, {"--rays"}}) {
     std::vector<std::string> words{"import", "labanotation", kLabanotation, "--out", "/tmp/x"};
     words.insert(words.end(), option.begin(), option.end());
     const Outcome done = run_chorus(words);
@@ -180,6 +180,33 @@ TEST(ImportCommand, RefusesOptionsWithoutAnEffect) {
     EXPECT_THAT(done.error, HasSubstr(option[0] + ":"));
     EXPECT_THAT(done.error, HasSubstr("leave it out"));
   }
+}
+
+TEST(ImportCommand, SaysWhatAFileIsThatItCannotRead) {
+  const chorus::testing::TemporaryFolder folder;
+  const auto file = folder.write("walk.csv", "HIERARCHY\nROOT Hips\n").string();
+  const Outcome done = run_chorus({"import", "csv", file, "--out", (folder / "rec").string()});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_THAT(done.error, HasSubstr("walk.csv is a BVH file: chorus import bvh reads it"));
+}
+
+TEST(ImportCommand, WritesATemplateWhereNamesAreUnknownAndTakesIt) {
+  const chorus::testing::TemporaryFolder folder;
+  const auto file = folder
+                        .write("odd.trc",
+                               "PathFileType\t4\t(X/Y/Z)\todd.trc\nDataRate\tUnits\n50\tm\n"
+                               "Frame#\tTime\tfoo\t\t\tbar\n1\t0\t0\t1.7\t0\t0\t1\t0\n")
+                        .string();
+  const std::string out = (folder / "rec").string();
+  const Outcome refused = run_chorus({"import", "trc", file, "--out", out});
+  EXPECT_EQ(refused.code, kExitFailed);
+  EXPECT_THAT(refused.error, HasSubstr("foo, bar"));
+  EXPECT_THAT(refused.error, HasSubstr(out + "/odd.joints.txt"));
+  EXPECT_THAT(bytes_of(fs::path(out) / "odd.joints.txt"), HasSubstr("#   foo\n"));
+  const auto joints = folder.write("mine.txt", "Head = foo\nSpineBase = bar\n").string();
+  const Outcome done = run_chorus({"import", "trc", file, "--out", out, "--joints", joints});
+  EXPECT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_THAT(done.error, HasSubstr("only 2 of our 25 joints"));
 }
 
 TEST(ImportCommand, SaysWhatTheFileSaysNothingOf) {
@@ -193,8 +220,13 @@ TEST(ImportCommand, SaysWhatTheFileSaysNothingOf) {
 
 TEST(ImportCommand, RefusesTextsThatMeanNothing) {
   const std::vector<std::string> start{"import", "labanotation", kLabanotation, "--out", "/tmp/x"};
-  for (const auto& [option, value] : std::vector<std::pair<std::string, std::string>>{
-           {"--floor", "0,1,0"}, {"--start", "noon"}, {"--sensor", "a b"}, {"--unit", "inch"}}) {
+  for (const auto& [option, value] :
+       std::vector<std::pair<std::string, std::string>>{{"--floor", "0,1,0"},
+                                                        {"--start", "noon"},
+                                                        {"--sensor", "a b"},
+                                                        {"--unit", "span"},
+                                                        {"--up", "w"},
+                                                        {"--clocks", "two"}}) {
     std::vector<std::string> words = start;
     words.insert(words.end(), {option, value});
     const Outcome done = run_chorus(words);

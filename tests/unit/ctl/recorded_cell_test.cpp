@@ -87,6 +87,41 @@ TEST(RecordedCell, ReadsEachSensorToItsEndAndAgainFromTheBeginning) {
   }
 }
 
+/// An imported recording of one frame.
+fs::path imported(const chorus::testing::TemporaryFolder& folder, const char* sensor,
+                  const char* clocks, const char* set) {
+  record::FrameRecording recording;
+  recording.sensor = sensor_id(sensor);
+  recording.notes = {{"set_origin", to_iso8601(chorus::testing::kStart)},
+                     {"set_period_ns", "1000000000"},
+                     {"clocks", clocks},
+                     {"set", set}};
+  recording.frames = {chorus::testing::sensor_frame(sensor, chorus::testing::kStart, {})};
+  const fs::path file = folder / (std::string(sensor) + ".mcap");
+  EXPECT_TRUE(record::write_frame_recording(file, recording));
+  return file;
+}
+
+std::vector<double> clock_sigmas(RecordedCell& cell) {
+  std::vector<double> sigmas;
+  for (const auto& lane : cell.input().lanes) {
+    const auto frame = lane.next();
+    sigmas.push_back(frame && *frame ? (*frame)->clock_sigma : -1.0);
+  }
+  return sigmas;
+}
+
+TEST(RecordedCell, ClocksAreWhatTheImportSaidAndSeparateImportsHaveSeparateOnes) {
+  const chorus::testing::TemporaryFolder folder;
+  auto cell = RecordedCell::open(
+      {imported(folder, "s1", "one", "a"), imported(folder, "s2", "own", "a"),
+       imported(folder, "s3", "unknown", "a"), imported(folder, "s4", "one", "b")});
+  ASSERT_THAT(cell, IsOk());
+  EXPECT_THAT(clock_sigmas(*cell), ElementsAre(0.0, 0.1, kUnknownClock, kUnknownClock));
+  cell->drop_clock_claims();
+  EXPECT_THAT(clock_sigmas(*cell), ::testing::Each(kUnknownClock));
+}
+
 TEST(RecordedCell, TellsWhatADamagedEndHasLost) {
   const Cell cell(0.5);
   const auto files = files_of(cell);
