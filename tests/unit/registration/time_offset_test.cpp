@@ -7,6 +7,7 @@
 
 #include "common/time/clock_estimate.h"
 #include "fusion-server/registration/offset_profile.h"
+#include "fusion-server/registration/overruled_clocks.h"
 #include "tests/unit/registration/walk_builder.h"
 
 namespace chorus::registration {
@@ -52,6 +53,35 @@ TEST(WalkClocks, OfASensorThatContradictsTheOthersAreNotBelieved) {
   ASSERT_FALSE(found.sensors.contains(sensor(3)));
   EXPECT_TRUE(found.clocks.contains(sensor(2)));
   EXPECT_FALSE(found.clocks.contains(sensor(3)));
+}
+
+TEST(WalkClocks, ThatAreNotInStepAsStatedAreSearchedBeforeAnybodyIsRefused) {
+  const auto walk =
+      ring({Duration{0}, milliseconds(400), milliseconds(-350), milliseconds(150)}, {}, 0.0);
+  const Registration found = solve(walk, kWalkStart, {});
+  EXPECT_EQ(found.sensors.size(), 4u);
+  ASSERT_TRUE(found.clocks.contains(sensor(2)) && found.clocks.contains(sensor(3)));
+  const auto added = [&](int number) {
+    return milliseconds_of(found.clocks.at(sensor(number)).added);
+  };
+  EXPECT_NEAR(added(2) - added(3), -750.0, kNear);
+  EXPECT_TRUE(claims_overruled(found));
+  EXPECT_NE(std::ranges::find_if(found.reasons,
+                                 [](const std::string& reason) {
+                                   return reason.find("not in step as stated") != std::string::npos;
+                                 }),
+            found.reasons.end());
+}
+
+TEST(WalkClocks, InStepAreNotSearchedBecauseOneSensorContradicts) {
+  auto walk = ring({Duration{0}, Duration{0}, Duration{0}}, {}, 0.0);
+  for (SensorFrame& frame : walk[2].frames) {  // it follows somebody who stands still and turns
+    frame.bodies = walk[0].frames.front().bodies;
+    for (BodyFrame& body : frame.bodies) body.captured = frame.captured;
+  }
+  const Registration found = solve(walk, kWalkStart, {});
+  EXPECT_EQ(found.sensors.size(), 2u);
+  EXPECT_TRUE(found.clocks.empty());
 }
 
 TEST(WalkClocks, AreTakenAsTheyAreWhenTheyAreKnown) {
