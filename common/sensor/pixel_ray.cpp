@@ -31,6 +31,14 @@ std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel, const Intrin
   return Eigen::Vector3d(x.x(), x.y(), 1.0).normalized();
 }
 
+std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& in_camera,
+                                        const Intrinsics& camera) {
+  constexpr double kNearest = 1e-3;  // [m]
+  if (!(in_camera.z() > kNearest)) return std::nullopt;
+  const Eigen::Vector2d x = distorted(in_camera.head<2>() / in_camera.z(), camera);
+  return Eigen::Vector2d(camera.fx * x.x() + camera.cx, camera.fy * x.y() + camera.cy);
+}
+
 Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& camera, double sigma) {
   // d = n / |n| with n = (x, y, 1):  dd/dn = (1 - d d^T) / |n|,  |n| = 1 / d_z.
   Eigen::Matrix<double, 3, 2> n_from_pixel = Eigen::Matrix<double, 3, 2>::Zero();

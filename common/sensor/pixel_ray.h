@@ -16,6 +16,16 @@ namespace chorus {
 [[nodiscard]] std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel,
                                                     const Intrinsics& camera);
 
+/// The pixel that shows a point in the camera's axes, by Brown's model; none behind the camera (z
+/// of at most a millimetre).  The inverse of ray_of() where the lens has one.
+[[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& in_camera,
+                                                      const Intrinsics& camera);
+
+/// Camera axes from sensor axes: x right, y down, z ahead from x left, y up, z ahead.
+[[nodiscard]] inline Eigen::Matrix3d camera_from_sensor_axes() {
+  return Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
+}
+
 /// Covariance of the unit vector of a pixel's direction [rad^2] if both pixel coordinates have the
 /// standard deviation `sigma` [px].  Distortion changes the direction, but hardly its error.
 [[nodiscard]] Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& camera,

@@ -5,6 +5,7 @@
 #include <bit>
 #include <string_view>
 
+#include "common/suit/mxtp_segments.h"
 #include "fusion-server/outlet/axes.h"
 #include "fusion-server/outlet/big_endian.h"
 #include "fusion-server/outlet/humanoid.h"
@@ -12,46 +13,20 @@
 namespace chorus::mxtp {
 namespace {
 
-/// A segment's origin is at the fraction `share` of the way between two joints (beyond the second
-/// if more than 1); its rotation is that of a bone of the rig.
-struct Segment {
-  JointId from;
-  JointId to;
-  double share;
-  outlet::HumanBone turns;
-};
+using outlet::HumanBone;
+using suit::kMxtpSegments;
+using suit::MxtpSegment;
 
-using enum JointId;
-
-// The order and the meaning of the ids 1..23 are from Xsens, MVN real-time network streaming
-// protocol.  Neck and head are the inverse of the import of MVN files (common/motion): MVN's neck
-// begins at our SpineShoulder and ends at the joint at which its head begins; our Neck is half-way
-// between these.
-constexpr std::array<Segment, kSegments> kTable{{
-    {SpineBase, SpineBase, 0.0, outlet::HumanBone::Hips},                   // Pelvis
-    {SpineBase, SpineMid, 1.0 / 3.0, outlet::HumanBone::Spine},             // L5
-    {SpineBase, SpineMid, 2.0 / 3.0, outlet::HumanBone::Spine},             // L3
-    {SpineMid, SpineMid, 0.0, outlet::HumanBone::Chest},                    // T12
-    {SpineMid, SpineShoulder, 0.5, outlet::HumanBone::UpperChest},          // T8
-    {SpineShoulder, SpineShoulder, 0.0, outlet::HumanBone::Neck},           // Neck
-    {SpineShoulder, Neck, 2.0, outlet::HumanBone::Head},                    // Head
-    {SpineShoulder, ShoulderRight, 0.3, outlet::HumanBone::RightShoulder},  // RightShoulder
-    {ShoulderRight, ShoulderRight, 0.0, outlet::HumanBone::RightUpperArm},  // RightUpperArm
-    {ElbowRight, ElbowRight, 0.0, outlet::HumanBone::RightLowerArm},        // RightForearm
-    {WristRight, WristRight, 0.0, outlet::HumanBone::RightHand},            // RightHand
-    {SpineShoulder, ShoulderLeft, 0.3, outlet::HumanBone::LeftShoulder},    // LeftShoulder
-    {ShoulderLeft, ShoulderLeft, 0.0, outlet::HumanBone::LeftUpperArm},     // LeftUpperArm
-    {ElbowLeft, ElbowLeft, 0.0, outlet::HumanBone::LeftLowerArm},           // LeftForearm
-    {WristLeft, WristLeft, 0.0, outlet::HumanBone::LeftHand},               // LeftHand
-    {HipRight, HipRight, 0.0, outlet::HumanBone::RightUpperLeg},            // RightUpperLeg
-    {KneeRight, KneeRight, 0.0, outlet::HumanBone::RightLowerLeg},          // RightLowerLeg
-    {AnkleRight, AnkleRight, 0.0, outlet::HumanBone::RightFoot},            // RightFoot
-    {FootRight, FootRight, 0.0, outlet::HumanBone::RightToes},              // RightToe
-    {HipLeft, HipLeft, 0.0, outlet::HumanBone::LeftUpperLeg},               // LeftUpperLeg
-    {KneeLeft, KneeLeft, 0.0, outlet::HumanBone::LeftLowerLeg},             // LeftLowerLeg
-    {AnkleLeft, AnkleLeft, 0.0, outlet::HumanBone::LeftFoot},               // LeftFoot
-    {FootLeft, FootLeft, 0.0, outlet::HumanBone::LeftToes},                 // LeftToe
-}};
+/// The bone of the rig that a segment turns with, in the order of suit::kMxtpSegments.
+constexpr std::array<HumanBone, kSegments> kTurns{
+    HumanBone::Hips,          HumanBone::Spine,         HumanBone::Spine,
+    HumanBone::Chest,         HumanBone::UpperChest,    HumanBone::Neck,
+    HumanBone::Head,          HumanBone::RightShoulder, HumanBone::RightUpperArm,
+    HumanBone::RightLowerArm, HumanBone::RightHand,     HumanBone::LeftShoulder,
+    HumanBone::LeftUpperArm,  HumanBone::LeftLowerArm,  HumanBone::LeftHand,
+    HumanBone::RightUpperLeg, HumanBone::RightLowerLeg, HumanBone::RightFoot,
+    HumanBone::RightToes,     HumanBone::LeftUpperLeg,  HumanBone::LeftLowerLeg,
+    HumanBone::LeftFoot,      HumanBone::LeftToes};
 
 constexpr std::string_view kMagic = "MXTP02";
 constexpr std::uint8_t kOnlyDatagram = 0x80;
@@ -68,7 +43,7 @@ std::uint32_t time_code(const outlet::TrackerFrame& frame) {
 }
 
 /// Every datagram contains all segments, so an unseen limb is placed at its parent.
-Eigen::Vector3d origin_of(const Segment& segment, const outlet::TrackerBody& body) {
+Eigen::Vector3d origin_of(const MxtpSegment& segment, const outlet::TrackerBody& body) {
   const auto place = [&body](JointId id) {
     return body[outlet::nearest_tracked(body, id)].position;
   };
@@ -96,16 +71,15 @@ void add_header(Bytes& out, const outlet::TrackerFrame& frame, const outlet::Tra
 
 std::vector<char> encode(const outlet::TrackerFrame& frame, const outlet::TrackerBody& body) {
   const outlet::Humanoid rig = outlet::humanoid_of(body);
-  if (!rig[outlet::HumanBone::Hips].known || !body[Head].tracked) return {};
+  if (!rig[outlet::HumanBone::Hips].known || !body[JointId::Head].tracked) return {};
   Bytes out;
   out.reserve(kDatagramBytes);
   add_header(out, frame, body);
-  std::uint32_t id = 0;
-  for (const Segment& segment : kTable) {
-    const Eigen::Vector3d p = outlet::xsens_axes().position(origin_of(segment, body));
-    const Eigen::Quaterniond q = outlet::xsens_axes().quaternion(
-        rig[segment.turns].world_from_bone * outlet::rig_from_ahead_rest());
-    outlet::append_big_endian(out, ++id);
+  for (std::size_t i = 0; i < kSegments; ++i) {
+    const Eigen::Vector3d p = outlet::xsens_axes().position(origin_of(kMxtpSegments[i], body));
+    const Eigen::Quaterniond q = outlet::xsens_axes().quaternion(rig[kTurns[i]].world_from_bone *
+                                                                 outlet::rig_from_ahead_rest());
+    outlet::append_big_endian(out, static_cast<std::uint32_t>(i + 1));
     for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()})
       add_real(out, value);
   }

@@ -11,11 +11,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/suit/mxtp_segments.h"
 #include "fusion-server/outlet/tracker_frame.h"
 
 namespace chorus::mxtp {
 
-inline constexpr std::size_t kSegments = 23;
+inline constexpr std::size_t kSegments = suit::kMxtpSegmentCount;
 inline constexpr std::size_t kDatagramBytes = 24 + 32 * kSegments;
 
 /// One datagram of exactly kDatagramBytes; empty when pelvis or head is not tracked, or when it is

@@ -9,17 +9,18 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/file.h"
-#include "common/base/parse.h"
 #include "common/base/units.h"
 #include "common/calibration/board_sheet.h"
 #include "common/calibration/exif.h"
 #include "common/calibration/report.h"
 #include "common/calibration/verdict.h"
+#include "services/ctl/board_options.h"
 #include "services/ctl/board_pictures.h"
 #include "services/ctl/calibration_report.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/number_range.h"
+#include "services/ctl/place_command.h"
 #include "services/ctl/text_file.h"
 #include "services/sensor/device/camera/picture.h"
 
@@ -32,19 +33,13 @@ using calibration::PictureSize;
 
 constexpr std::size_t kMostViews = 40;  // More views take longer and hardly improve the lens.
 constexpr std::uintmax_t kMaxPhoto = 1u << 28;
-// Default side of a marker, relative to that of a square.
-constexpr double kMarkerShare = 0.75;
 // Relative standard deviation of a focal length from a photo: Exif rounds to millimetres, and
 // videos are cropped.
 constexpr double kPhotoSigma = 0.04;
 
 struct CalibrateArguments {
   std::vector<std::string> sources;
-  std::string kind = "charuco";
-  std::string squares = "8x6";
-  double square_mm = 30.0;
-  double marker_mm = 0.0;  ///< 0: kMarkerShare of a square.
-  int marker_bits = 4;
+  BoardOptions board;
   std::string print_board;
   bool letter = false;
   double fov_deg = 0.0;  ///< 0: not stated.
@@ -56,36 +51,8 @@ struct CalibrateArguments {
   bool json = false;
 };
 
-/// "8x6" as two whole numbers, each at least 1.
-std::optional<std::pair<int, int>> pair_in(std::string_view text) {
-  const auto first = take_number<int>(text);
-  if (!first || !text.starts_with('x')) return std::nullopt;
-  const auto second = parse_number<int>(text.substr(1));
-  if (!second || *first < 1 || *second < 1) return std::nullopt;
-  return std::pair(*first, *second);
-}
-
-std::string check_pair(const std::string& text) {
-  return pair_in(text) ? std::string() : "must be two numbers, as 8x6 or 1280x720";
-}
-
-Result<Board> board_of(const CalibrateArguments& arguments) {
-  const auto [columns, rows] = pair_in(arguments.squares).value();  // checked while parsing
-  Board board;
-  board.kind = arguments.kind == "charuco" ? calibration::BoardKind::Charuco
-                                           : calibration::BoardKind::Chessboard;
-  board.columns = columns;
-  board.rows = rows;
-  board.square_mm = arguments.square_mm;
-  board.marker_mm =
-      arguments.marker_mm > 0.0 ? arguments.marker_mm : kMarkerShare * arguments.square_mm;
-  board.marker_bits = arguments.marker_bits;
-  if (const auto ok = check(board); !ok) return pass(ok);
-  return board;
-}
-
 Result<int> print_board(const CalibrateArguments& arguments) {
-  const auto board = board_of(arguments);
+  const auto board = board_of(arguments.board);
   if (!board) return pass(board);
   const bool pdf = arguments.print_board.ends_with(".pdf");
   if (!pdf && !arguments.print_board.ends_with(".png"))
@@ -206,7 +173,7 @@ void report(const CalibrateArguments& arguments, const Board& board, const Board
 }
 
 Result<int> from_board(const CalibrateArguments& arguments) {
-  const auto board = board_of(arguments);
+  const auto board = board_of(arguments.board);
   if (!board) return pass(board);
   if (arguments.json && arguments.out == "-")
     return fail(ErrorCode::InvalidArgument, "--json", "needs --out FILE for the lens");
@@ -238,26 +205,6 @@ Result<int> run_calibrate(const CalibrateArguments& arguments) {
               "--print-board, --fov or --photo");
 }
 
-void add_board_options(CLI::App& options, CalibrateArguments& arguments) {
-  options.add_option("--board", arguments.kind, "What is printed on it")
-      ->check(CLI::IsMember({"charuco", "chessboard"}))
-      ->capture_default_str();
-  options.add_option("--squares", arguments.squares, "Squares across x down, as printed")
-      ->check(CLI::Validator(check_pair, "WxH"))
-      ->capture_default_str();
-  options.add_option("--square-mm", arguments.square_mm, "Side of a square, measured")
-      ->check(number_range(1.0, 1000.0))
-      ->capture_default_str();
-  options
-      .add_option("--marker-mm", arguments.marker_mm, "Side of a marker; default: 0.75 of a square")
-      ->check(number_range(0.5, 1000.0));
-  options
-      .add_option("--marker-bits", arguments.marker_bits,
-                  "Of OpenCV's dictionaries DICT_4X4 to DICT_7X7")
-      ->check(number_range(4, 7))
-      ->capture_default_str();
-}
-
 void add_other_ways(CLI::App& options, CalibrateArguments& arguments) {
   options.add_option("--print-board", arguments.print_board,
                      "Only writes the board to print, in its real size: a .pdf or .png");
@@ -283,10 +230,12 @@ void add_other_ways(CLI::App& options, CalibrateArguments& arguments) {
 Run add_calibrate(CLI::App& options) {
   const auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* const lens = options.add_subcommand("camera", "Focal length, centre and distortion");
+  CLI::App* const place = options.add_subcommand("place", "Where a camera stands");
+  const Run run_place = add_calibrate_place(*place);
   options.require_subcommand(1);
   lens->add_option("input", arguments->sources,
                    "Pictures of the board: photos, folders, videos, or /dev/video0");
-  add_board_options(*lens, *arguments);
+  add_board_options(*lens, arguments->board);
   add_other_ways(*lens, *arguments);
   lens->add_option("--seconds", arguments->seconds, "How long a camera or stream is watched")
       ->check(number_range(5.0, 600.0))
@@ -296,7 +245,9 @@ Run add_calibrate(CLI::App& options) {
                    "standard output.  Where the board was is drawn in FILE.coverage.png")
       ->capture_default_str();
   lens->add_flag("--json", arguments->json, "Report as JSON, with the error of each picture");
-  return [arguments] { return run_calibrate(*arguments); };
+  return [arguments, place, run_place] {
+    return place->parsed() ? run_place() : run_calibrate(*arguments);
+  };
 }
 
 }  // namespace chorus::ctl

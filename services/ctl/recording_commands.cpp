@@ -53,17 +53,20 @@ constexpr std::array kRecordingCommands{
             "printed.\n"
             "Then: fusion.errors, or \"errors\" of a sensor, in the fusion server's configuration.",
             &add_train_error},
-    Command{"calibrate", "Measures the lens of a camera, or states what is known of it",
-            "Examples:\n"
-            "  chorus calibrate camera --print-board board.pdf\n"
-            "  chorus calibrate camera /dev/video0 --out lens.json     move the board before it\n"
-            "  chorus calibrate camera board.mp4 --square-mm 29.7 --out lens.json\n"
-            "  chorus calibrate camera photos/ --board chessboard --squares 10x7 --out lens.json\n"
-            "  chorus calibrate camera --fov 70 --size 1280x720 --out lens.json\n"
-            "Exit code 0: the lens is written; 1: the pictures are not enough, and what to do is "
-            "printed.\n"
-            "Then: device.camera.intrinsics, or chorus import video --intrinsics lens.json.",
-            &add_calibrate},
+    Command{
+        "calibrate", "Measures the lens of a camera, and where it stands",
+        "Examples:\n"
+        "  chorus calibrate camera --print-board board.pdf\n"
+        "  chorus calibrate camera /dev/video0 --out lens.json     move the board before it\n"
+        "  chorus calibrate camera board.mp4 --square-mm 29.7 --out lens.json\n"
+        "  chorus calibrate camera photos/ --board chessboard --squares 10x7 --out lens.json\n"
+        "  chorus calibrate camera --fov 70 --size 1280x720 --out lens.json\n"
+        "  chorus calibrate place /dev/video0 --intrinsics lens.json --out place.json    a board "
+        "on the floor\n"
+        "Exit code 0: the lens is written; 1: the pictures are not enough, and what to do is "
+        "printed.\n"
+        "Then: device.camera.intrinsics, or chorus import video --intrinsics lens.json.",
+        &add_calibrate},
     Command{"characterise", "Measures what a kind of sensor errs by: jitter, sides, view, depth",
             "Examples:\n"
             "  chorus characterise turn.mcap                           a person who turns once\n"
@@ -121,6 +124,14 @@ constexpr std::array kRecordingCommands{
         "Writes OUT/evaluation.html, .json and .csv: Baak et al.'s distances, scores and figures.\n"
         "Exit code 0: no limb is in error for longer than --most; 1: one is, or why not judged.",
         &add_evaluate},
+    Command{"position", "Puts the take of an inertial suit where cameras saw the person",
+            "Examples:\n"
+            "  chorus position cam01.mp4 walk.bvh --place place.json --intrinsics lens.json "
+            "--out out\n"
+            "  chorus position cam01.mcap cam02.mcap walk.mvnx --place places.json --stature 1.78 "
+            "--out out\n"
+            "Writes corrected.bvh, position.mcap and report.html.  More: docs/guide/suit.md.",
+            &add_position},
 };
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include "services/sensor/device/replay/replay.h"
 #include "services/sensor/device/simulated/simulated.h"
 #include "services/sensor/device/simulated/simulated_settings.h"
+#include "services/sensor/device/suit/suit.h"
+#include "services/sensor/device/suit/suit_settings.h"
 
 namespace chorus::sensor_service {
 namespace {
@@ -36,6 +38,10 @@ constexpr std::array kKinds{
         "camera",
         [](ConfigReader& section, const SensorId&) { (void)camera::read_camera_settings(section); },
         &camera::make_camera},
+    DeviceKind{
+        "suit",
+        [](ConfigReader& section, const SensorId&) { (void)suit::read_suit_settings(section); },
+        &suit::make_suit},
 };
 
 }  // namespace

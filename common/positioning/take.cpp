@@ -1,0 +1,237 @@
+#include "common/positioning/take.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "common/base/median.h"
+
+namespace chorus::positioning {
+namespace {
+
+constexpr double kCoarse = 0.05;        // Steps of the first search [s].
+constexpr double kFine = 0.005;         // Of the second [s].
+constexpr std::size_t kPictures = 120;  // Pictures that the search uses, spread over the take.
+// The best offset must fit better than the median of all by this share, or the take says nothing
+// about the clock: a person who stands still fits at any time.
+constexpr double kTelling = 0.93;
+
+struct Pictured {
+  const CameraTake* camera;
+  const SensorFrame* frame;
+};
+
+std::vector<Pictured> spread(std::span<const CameraTake> cameras) {
+  std::vector<Pictured> all;
+  for (const CameraTake& camera : cameras) {
+    for (const SensorFrame& frame : camera.frames) {
+      if (!frame.bodies.empty()) all.push_back({&camera, &frame});
+    }
+  }
+  std::vector<Pictured> out;
+  const std::size_t step = 1 + all.size() / kPictures;
+  for (std::size_t i = 0; i < all.size(); i += step) out.push_back(all[i]);
+  return out;
+}
+
+/// The misfit at each offset for each picture; a picture without a fit counts as ill-fitting.
+double misfit_at(const std::vector<Pictured>& pictures, const suit::SuitTake& suit,
+                 const TakeSettings& settings, double offset, double heading) {
+  double sum = 0.0;
+  for (const Pictured& one : pictures) {
+    const double at = seconds(one.frame->captured - settings.start) - offset;
+    const suit::SuitPose pose = pose_at(suit, from_seconds(at));
+    double best = 2.0 * kLargestMisfit;
+    for (const BodyFrame& body : one.frame->bodies) {
+      const std::array<SeenRays, 1> rays{SeenRays{one.camera->world_from_sensor, body.skeleton}};
+      constexpr double kHeadingSigma = 0.15;
+      const auto fit = fit_landmarks(rays, pose, {heading, kHeadingSigma});
+      if (fit) best = std::min(best, fit->misfit);
+    }
+    sum += best * best;
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, pictures.size())));
+}
+
+/// The heading at which most pictures fit, at this offset of the clocks.
+double heading_at(const std::vector<Pictured>& pictures, const suit::SuitTake& suit,
+                  const TakeSettings& settings, double offset) {
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (std::size_t i = 0; i < pictures.size(); i += 4) {
+    const double at = seconds(pictures[i].frame->captured - settings.start) - offset;
+    const suit::SuitPose pose = pose_at(suit, from_seconds(at));
+    for (const BodyFrame& body : pictures[i].frame->bodies) {
+      const std::array<SeenRays, 1> rays{
+          SeenRays{pictures[i].camera->world_from_sensor, body.skeleton}};
+      const auto fit = fit_any_heading(rays, pose);
+      if (!fit) continue;
+      const double weight = 1.0 / std::pow(std::max(0.3, fit->misfit), 4);
+      sine += weight * std::sin(fit->heading);
+      cosine += weight * std::cos(fit->heading);
+    }
+  }
+  return std::atan2(sine, cosine);
+}
+
+struct Tried {
+  double offset;
+  double misfit;
+};
+
+std::vector<Tried> tried(const std::vector<Pictured>& pictures, const suit::SuitTake& suit,
+                         const TakeSettings& settings, double from, double to) {
+  const bool fine = to - from < 0.3;
+  const double step = fine ? kFine : kCoarse;
+  const double heading = heading_at(pictures, suit, settings, 0.5 * (from + to));
+  std::vector<Tried> out;
+  for (double offset = from; offset <= to + 1e-9; offset += step)
+    out.push_back({offset, misfit_at(pictures, suit, settings, offset, heading)});
+  return out;
+}
+
+const Tried& best_of(const std::vector<Tried>& all) {
+  return *std::min_element(all.begin(), all.end(),
+                           [](const Tried& a, const Tried& b) { return a.misfit < b.misfit; });
+}
+
+double median_of(const std::vector<Tried>& all) {
+  std::vector<double> values;
+  for (const Tried& one : all) values.push_back(one.misfit);
+  return median(std::move(values));
+}
+
+/// The lowest point of the parabola through the best offset and its neighbours; its curvature tells
+/// the standard deviation.
+void sharpen(const std::vector<Tried>& all, std::size_t pictures, ClockFit& out) {
+  const auto best = static_cast<std::size_t>(&best_of(all) - all.data());
+  constexpr std::size_t kReach = 6;  // 30 ms to each side: less, and noise decides.
+  if (best < kReach || best + kReach >= all.size()) return;
+  const auto squares = [&](std::size_t i) { return all[i].misfit * all[i].misfit; };
+  const double left = squares(best - kReach);
+  const double right = squares(best + kReach);
+  const double curvature = left + right - 2.0 * squares(best);
+  if (!(curvature > 0.0)) return;
+  const double width = static_cast<double>(kReach) * kFine;
+  out.offset += std::clamp(0.5 * width * (left - right) / curvature, -width, width);
+  // chi^2 of all residuals (about 20 a picture, of which one in ten is independent).
+  const double independent = 2.0 * static_cast<double>(pictures);
+  out.sigma = width / std::sqrt(std::max(
+                          1e-9, 0.5 * independent * curvature / std::max(0.05, squares(best))));
+}
+
+struct Looks {
+  std::vector<std::size_t> next;  ///< Of each camera, the first frame that was not used.
+};
+
+/// The pictures since the last instant; a camera faster than the answer gives its latest.
+std::vector<Look> looks_until(std::span<const CameraTake> cameras, Timestamp until, Looks& done) {
+  std::vector<Look> out;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const SensorFrame* latest = nullptr;
+    while (done.next[i] < cameras[i].frames.size() &&
+           cameras[i].frames[done.next[i]].captured <= until)
+      latest = &cameras[i].frames[done.next[i]++];
+    if (latest == nullptr) continue;
+    Look look{i, cameras[i].world_from_sensor, {}, {}};
+    for (const BodyFrame& body : latest->bodies) look.people.push_back(body.skeleton);
+    out.push_back(std::move(look));
+  }
+  return out;
+}
+
+struct Span {
+  Timestamp first;
+  Timestamp last;
+};
+
+Result<Span> span_of(std::span<const CameraTake> cameras) {
+  std::optional<Span> span;
+  for (const CameraTake& camera : cameras) {
+    for (const SensorFrame& frame : camera.frames) {
+      if (!span) span = Span{frame.captured, frame.captured};
+      span->first = std::min(span->first, frame.captured);
+      span->last = std::max(span->last, frame.captured);
+    }
+  }
+  if (!span) return fail(ErrorCode::InvalidArgument, "cameras", "they have no pictures");
+  return *span;
+}
+
+Result<void> check(const TakeResult& result, std::span<const CameraTake> cameras) {
+  if (!result.placed.empty()) return {};
+  const std::string& name = cameras.front().sensor.str();
+  if (result.strangers > 0)
+    return fail(ErrorCode::InvalidArgument, name,
+                fmt::format("somebody is in {} pictures, but nobody moves as the suit says: "
+                            "another person, another take, or clocks farther apart than was tried",
+                            result.strangers));
+  return fail(ErrorCode::InvalidArgument, name, "nobody is seen in any picture");
+}
+
+}  // namespace
+
+ClockFit fit_clock(std::span<const CameraTake> cameras, const suit::SuitTake& suit,
+                   const TakeSettings& settings) {
+  const std::vector<Pictured> pictures = spread(cameras);
+  ClockFit out;
+  if (pictures.empty()) return out;
+  const auto coarse = tried(pictures, suit, settings, -settings.farthest_s, settings.farthest_s);
+  const Tried rough = best_of(coarse);
+  constexpr double kAround = 0.1;  // [s]
+  const auto fine = tried(pictures, suit, settings, rough.offset - kAround, rough.offset + kAround);
+  const Tried best = best_of(fine);
+  out.offset = best.offset;
+  out.misfit = best.misfit;
+  out.sigma = settings.farthest_s;
+  out.found = best.misfit < kTelling * median_of(coarse) && best.misfit < kLargestMisfit;
+  if (out.found) sharpen(fine, pictures.size(), out);
+  return out;
+}
+
+Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::SuitTake& suit,
+                              const TakeSettings& settings,
+                              const std::function<void(double)>& progress) {
+  const auto span = span_of(cameras);
+  if (!span) return pass(span);
+  TakeResult result;
+  if (settings.offset_s) {
+    result.clock = {*settings.offset_s, 0.0, 0.0, true};
+  } else {
+    result.clock = fit_clock(cameras, suit, settings);
+    if (!result.clock.found) result.clock.offset = 0.0;
+  }
+  TrackerSettings tracking = settings.tracker;
+  tracking.cameras = cameras.size();
+  Tracker tracker(tracking);
+  Looks done{std::vector<std::size_t>(cameras.size(), 0)};
+  std::vector<FilterStep> steps;
+  const Duration period = from_seconds(1.0 / settings.rate_hz);
+  // Half a period: a picture belongs to the nearest instant.
+  for (Timestamp now = span->first; now <= span->last + period / 2; now += period) {
+    const double at = seconds(now - settings.start) - result.clock.offset;
+    Instant instant{pose_at(suit, from_seconds(at)), looks_until(cameras, now + period / 2, done)};
+    instant.pose.time = now - settings.start;
+    result.pictures += instant.looks.size();
+    ++result.instants;
+    const auto tracked = tracker.next(instant);
+    if (progress) progress(seconds(now - span->first) / seconds(span->last - span->first + period));
+    if (!tracked) continue;
+    result.placed.push_back({now - settings.start, instant.pose, *tracked, {}});
+    steps.push_back(tracker.filter().step());
+  }
+  result.strangers = tracker.strangers();
+  if (const auto ok = check(result, cameras); !ok) return pass(ok);
+  const std::vector<Position> smooth = smoothed(steps);
+  for (std::size_t i = 0; i < smooth.size(); ++i) result.placed[i].smooth = smooth[i];
+  const Position end = smooth.back();
+  result.heading = end.heading;
+  result.heading_sigma = end.heading_sigma;
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    result.depth.push_back(tracker.filter().depth_of(i));
+  return result;
+}
+
+}  // namespace chorus::positioning

@@ -1,0 +1,68 @@
+// A whole take: the clock between suit and cameras, then the person's places, online and smoothed.
+// Pure.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/positioning/tracker.h"
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus::positioning {
+
+/// What one camera recorded, and where it stands.
+struct CameraTake {
+  SensorId sensor;
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
+  std::vector<SensorFrame> frames;  ///< In time order.
+};
+
+struct ClockFit {
+  /// Added to the suit's time to get the cameras' [s], counted from the cameras' first picture.
+  double offset = 0.0;
+  double sigma = 0.0;   ///< [s]
+  double misfit = 0.0;  ///< Of the best offset [standard deviations].
+  bool found = false;   ///< False: no offset fits better than others.
+};
+
+struct TakeSettings {
+  TrackerSettings tracker{};
+  Timestamp start;                      ///< The cameras' time that counts as 0.
+  double farthest_s = 2.0;              ///< Largest offset of the clocks that is tried.
+  std::optional<double> offset_s = {};  ///< Stated instead.
+  double rate_hz = 30.0;                ///< Of the answer.
+};
+
+struct Placed {
+  Duration time{0};  ///< Since `start`.
+  suit::SuitPose pose;
+  Tracked online;
+  Position smooth;
+};
+
+struct TakeResult {
+  ClockFit clock;
+  std::vector<Placed> placed;  ///< From the first picture in which the person was seen.
+  std::size_t instants = 0;    ///< That were asked for.
+  std::size_t pictures = 0;
+  std::uint64_t strangers = 0;
+  double heading = 0.0;  ///< Of the suit in the world, at the end [rad].
+  double heading_sigma = 0.0;
+  /// For each camera, the relative error of its depths: how much taller than stated the person is.
+  std::vector<std::pair<double, double>> depth;
+};
+
+/// The offset with the least misfit between pose and landmarks.
+[[nodiscard]] ClockFit fit_clock(std::span<const CameraTake> cameras, const suit::SuitTake& suit,
+                                 const TakeSettings& settings);
+
+/// InvalidArgument, by name: no camera saw anybody, nobody whose pose is the suit's, clocks that do
+/// not overlap.  `progress` is called with the share that is done.
+[[nodiscard]] Result<TakeResult> place_take(std::span<const CameraTake> cameras,
+                                            const suit::SuitTake& suit,
+                                            const TakeSettings& settings,
+                                            const std::function<void(double)>& progress = {});
+
+}  // namespace chorus::positioning

@@ -1,0 +1,75 @@
+// Follows one person in a suit through the pictures of cameras, instant by instant.  Pure; online:
+// uses no later picture.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/positioning/landmark_fit.h"
+#include "common/positioning/position_filter.h"
+#include "common/suit/footing.h"
+
+namespace chorus::positioning {
+
+/// What a camera's picture says where the person is: one entry for each of the people whom it
+/// could be.
+struct Look {
+  std::size_t camera = 0;
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
+  std::vector<Skeleton<SensorSpace>> people;  ///< As rays.
+  /// A place that was measured in the picture itself (outline, silhouettes).
+  std::optional<Seen> seen = {};
+};
+
+struct Instant {
+  suit::SuitPose pose;
+  std::vector<Look> looks;  ///< Of the pictures taken at this instant; often none.
+};
+
+struct Tracked {
+  Position position;
+  suit::Stance stance = suit::Stance::Unknown;
+  std::size_t cameras = 0;  ///< Number of cameras that saw the person at this instant.
+  Duration hidden{0};       ///< Since a camera last saw the person.
+  double misfit = 0.0;      ///< Of the best fit [standard deviations]; 0 without one.
+};
+
+struct TrackerSettings {
+  std::size_t cameras = 1;
+  double stature = 1.75;  ///< [m]
+  PositionErrors errors{};
+};
+
+class Tracker {
+ public:
+  explicit Tracker(const TrackerSettings& settings);
+
+  /// None before a camera has seen the person.  Poses must come in time order; their times are
+  /// those of the pictures.
+  std::optional<Tracked> next(const Instant& instant);
+
+  [[nodiscard]] const PositionFilter& filter() const { return filter_; }
+  /// Pictures in which somebody was, but nobody whose pose is the suit's.
+  [[nodiscard]] std::uint64_t strangers() const { return strangers_; }
+
+ private:
+  struct Found {
+    Seen seen;
+    double misfit = 0.0;
+    double heading = 0.0;
+  };
+  [[nodiscard]] std::optional<Found> found_in(const Look& look, const suit::SuitPose& pose) const;
+  [[nodiscard]] bool accept(const Found& found, Tracked& out);
+  void begin(const Found& found);
+
+  TrackerSettings settings_;
+  suit::Footing footing_;
+  PositionFilter filter_;
+  std::optional<Duration> last_{};
+  std::optional<Duration> last_seen_{};
+  int refused_ = 0;
+  std::uint64_t strangers_ = 0;
+};
+
+}  // namespace chorus::positioning

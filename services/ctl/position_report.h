@@ -1,0 +1,26 @@
+// The report of `chorus position`.  Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/positioning/take.h"
+#include "common/report/report.h"
+
+namespace chorus::ctl {
+
+struct PositionReport {
+  std::vector<std::pair<std::string, std::string>> subject;
+  const positioning::TakeResult& result;
+  const std::vector<positioning::CameraTake>& cameras;
+  std::string method;
+  /// Where the suit's steps alone lead, from the first place on; as many as result.placed.
+  std::vector<Eigen::Vector3d> walked;
+};
+
+[[nodiscard]] report::Report position_report(const PositionReport& take);
+
+/// The same in three or four lines, for the terminal.
+[[nodiscard]] std::string position_text(const PositionReport& take);
+
+}  // namespace chorus::ctl

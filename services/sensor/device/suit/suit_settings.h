@@ -1,0 +1,30 @@
+// The configuration section device.suit.
+#pragma once
+
+#include <string>
+
+#include "common/base/config_reader.h"
+#include "common/base/duration.h"
+
+namespace chorus::suit {
+
+enum class Transport { Udp, Tcp };
+
+struct SuitSettings {
+  std::string file = {};  ///< A .mvnx or .bvh file; empty: the network stream.
+  bool loop = true;       ///< A file starts again at its end.
+  std::string label = {};
+  std::string address = "127.0.0.1";  ///< Where the stream is received; numeric.
+  int port = 9763;
+  Transport transport = Transport::Udp;
+  int character = 0;     ///< Which of several people of one stream.
+  double stature = 0.0;  ///< Of the person [m]; 0: as the suit's program has measured.
+  bool walk = true;      ///< False: takes the place that the suit's own program states.
+  Duration latency = std::chrono::milliseconds(20);  ///< From motion to arrival.
+  double max_rate_hz = 60.0;
+};
+
+/// Reads the section; the reader's finish() reports mistakes.
+[[nodiscard]] SuitSettings read_suit_settings(ConfigReader& section);
+
+}  // namespace chorus::suit

@@ -1,0 +1,110 @@
+#include "common/positioning/take.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.h"
+#include "tests/unit/positioning/scenes.h"
+
+namespace chorus::positioning {
+namespace {
+
+using chorus::testing::FailsWith;
+using chorus::testing::IsOk;
+using testing::camera_at;
+using testing::filmed;
+
+struct Stage {
+  motion::Motion motion = testing::walk();
+  suit::SuitTake suit = suit::take_of(motion, 0.0).value();
+  Eigen::Vector3d middle = motion.frames[motion.frames.size() / 2][JointId::SpineBase].position;
+  CameraTake camera =
+      filmed(motion, camera_at(middle + Eigen::Vector3d(3.5, 0.5, 2.0), middle), 0.006, 3);
+  TakeSettings settings;
+
+  Stage() {
+    settings.start = chorus::testing::kStart;
+    settings.tracker.stature = suit::stature_of(suit.poses.front());
+    settings.farthest_s = 0.5;
+  }
+};
+
+double worst_error(const TakeResult& result, const motion::Motion& motion) {
+  double worst = 0.0;
+  for (const Placed& one : result.placed) {
+    const Skeleton<WorldSpace> truth = motion::at(motion, seconds(one.time));
+    worst = std::max(worst, (one.smooth.place - truth[JointId::SpineBase].position).norm());
+  }
+  return worst;
+}
+
+TEST(PlacedTake, FollowsAWalkWhoseClockAndHeadingNobodyTold) {
+  Stage stage;
+  // The suit's world is turned, and its clock is 120 ms ahead.
+  for (suit::SuitPose& pose : stage.suit.poses) {
+    pose = suit::pose_of(suit::placed(pose, -0.4, {0, 0, 0}), pose.time + from_seconds(0.12));
+  }
+  const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_TRUE(result->clock.found);
+  EXPECT_NEAR(result->clock.offset, -0.12, 0.02);
+  EXPECT_NEAR(result->heading, 0.4, 0.05);
+  EXPECT_GT(result->placed.size(), result->instants * 95 / 100);
+  EXPECT_LT(worst_error(*result, stage.motion), 0.2);
+}
+
+TEST(PlacedTake, GoesOnByTheSuitsStepsWhileThePersonIsHidden) {
+  Stage stage;
+  stage.settings.offset_s = 0.0;
+  for (SensorFrame& frame : stage.camera.frames) {
+    const double at = seconds(frame.captured - chorus::testing::kStart);
+    if (at > 0.8 && at < 1.6) frame.bodies.clear();
+  }
+  const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_LT(worst_error(*result, stage.motion), 0.25);
+  Duration longest{0};
+  for (const Placed& one : result->placed) longest = std::max(longest, one.online.hidden);
+  EXPECT_NEAR(seconds(longest), 0.8, 0.1);
+}
+
+TEST(PlacedTake, ChoosesThePersonOfTheSuitAmongTwo) {
+  Stage stage;
+  stage.settings.offset_s = 0.0;
+  std::mt19937 random(9);
+  for (SensorFrame& frame : stage.camera.frames) {
+    const auto other = chorus::testing::standing_person(stage.middle + Eigen::Vector3d(-1, 0, 0));
+    frame.bodies.insert(frame.bodies.begin(),
+                        {BodyId{7}, frame.captured,
+                         testing::rays_of(other, stage.camera.world_from_sensor, 0.006, random)});
+  }
+  const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_LT(worst_error(*result, stage.motion), 0.25);
+}
+
+TEST(PlacedTake, WithoutPeopleOrPicturesIsRefused) {
+  Stage stage;
+  stage.settings.offset_s = 0.0;
+  CameraTake empty = stage.camera;
+  for (SensorFrame& frame : empty.frames) frame.bodies.clear();
+  EXPECT_THAT(place_take({&empty, 1}, stage.suit, stage.settings),
+              FailsWith(ErrorCode::InvalidArgument));
+  empty.frames.clear();
+  EXPECT_THAT(place_take({&empty, 1}, stage.suit, stage.settings),
+              FailsWith(ErrorCode::InvalidArgument));
+}
+
+TEST(PlacedTake, OfAPersonWhoStandsStillTellsNoClock) {
+  Stage stage;
+  motion::Motion still;
+  still.rate_hz = 60.0;
+  still.frames.assign(240, chorus::testing::standing_person());
+  const CameraTake camera = filmed(still, camera_at({0, 1.6, 4}, {0, 1, 0}), 0.004, 1);
+  suit::SuitTake suit{60.0, {}, {}};
+  for (int i = 0; i < 240; ++i)
+    suit.poses.push_back(suit::pose_of(still.frames[0], from_seconds(i / 60.0)));
+  EXPECT_FALSE(fit_clock({&camera, 1}, suit, stage.settings).found);
+}
+
+}  // namespace
+}  // namespace chorus::positioning
