@@ -136,7 +136,11 @@ PositionFilter::Measurement PositionFilter::measured(const Seen& seen) const {
   Measurement out{Eigen::MatrixXd::Zero(rows, state_.size()), Eigen::VectorXd::Zero(rows),
                   Eigen::MatrixXd::Zero(rows, rows)};
   const double depth = 1.0 + state_[at];
-  out.slope.block<3, 3>(0, kPlace) = depth * Eigen::Matrix3d::Identity();
+  // An error along the line of sight turns with it: it leaves the direction of the ray as it is.
+  const double stretch = state_[at + 1] / std::max(0.1, line.norm());
+  const Eigen::Vector3d ahead = axes.col(0);
+  out.slope.block<3, 3>(0, kPlace) =
+      (depth + stretch) * Eigen::Matrix3d::Identity() - stretch * ahead * ahead.transpose();
   out.slope.block<3, 1>(0, at) = line;
   out.slope.block<3, 3>(0, at + 1) = axes;
   out.expected.head<3>() = seen.eye + depth * line + axes * state_.segment<3>(at + 1);

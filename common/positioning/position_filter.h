@@ -20,15 +20,15 @@ namespace chorus::positioning {
 /// How wrong everything is.  The defaults are from eight real cameras with Vicon
 /// (docs/benchmarks/positioner.md).
 struct PositionErrors {
-  double along = 0.016;   ///< Along the line of sight, relative to the distance.
+  double along = 0.015;   ///< Along the line of sight, relative to the distance.
   double across = 0.005;  ///< Across it, relative to the distance.
-  double memory = 0.7;    ///< How long these errors stay [s].
+  double memory = 1.5;    ///< How long these errors stay [s].
   double depth = 0.02;    ///< Of all depths of one camera, relative.
   double picture = 0.01;  ///< Noise of one picture [m].
   double speed = 0.08;    ///< Of the steps' speed [m/s]; it stays `speed_memory`.
   double speed_memory = 0.5;
   double flight_speed = 0.4;  ///< The same in flight [m/s].
-  double step = 0.02;         ///< Of the steps themselves, per square root of a second [m].
+  double step = 0.05;         ///< Of the steps themselves, per square root of a second [m].
   double height = 0.03;       ///< Of the standing height [m].
   double height_memory = 1.5;
   double heading_drift = 0.003;  ///< Per square root of a second [rad].

@@ -14,7 +14,7 @@ ROWS = [
     ["common/body", "common/inertial"],
     ["common/sensor", "common/layout", "common/posture"],
     ["common/motion", "common/resource", "common/ergonomics"],
-    ["common/record", "common/client", "common/evaluation", "common/suit"],
+    ["common/record", "common/client", "common/evaluation", "common/suit", "common/silhouette"],
     ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration", "common/hand",
      "common/characteristics", "common/assessment", "common/quality", "common/positioning"],
     ["fusion-server/flow"],

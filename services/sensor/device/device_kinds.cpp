@@ -8,6 +8,8 @@
 #include "services/sensor/device/bridge/bridge_settings.h"
 #include "services/sensor/device/camera/camera.h"
 #include "services/sensor/device/camera/camera_settings.h"
+#include "services/sensor/device/positioner/positioner.h"
+#include "services/sensor/device/positioner/positioner_settings.h"
 #include "services/sensor/device/replay/replay.h"
 #include "services/sensor/device/simulated/simulated.h"
 #include "services/sensor/device/simulated/simulated_settings.h"
@@ -42,6 +44,11 @@ constexpr std::array kKinds{
         "suit",
         [](ConfigReader& section, const SensorId&) { (void)suit::read_suit_settings(section); },
         &suit::make_suit},
+    DeviceKind{"positioner",
+               [](ConfigReader& section, const SensorId&) {
+                 (void)positioner::read_positioner_settings(section);
+               },
+               &positioner::make_positioner},
 };
 
 }  // namespace

@@ -26,12 +26,13 @@ inline Eigen::Isometry3d camera_at(const Eigen::Vector3d& place, const Eigen::Ve
 inline Skeleton<SensorSpace> rays_of(const Skeleton<WorldSpace>& body,
                                      const Eigen::Isometry3d& camera, double sigma,
                                      std::mt19937& random) {
-  std::normal_distribution<double> noise(0.0, sigma);
+  std::normal_distribution<double> normal;
   Skeleton<SensorSpace> out = to_sensor(camera.inverse(), body);
   for (Joint& joint : out.joints) {
     if (!joint.seen()) continue;
     joint.position =
-        exp_map({noise(random), noise(random), noise(random)}) * joint.position.normalized();
+        exp_map(sigma * Eigen::Vector3d(normal(random), normal(random), normal(random))) *
+        joint.position.normalized();
     joint.measurement = Measurement::Ray;
     joint.covariance = {};
   }

@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "common/sensor/pixel_ray.h"
+#include "common/silhouette/outline_fit.h"
+#include "tests/support/builders.h"
+#include "tests/support/matchers.h"
+
+namespace chorus::silhouette {
+namespace {
+
+const Intrinsics kCamera{640, 480, 600.0, 600.0, 319.5, 239.5, {}};
+
+Eigen::Isometry3d camera_at(const Eigen::Vector3d& place, const Eigen::Vector3d& at) {
+  const Eigen::Vector3d z = (at - place).normalized();
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitY().cross(z).normalized();
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  out.linear() << x, z.cross(x), z;
+  out.translation() = place;
+  return out;
+}
+
+const Eigen::Isometry3d kPlace = camera_at({0.0, 2.0, 4.5}, {0.0, 0.9, 0.0});
+
+/// A picture of a person: grey in grey, with noise.  The judge's body is a tenth thinner than ours,
+/// and drawn pixel by pixel.
+cv::Mat picture_of(const Skeleton<WorldSpace>* body, std::uint64_t seed) {
+  cv::Mat picture(kCamera.height, kCamera.width, CV_8U, cv::Scalar(120));
+  for (int i = 0; i < 12; ++i)
+    cv::rectangle(picture, {37 * i + 20, 29 * i, 30, 60}, cv::Scalar(60 + 11 * i), cv::FILLED);
+  if (body != nullptr) {
+    const auto shape = usual_shape(1.75, 0.9);
+    const auto capsules = flat_capsules(*body, shape, kPlace, kCamera);
+    for (int row = 0; row < picture.rows; ++row) {
+      for (int column = 0; column < picture.cols; ++column) {
+        for (const FlatCapsule& capsule : capsules) {
+          if (distance(capsule, {column, row}) < 0.0) picture.at<std::uint8_t>(row, column) = 20;
+        }
+      }
+    }
+  }
+  cv::RNG random(seed);
+  cv::Mat noise(picture.size(), CV_8S);
+  random.fill(noise, cv::RNG::NORMAL, 0, 4);
+  cv::add(picture, noise, picture, cv::noArray(), CV_8U);
+  return picture;
+}
+
+Background empty_room() {
+  Background background;
+  for (std::uint64_t seed = 1; seed <= 9; ++seed) background.learn(picture_of(nullptr, seed));
+  return background;
+}
+
+struct Scene {
+  Skeleton<WorldSpace> truth = chorus::testing::t_pose_person({0.2, 0.0, 0.1});
+  std::vector<ShapedBone> shape = usual_shape(1.75);
+  Background background = empty_room();
+  std::optional<Evidence> evidence = background.evidence(picture_of(&truth, 99));
+
+  [[nodiscard]] Skeleton<WorldSpace> off_by(const Eigen::Vector3d& by) const {
+    Skeleton<WorldSpace> body = truth;
+    for (Joint& joint : body.joints) joint.position += by;
+    return body;
+  }
+};
+
+TEST(BodyShape, PointsOfTheOutlineAreOnItAndNoneIsInside) {
+  const Scene scene;
+  const auto capsules = flat_capsules(scene.truth, scene.shape, kPlace, kCamera);
+  const auto outline = outline_of(capsules, 4.0);
+  ASSERT_GT(outline.size(), 100u);
+  for (const OutlinePoint& point : outline) {
+    double nearest = 1e9;
+    for (const FlatCapsule& capsule : capsules)
+      nearest = std::min(nearest, distance(capsule, point.pixel));
+    EXPECT_NEAR(nearest, 0.0, 0.6);
+    double beyond = 1e9;
+    for (const FlatCapsule& capsule : capsules)
+      beyond = std::min(beyond, distance(capsule, point.pixel - 3.0 * point.normal));
+    EXPECT_LT(beyond, 0.0) << "normals point outwards";
+  }
+}
+
+TEST(BodyShape, BehindTheCameraThereIsNothing) {
+  const Scene scene;
+  EXPECT_TRUE(flat_capsules(scene.off_by({0, 0, 20.0}), scene.shape, kPlace, kCamera).empty());
+  EXPECT_TRUE(outline_of({}, 4.0).empty());
+}
+
+TEST(Evidence, IsZeroOnTheOutlineAndFarthestAwayFromIt) {
+  Scene scene;
+  ASSERT_TRUE(scene.evidence);
+  EXPECT_NEAR(scene.evidence->distance({5.0, 470.0}), scene.evidence->farthest(), 1e-9);
+  EXPECT_NEAR(scene.evidence->distance({-1e9, std::nan("")}), scene.evidence->farthest(), 1e-9);
+  const auto outline =
+      outline_of(flat_capsules(scene.truth, usual_shape(1.75, 0.9), kPlace, kCamera), 4.0);
+  double sum = 0.0;
+  for (const OutlinePoint& point : outline) sum += scene.evidence->distance(point.pixel);
+  EXPECT_LT(sum / static_cast<double>(outline.size()), 3.0);
+}
+
+TEST(Evidence, IsTheSameWithAnyNumberOfThreads) {
+  const Scene scene;
+  const cv::Mat picture = picture_of(&scene.truth, 5);
+  const auto field_with = [&](int threads) {
+    cv::setNumThreads(threads);
+    Background background = empty_room();
+    return background.evidence(picture)->field().clone();
+  };
+  const cv::Mat one = field_with(1);
+  for (const int threads : {2, 3, 8})
+    EXPECT_EQ(cv::norm(one, field_with(threads), cv::NORM_INF), 0.0) << threads;
+}
+
+TEST(Evidence, NeedsABackgroundOfItsSize) {
+  Background background;
+  EXPECT_FALSE(background.evidence(picture_of(nullptr, 1)));
+  background.learn(picture_of(nullptr, 1));
+  EXPECT_FALSE(background.evidence(cv::Mat::zeros(20, 20, CV_8U)));
+  EXPECT_FALSE(background.evidence({}));
+}
+
+SearchView view_of(const Scene& scene, const Skeleton<WorldSpace>& body) {
+  return {body, scene.shape, kPlace, kCamera, *scene.evidence};
+}
+
+TEST(Search, FindsTheShiftAmongTheTwentyFive) {
+  const Scene scene;
+  const auto body = scene.off_by({0.2, 0.0, 0.0});
+  const auto found = search(view_of(scene, body));
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->shift, chorus::testing::VectorNear(Eigen::Vector3d(-0.2, 0, 0), 0.11));
+}
+
+TEST(Search, OfAPersonOutsideThePictureFindsNothing) {
+  const Scene scene;
+  const auto body = scene.off_by({0.0, 0.0, 20.0});
+  EXPECT_FALSE(search(view_of(scene, body)));
+}
+
+TEST(OutlineFit, IsFinerThanTheSearch) {
+  const Scene scene;
+  double ours = 0.0;
+  double theirs = 0.0;
+  for (const Eigen::Vector3d& off :
+       {Eigen::Vector3d(0.07, 0, 0.04), Eigen::Vector3d(-0.06, 0, 0.13),
+        Eigen::Vector3d(0.04, 0, -0.16), Eigen::Vector3d(-0.14, 0, -0.05)}) {
+    const auto body = scene.off_by(off);
+    const auto fit = fit_outline(view_of(scene, body));
+    const auto searched = search(view_of(scene, body));
+    ASSERT_TRUE(fit && searched);
+    ours += (fit->shift + off).squaredNorm();
+    theirs += (searched->shift + off).squaredNorm();
+    EXPECT_LT((fit->shift + off).norm(), 0.08);
+  }
+  EXPECT_LT(std::sqrt(ours), std::sqrt(theirs));
+}
+
+TEST(OutlineFit, RecoversFromHalfAMetre) {
+  const Scene scene;
+  const auto body = scene.off_by({0.45, 0, 0.2});
+  const auto fit = fit_outline(view_of(scene, body));
+  ASSERT_TRUE(fit);
+  EXPECT_LT((fit->shift + Eigen::Vector3d(0.45, 0, 0.2)).norm(), 0.1);
+}
+
+TEST(OutlineFit, WhereNobodyIsAnswersNothing) {
+  Scene scene;
+  scene.evidence = scene.background.evidence(picture_of(nullptr, 77));
+  ASSERT_TRUE(scene.evidence);
+  EXPECT_FALSE(fit_outline(view_of(scene, scene.truth)));
+}
+
+}  // namespace
+}  // namespace chorus::silhouette
