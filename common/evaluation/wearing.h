@@ -26,7 +26,8 @@ struct WornSensor {
 [[nodiscard]] OrientationPairs pairs_of(const TrackedLimb& limb, const OrientationTrack& sensor);
 
 struct WearingOptions {
-  CalibrateOptions calibrate;
+  /// Of each sensor with each limb, so with few instants.
+  CalibrateOptions calibrate = {.most_pairs = 100};
   /// Two limbs whose exchange costs less than this in residual, both together, are ambiguous [rad].
   double least_margin = deg(3.0);
   /// A person must fit better than the next by this factor.

@@ -7,6 +7,7 @@
 #include "common/exporters/csv.h"
 #include "common/exporters/gltf.h"
 #include "common/exporters/number_text.h"
+#include "common/exporters/sto.h"
 #include "common/exporters/trc.h"
 
 namespace chorus::exporters {
@@ -50,6 +51,23 @@ Result<Exported> skeletal(const Take& take, ExportFormat format, const ExportOpt
   return out;
 }
 
+Result<Exported> orientation_tables(const Take& take) {
+  Exported out;
+  for (const PersonTrack& track : take.persons) {
+    auto table = sto_of(track, take.rate_hz);
+    if (!table && take.persons.size() == 1) return pass(table);
+    if (!table) {
+      out.remarks.push_back("left out: " + to_string(table.error()));
+      continue;
+    }
+    const std::string suffix =
+        take.persons.size() > 1 ? "-p" + std::to_string(track.person.value) : "";
+    out.files.push_back({suffix, std::move(*table)});
+  }
+  if (!out.files.empty()) return out;
+  return fail(ErrorCode::Unsupported, "fused frames", "show no limb's orientation");
+}
+
 }  // namespace
 
 Result<Exported> exported(const Take& take, ExportFormat format, const ExportOptions& options) {
@@ -61,6 +79,8 @@ Result<Exported> exported(const Take& take, ExportFormat format, const ExportOpt
       return Exported{{{"", trc_of(take, options.file_name)}}, {}};
     case ExportFormat::Csv:
       return Exported{{{"", csv_of(take)}}, {}};
+    case ExportFormat::Sto:
+      return orientation_tables(take);
     case ExportFormat::C3d:
       break;
   }

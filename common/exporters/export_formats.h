@@ -10,7 +10,7 @@
 
 namespace chorus::exporters {
 
-enum class ExportFormat { Bvh, C3d, Trc, Csv, Gltf };
+enum class ExportFormat { Bvh, C3d, Trc, Csv, Gltf, Sto };
 
 struct ExportRow {
   ExportFormat format;
@@ -18,12 +18,13 @@ struct ExportRow {
   std::string_view writes;  ///< One line for --help.
 };
 
-inline constexpr std::array<ExportRow, 5> kExportFormats{{
+inline constexpr std::array<ExportRow, 6> kExportFormats{{
     {ExportFormat::Bvh, "bvh", "hierarchy and rotations, one file a person"},
     {ExportFormat::C3d, "c3d", "points, float, millimetres, missing joints marked"},
     {ExportFormat::Trc, "trc", "points as a table, as OpenSim reads it"},
     {ExportFormat::Csv, "csv", "one row a joint, with states, orientations and deviations"},
     {ExportFormat::Gltf, "gltf", "animated skinned skeletons, binary (.glb)"},
+    {ExportFormat::Sto, "sto", "orientations of limbs as a table, as OpenSense reads it"},
 }};
 
 struct ExportOptions {
