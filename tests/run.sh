@@ -113,7 +113,7 @@ cmake --build build/dev -j "$jobs" --target all_verify_interface_header_sets
 # What people run is built without assertions and with more optimisation, which finds other warnings.
 step "release, warnings are errors, and its demo"
 cmake --preset strict "${launcher[@]}" --log-level=WARNING
-cmake --build build/strict -j "$jobs" --target chorus-sensor chorus-fusion chorus
+cmake --build build/strict -j "$jobs" --target chorus-sensor chorus-fusion chorus chorus-ergonomics
 free_ports='import sys; sys.path.insert(0, "tests/support"); from ports import free_ports; print(free_ports(8))'
 [ "$#" -gt 0 ] || deploy/demo.sh --bin build/strict/bin --port "$(python3 -B -c "$free_ports")" --seconds 20
 
