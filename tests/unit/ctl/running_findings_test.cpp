@@ -16,10 +16,12 @@ using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+using Texts = std::map<std::string, std::string>;  // By path.
+
 /// A fusion server that gives these answers.
 class Running {
  public:
-  explicit Running(const std::map<std::string, std::string>& texts) {
+  explicit Running(const Texts& texts) {
     auto router = std::make_shared<http::Router>();
     for (const auto& [path, text] : texts) {
       router->get(path, [text](const http::Request&, const http::PathParams&) {
@@ -40,7 +42,7 @@ class Running {
 auto words(const std::string& part) { return Field(&Finding::words, HasSubstr(part)); }
 
 TEST(RunningConfiguration, AFailedReloadIsSaidWithWhy) {
-  const Running server({{"/configuration", R"({"lastReloadError": "line 3: unknown key"})"}});
+  const Running server(Texts{{"/configuration", R"({"lastReloadError": "line 3: unknown key"})"}});
   const Findings all = configuration_findings(server.itself());
   ASSERT_EQ(all.size(), 1u);
   EXPECT_FALSE(all[0].good);
@@ -48,18 +50,18 @@ TEST(RunningConfiguration, AFailedReloadIsSaidWithWhy) {
 }
 
 TEST(RunningConfiguration, WhatWaitsAndWhatDiffersAreTwoThings) {
-  const Running server(
-      {{"/configuration", R"({"pendingRestart": ["http.port"], "changedOnDisk": ["title"]})"}});
+  const Running server(Texts{
+      {"/configuration", R"({"pendingRestart": ["http.port"], "changedOnDisk": ["title"]})"}});
   EXPECT_THAT(configuration_findings(server.itself()),
               ElementsAre(words("waits for a restart with http.port"), words("title differs")));
-  const Running well({{"/configuration", R"({"pendingRestart": [], "changedOnDisk": []})"}});
+  const Running well(Texts{{"/configuration", R"({"pendingRestart": [], "changedOnDisk": []})"}});
   ASSERT_EQ(configuration_findings(well.itself()).size(), 1u);
   EXPECT_TRUE(configuration_findings(well.itself())[0].good);
-  EXPECT_THAT(configuration_findings(Running({}).itself()), IsEmpty()) << "an older server";
+  EXPECT_THAT(configuration_findings(Running(Texts{}).itself()), IsEmpty()) << "an older server";
 }
 
 TEST(FollowedSensors, OneThatTheServerRefusesIsSaidWithItsError) {
-  const Running server({{"/sensors/", R"({"sensors": {"s1": {"state": "live"},
+  const Running server(Texts{{"/sensors/", R"({"sensors": {"s1": {"state": "live"},
       "s2": {"state": "refused", "lastError": "GET frame answers 401"}}})"}});
   const Findings all = followed_findings(server.itself());
   ASSERT_EQ(all.size(), 1u);
