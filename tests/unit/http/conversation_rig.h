@@ -101,7 +101,7 @@ class ConversationTest : public ::testing::Test {
   std::shared_ptr<LiveDocument> frame_ = std::make_shared<LiveDocument>();
   std::unique_ptr<Responder> responder_;
   std::unique_ptr<Conversation> talk_;
-  SteadyTime now_{1h};
+  SteadyTime now_{std::chrono::hours(1)};
   std::string heard_;
   std::string_view ahead_;
   bool reading_ = false, writing_ = false, settling_ = false, waiting_ = false;
