@@ -4,6 +4,7 @@
 #include <array>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -97,16 +98,18 @@ void step(SensorCalibration& at, const Normal& normal) {
   at.limb_from_sensor = (exp_map(by.tail<3>()) * at.limb_from_sensor).normalized();
 }
 
-/// The robust residual about one axis that is seen.
-double residual_sigma(const std::vector<Weighted>& pairs, const SensorCalibration& at) {
+/// The robust residual about one axis that is seen, of pairs whose whole error is within `gate`.
+double residual_sigma(const std::vector<Weighted>& pairs, const SensorCalibration& at,
+                      double gate) {
   std::vector<double> sizes;
   for (const Weighted& each : pairs) {
     const Eigen::Vector3d error = pair_error(at, *each.pair);
+    if (squared(each, error) > gate * gate) continue;
     sizes.push_back(std::abs(error.x()));
     sizes.push_back(std::abs(error.z()));
     if (each.weight.y() > 0) sizes.push_back(std::abs(error.y()));
   }
-  return kMadToSigma * median(std::move(sizes));
+  return sizes.empty() ? 0.0 : kMadToSigma * median(std::move(sizes));
 }
 
 /// A mount for this heading from the pairs alone: a mean of those with all axes seen, if there are.
@@ -230,8 +233,11 @@ Result<CalibrationFit> fit_calibration(const OrientationPairs& pairs,
   CalibrationFit fit;
   const double coarse = kScalesOfSigma * 2.0 * options.least_sigma;
   fit.calibration = best_of_starts(usable, coarse);
+  // Gross errors would widen the residual: after the first round only what agrees counts.
+  double gate = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 3; ++round) {
-    fit.sigma = std::max(options.least_sigma, residual_sigma(usable, fit.calibration));
+    fit.sigma = std::max(options.least_sigma, residual_sigma(usable, fit.calibration, gate));
+    gate = kScalesOfSigma * std::numbers::sqrt3 * fit.sigma;
     for (int i = 0; i < 4; ++i)
       step(fit.calibration, normal_of(usable, fit.calibration, kScalesOfSigma * fit.sigma));
   }
