@@ -24,6 +24,14 @@ constexpr std::string_view kArvidaPrefixes =
 constexpr std::string_view kDouble = "\"^^xsd:double";
 constexpr std::size_t kJointText = 2048;  // Bytes of the longest joint, without its names.
 
+/// What stands before a number of a vector: " ; maths:x \"".
+template <class Field, std::size_t kI>
+constexpr JointText kMaths = [] {
+  JointText text;
+  ((text += " ; maths:") += Field::kNames[kI].axis) += " \"";
+  return text;
+}();
+
 class ArvidaFrame {
  public:
   ArvidaFrame(const FrameResource& frame, const Place& place)
@@ -112,25 +120,28 @@ class ArvidaFrame {
       pen_.put(
           " ;\n  spatial:translation [ a spatial:Translation3D ; vom:quantityKind vom:Length ; "
           "vom:quantityValue [ a maths:Vector3D");
-      put_numbers<Position>(*p);
+      put_numbers<Position>(*p, std::make_index_sequence<3>{});
       pen_.put(" ; vom:unit vom:meter ] ]");
     }
     if (const auto q = Orientation::get(joint)) {
       pen_.put(
           " ;\n  spatial:rotation [ a spatial:Rotation3D ; vom:quantityKind vom:Angle ; "
           "vom:quantityValue [ a maths:Quaternion, maths:Vector4D");
-      put_numbers<Orientation>(*q);
+      put_numbers<Orientation>(*q, std::make_index_sequence<4>{});
       pen_.put(" ] ]");
     }
   }
 
-  template <class Field, std::size_t kSize>
-  void put_numbers(const FieldValues<kSize>& values) {
-    for (std::size_t i = 0; i < kSize; ++i) {
-      put(" ; maths:", Field::kNames[i].axis, " \"");
-      pen_.template put_decimal<Field::kRow.decimals>(values[i]);
-      put(kDouble);
-    }
+  template <class Field, std::size_t... kI>
+  void put_numbers(const FieldValues<sizeof...(kI)>& values, std::index_sequence<kI...>) {
+    (put_number<Field::kRow.decimals>(kMaths<Field, kI>, values[kI]), ...);
+  }
+
+  template <int kDecimals>
+  void put_number(std::string_view before, double value) {
+    pen_.put(before);
+    pen_.template put_decimal<kDecimals>(value);
+    pen_.put(kDouble);
   }
 
   [[nodiscard]] std::string body_name(const BodyResource& body) const {

@@ -56,7 +56,7 @@ tl::unexpected<Error> refuse(const SubjectFacts& subject) {
 
 template <class Field>
 std::optional<double> number(const SubjectFacts& subject, std::size_t i) {
-  return subject.numbers[kNumberNames.index_of(Field::kNames[i].name)];
+  return subject.numbers[kNumbersAt<Field>[i]];
 }
 
 /// Reads a field's numbers, which are all given or none.

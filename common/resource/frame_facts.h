@@ -48,6 +48,14 @@ inline constexpr NameList kNumberNames = names_of<FieldKind::Numbers>();
 inline constexpr NameList kWholeNames = names_of<FieldKind::Whole>();
 inline constexpr NameList kNameNames = names_of<FieldKind::Name>();
 
+/// Where the numbers of a field are in SubjectFacts::numbers.
+template <class Field>
+inline constexpr auto kNumbersAt = [] {
+  std::array<std::size_t, Field::kNames.size()> at{};
+  for (std::size_t i = 0; i < at.size(); ++i) at[i] = kNumberNames.index_of(Field::kNames[i].name);
+  return at;
+}();
+
 /// Everything that may be said about a subject, whatever its kind.
 struct SubjectFacts {
   std::string name;  ///< The subject's IRI as in the document, for messages.

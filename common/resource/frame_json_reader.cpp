@@ -98,8 +98,8 @@ class Reading {
   void read_fields(std::size_t at, const json& object) {
     Table::all([&]<class Field>() {
       if constexpr (Field::kKind == FieldKind::Numbers) {
-        for (const FieldName& each : Field::kNames)
-          number(at, object, each.name, facts_[at].numbers[kNumberNames.index_of(each.name)]);
+        for (std::size_t i = 0; i < Field::kNames.size(); ++i)
+          number(at, object, Field::kNames[i].name, facts_[at].numbers[kNumbersAt<Field>[i]]);
       } else if constexpr (Field::kKind == FieldKind::Whole) {
         const std::string_view name = Field::kNames[0].name;
         integer(at, object, name, facts_[at].wholes[kWholeNames.index_of(name)]);

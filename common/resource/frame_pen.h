@@ -1,41 +1,31 @@
 // Internal to common/resource: writes the fields of a frame, in each of the three layouts.
 #pragma once
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "common/resource/fixed_point.h"
 #include "common/resource/frame_body_fields.h"
 #include "common/resource/frame_parts.h"
-#include "common/resource/frame_shares.h"
+#include "common/resource/frame_sensor_pen.h"
 #include "common/resource/joint_texts.h"
-#include "common/resource/pen.h"
 
 namespace chorus::resource {
 
 template <Style kStyle>
-class FramePen : public Pen {
+class FramePen : public SensorPen<kStyle> {
  public:
+  using Base = SensorPen<kStyle>;
+  using Base::need, Base::put, Base::put_integer, Base::puts;
+
   /// For a document of `bodies` of the frame's bodies.
   FramePen(const FrameResource& frame, std::size_t bodies)
-      : Pen(1024 + bodies * kBodyBytes),
-        frame_(frame),
-        sensors_(quoted_names(frame)),
-        share_list_(frame.sensors) {
-    for (const std::string& name : sensors_) sensor_bytes_ += name.size() + kShareBytes;
-  }
+      : Base(frame, 1024 + bodies * kBodyBytes), frame_(frame) {}
 
   /// Room for one joint, body or frame with its sensors, beside `more` bytes.
   void need_more(std::size_t more) {
-    need(kJointBytes + sensor_bytes_ + frame_.source.size() * 6 + more);
-  }
-
-  template <class... Text>
-  void puts(const Text&... text) {
-    (put(text), ...);
+    need(kJointBytes + Base::sensor_bytes() + frame_.source.size() * 6 + more);
   }
 
   template <class... Each, class Owner>
@@ -75,16 +65,8 @@ class FramePen : public Pen {
     put_fields(FrameFields{}, frame_);
   }
 
-  void put_sensors() {
-    if (sensors_.empty()) return;
-    put(kTurtle ? " ;\n  ch:sensor " : ",\"sensors\":[");
-    put_names(~std::uint64_t{0});
-    put(kTurtle ? "" : "]");
-  }
-
  private:
-  static constexpr bool kTurtle = kStyle == Style::Turtle;
-  static constexpr std::string_view kMark = kStyle == Style::JsonLd ? "\"" : "";
+  using Base::kMark, Base::kTurtle;
   static constexpr std::string_view kAfterName = kTurtle ? "" : "\"";
   static constexpr std::string_view kSpace = kTurtle ? " ;\n  ch:space ch:" : ",\"space\":\"";
   static constexpr std::string_view kState = kTurtle ? " ;\n  ch:state ch:" : ",\"state\":\"";
@@ -113,9 +95,9 @@ class FramePen : public Pen {
     } else if constexpr (Field::kKind == FieldKind::State) {
       if (Field::kTurtle == kTurtle) put_state(owner.state);
     } else if constexpr (Field::kKind == FieldKind::Contributors) {
-      put_contributors(owner.contributors);
+      Base::put_contributors(owner.contributors);
     } else {
-      put_shares(owner);
+      Base::put_shares(owner);
     }
   }
 
@@ -127,48 +109,13 @@ class FramePen : public Pen {
   template <int kDecimals>
   void put_number(std::string_view before, double value) {
     put(before);
-    put_decimal<kDecimals>(value);
+    this->template put_decimal<kDecimals>(value);
     put(kMark);
   }
 
   void put_state(JointState state) { puts(kState, name_of(state), kAfterName); }
 
-  void put_names(std::uint64_t bits) {
-    std::string_view comma;
-    for (std::size_t i = 0; i < std::min(sensors_.size(), kMaxSensors); ++i) {
-      if ((bits >> i & 1U) == 0) continue;
-      puts(comma, sensors_[i]);
-      comma = kTurtle ? ", " : ",";
-    }
-  }
-
-  void put_contributors(std::uint64_t contributors) {
-    const std::uint64_t known = sensors_.size() >= kMaxSensors
-                                    ? ~std::uint64_t{0}
-                                    : (std::uint64_t{1} << sensors_.size()) - 1;
-    if (kTurtle ? (contributors & known) == 0 : sensors_.empty()) return;
-    put(kTurtle ? " ;\n  ch:contributor " : ",\"contributors\":[");
-    put_names(contributors);
-    put(kTurtle ? "" : "]");
-  }
-
-  void put_shares(const JointResource& joint) {
-    ShareList::Values values;
-    std::string_view before = kTurtle ? " ;\n  ch:shares (" : ",\"shares\":[";
-    const auto list = share_list_.of(joint.shares, joint.contributors, values);
-    for (const double share : list) {
-      puts(before, kMark);
-      put_decimal<kShareDecimals>(share);
-      put(kMark);
-      before = kTurtle ? " " : ",";
-    }
-    if (!list.empty()) put(kTurtle ? ")" : "]");
-  }
-
   const FrameResource& frame_;
-  const std::vector<std::string> sensors_;
-  const ShareList share_list_;
-  std::size_t sensor_bytes_ = 0;
   TimeText time_;
 };
 

@@ -78,8 +78,8 @@ struct Orientation {
     const auto& q = joint.orientation.coeffs();
     const double norm = q.norm();
     if (!std::isfinite(norm) || norm <= kLeastNorm) return std::nullopt;
-    const double by = std::abs(norm - 1.0) > kWrittenTolerance ? norm : 1.0;
-    return Values{q[0] / by, q[1] / by, q[2] / by, q[3] / by};
+    if (std::abs(norm - 1.0) <= kWrittenTolerance) return Values{q[0], q[1], q[2], q[3]};
+    return Values{q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
   }
   /// The terms of the length are added one by one, because norm() would load two at once and wait
   /// until they are stored.
