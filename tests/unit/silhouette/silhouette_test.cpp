@@ -97,7 +97,8 @@ TEST(Evidence, IsZeroOnTheOutlineAndFarthestAwayFromIt) {
       outline_of(flat_capsules(scene.truth, usual_shape(1.75, 0.9), kPlace, kCamera), 4.0);
   double sum = 0.0;
   for (const OutlinePoint& point : outline) sum += scene.evidence->distance(point.pixel);
-  EXPECT_LT(sum / static_cast<double>(outline.size()), 3.0);
+  // The field is half as large, and noise is opened away: corners are round by some pixels.
+  EXPECT_LT(sum / static_cast<double>(outline.size()), 6.0);
 }
 
 TEST(Evidence, IsTheSameWithAnyNumberOfThreads) {
