@@ -77,7 +77,7 @@ def body(t, wrong=False):
         bend = 0.9 + 0.5 * math.sin(2.3 * t + 2 * s)
         knee = [hip[0] + 0.42 * math.sin(aside), hip[1] - 0.42 * math.cos(swing) * math.cos(aside),
                 hip[2] + 0.42 * math.sin(swing) * math.cos(aside)]
-        lower = swing - bend + (1.4 if wrong and s == 1 else 0.0)
+        lower = swing - bend - (1.0 if wrong and s == 1 else 0.0)
         ankle = [knee[0] + 0.4 * math.sin(aside), knee[1] - 0.4 * math.cos(lower) * math.cos(aside),
                  knee[2] + 0.4 * math.sin(lower) * math.cos(aside)]
         lift = 0.9 + 0.6 * math.sin(1.7 * t + s)
