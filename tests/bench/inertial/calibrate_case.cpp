@@ -19,76 +19,78 @@ namespace {
 using evaluation::OrientationPair;
 using evaluation::OrientationPairs;
 
-constexpr double kRate = 40.0;  // the paper's [Hz]
-constexpr double kSensorNoise = deg(2.0);
-constexpr double kTrackerNoise = deg(5.0);
-constexpr double kBurst = 0.5;  // [s]
+constexpr double kPairRate = 40.0;  // the paper's [Hz]
+constexpr double kPairSensorNoise = deg(2.0);
+constexpr double kPairTrackerNoise = deg(5.0);
+constexpr double kGrossBurst = 0.5;  // [s]
 
 /// Every way a limb can turn.
-Eigen::Quaterniond rich(double t, double phase) {
+Eigen::Quaterniond rich_limb(double t, double phase) {
   return exp_map({0.9 * std::sin(1.3 * t + phase), 1.1 * std::sin(0.8 * t + 2 * phase),
                   0.8 * std::cos(1.9 * t - phase)});
 }
 
 /// A shank in a straight walk: a hinge, and little else (eigenvalues of the axes 1 to 0.01).
-Eigen::Quaterniond walking(double t, double phase) {
+Eigen::Quaterniond walking_limb(double t, double phase) {
   constexpr double kStep = 2.0 * std::numbers::pi * 0.9;
   return exp_map({0.55 * std::sin(kStep * t + phase), 0.08 * std::sin(0.5 * kStep * t),
                   0.06 * std::sin(kStep * t + phase + 1.0)});
 }
 
-using Movement = Eigen::Quaterniond (*)(double, double);
+using LimbMovement = Eigen::Quaterniond (*)(double, double);
 
-struct Draw {
+struct SimulatedPairs {
   Eigen::Quaterniond mount;
   double heading = 0.0, phase = 0.0;
   OrientationPairs pairs;
 };
 
-Draw drawn(std::uint64_t seed, double length, double gross, Movement movement) {
+SimulatedPairs simulated_pairs(std::uint64_t seed, double length, double gross,
+                               LimbMovement movement) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> any;
   const auto turn = [&](double sigma) {
     return exp_map(sigma * Eigen::Vector3d(normal(random), normal(random), normal(random)));
   };
-  Draw out{turn(3.0), 2.0 * std::numbers::pi * any(random), 6.0 * any(random), {}};
+  SimulatedPairs out{turn(3.0), 2.0 * std::numbers::pi * any(random), 6.0 * any(random), {}};
   bool bad = false;
   Eigen::Quaterniond off = Eigen::Quaterniond::Identity();
   double next = 0.0;
-  for (double t = 0.0; t < length; t += 1.0 / kRate) {
+  for (double t = 0.0; t < length; t += 1.0 / kPairRate) {
     if (t >= next) {
       bad = any(random) < gross;
       off = turn(2.0);
-      next += kBurst;
+      next += kGrossBurst;
     }
     const Eigen::Quaterniond limb = movement(t, out.phase);
     OrientationPair pair;
     pair.time = t;
-    pair.inertial_from_sensor = about_y(-out.heading) * limb * out.mount * turn(kSensorNoise);
+    pair.inertial_from_sensor = about_y(-out.heading) * limb * out.mount * turn(kPairSensorNoise);
     pair.tracked.world_from_limb =
-        limb * turn(kTrackerNoise) * (bad ? off : Eigen::Quaterniond::Identity());
+        limb * turn(kPairTrackerNoise) * (bad ? off : Eigen::Quaterniond::Identity());
     out.pairs.push_back(pair);
   }
   return out;
 }
 
 /// Root mean square of the prediction's error in rich movement, without noise [rad].
-double prediction_error(const inertial::SensorCalibration& found, const Draw& draw) {
+double prediction_error(const inertial::SensorCalibration& found, const SimulatedPairs& draw) {
   double sum = 0.0;
   constexpr int kPoses = 200;
   for (int i = 0; i < kPoses; ++i) {
-    const Eigen::Quaterniond limb = rich(0.37 * i, draw.phase + 1.0);
+    const Eigen::Quaterniond limb = rich_limb(0.37 * i, draw.phase + 1.0);
     const Eigen::Quaterniond sensed = about_y(-draw.heading) * limb * draw.mount;
     sum += std::pow(angular_distance(inertial::predicted_limb(found, sensed), limb), 2);
   }
   return std::sqrt(sum / kPoses);
 }
 
-void rich_rows(Report& report, double gross, int draws) {
+void rich_limb_rows(Report& report, double gross, int draws) {
   std::vector<double> ours, park, opencv;
   for (int i = 0; i < draws; ++i) {
-    const Draw draw = drawn(report.seed() + static_cast<std::uint64_t>(i), 30.0, gross, rich);
+    const SimulatedPairs draw =
+        simulated_pairs(report.seed() + static_cast<std::uint64_t>(i), 30.0, gross, rich_limb);
     const auto fit = evaluation::fit_calibration(draw.pairs);
     const auto by_park = evaluation::park_calibration(draw.pairs);
     const auto by_opencv = hand_eye_by_opencv(draw.pairs);
@@ -107,12 +109,12 @@ void rich_rows(Report& report, double gross, int draws) {
   report.row(name, "local_deg_opencv", percentile(opencv, 0.5), "deg");
 }
 
-void walk_rows(Report& report, double gross, int draws) {
+void walking_limb_rows(Report& report, double gross, int draws) {
   double refused = 0.0, over = 0.0;
   std::vector<double> errors;
   for (int i = 0; i < draws; ++i) {
-    const Draw draw =
-        drawn(report.seed() + 1000 + static_cast<std::uint64_t>(i), 5.0, gross, walking);
+    const SimulatedPairs draw = simulated_pairs(
+        report.seed() + 1000 + static_cast<std::uint64_t>(i), 5.0, gross, walking_limb);
     const auto fit = evaluation::calibrate_sensor(draw.pairs, "sensor", inertial::Limb::ShankLeft);
     if (!fit) {
       refused += 1.0;
@@ -132,8 +134,8 @@ void walk_rows(Report& report, double gross, int draws) {
 
 Result<void> run_calibrate(Report& report) {
   const int draws = report.quick() ? 4 : 20;
-  for (const double gross : {0.0, 0.1, 0.3}) rich_rows(report, gross, draws);
-  for (const double gross : {0.0, 0.3}) walk_rows(report, gross, draws);
+  for (const double gross : {0.0, 0.1, 0.3}) rich_limb_rows(report, gross, draws);
+  for (const double gross : {0.0, 0.3}) walking_limb_rows(report, gross, draws);
   report.note(
       "calibrate: simulated; sensor noise 2 degrees, tracker 5 degrees about each axis, wrong in "
       "bursts of half a second; 30 s of rich movement, or a straight walk of 5 s, judged in rich "

@@ -20,19 +20,19 @@ using evaluation::OrientationPair;
 using evaluation::OrientationPairs;
 using evaluation::ParkCalibration;
 
-constexpr double kWindows[] = {2.0, 5.0, 10.0};  // [s]
-constexpr double kStride = 1.0;                  // between windows [s]
+constexpr double kCalibrationWindows[] = {2.0, 5.0, 10.0};  // [s]
+constexpr double kWindowStride = 1.0;                       // between windows [s]
 constexpr double kChi95 = 1.614;  // 95 % of a three-dimensional normal, in its root mean square
 
 /// Median angle between what a calibration predicts and the truth, over `rest`; with the share of
 /// instants below `bound`.
-struct Judged {
+struct JudgedWindow {
   double median_deg = 0.0;
   double within = 0.0;
 };
 
 template <class Predict>
-Judged judge(const OrientationPairs& rest, double bound, const Predict& predict) {
+JudgedWindow judge_prediction(const OrientationPairs& rest, double bound, const Predict& predict) {
   std::vector<double> off;
   double within = 0.0;
   for (const OrientationPair& pair : rest) {
@@ -50,23 +50,24 @@ auto predicted_by(const ParkCalibration& found) {
   };
 }
 
-struct Columns {
+struct WindowScores {
   std::vector<double> ours, park, opencv, answered;
   double within = 0.0, judged = 0.0, windows = 0.0, refused = 0.0, bad = 0.0;
 };
 
-void judge_window(const OrientationPairs& window, const OrientationPairs& rest, Columns& out) {
+void judge_window(const OrientationPairs& window, const OrientationPairs& rest, WindowScores& out) {
   out.windows += 1.0;
   const auto nothing = std::nan("");
   const auto park = evaluation::park_calibration(window);
-  out.park.push_back(park ? judge(rest, 0, predicted_by(*park)).median_deg : nothing);
+  out.park.push_back(park ? judge_prediction(rest, 0, predicted_by(*park)).median_deg : nothing);
   const auto opencv = hand_eye_by_opencv(window);
-  out.opencv.push_back(opencv ? judge(rest, 0, predicted_by(*opencv)).median_deg : nothing);
+  out.opencv.push_back(opencv ? judge_prediction(rest, 0, predicted_by(*opencv)).median_deg
+                              : nothing);
   const auto fit = evaluation::fit_calibration(window);
   if (!fit) return out.ours.push_back(nothing);
   const auto& found = fit->calibration;
   const double bound = kChi95 * std::hypot(found.prediction_sigma, fit->sigma * std::sqrt(3.0));
-  const Judged ours = judge(rest, bound, [&](const OrientationPair& pair) {
+  const JudgedWindow ours = judge_prediction(rest, bound, [&](const OrientationPair& pair) {
     return inertial::predicted_limb(found, pair.inertial_from_sensor);
   });
   out.ours.push_back(ours.median_deg);
@@ -80,12 +81,13 @@ void judge_window(const OrientationPairs& window, const OrientationPairs& rest, 
   out.judged += 1.0;
 }
 
-Columns judge_take(const RealTake& take, double length) {
-  Columns out;
+WindowScores judge_take(const RealTake& take, double length) {
+  WindowScores out;
   for (const RealSensor& sensor : take.sensors) {
     const OrientationPairs all = pairs_of(sensor);
     if (all.empty()) continue;
-    for (double begin = all.front().time; begin + length < all.back().time; begin += kStride) {
+    for (double begin = all.front().time; begin + length < all.back().time;
+         begin += kWindowStride) {
       OrientationPairs window, rest;
       for (const OrientationPair& pair : all) {
         const bool in = pair.time >= begin && pair.time < begin + length;
@@ -97,7 +99,7 @@ Columns judge_take(const RealTake& take, double length) {
   return out;
 }
 
-void report_columns(Report& report, const std::string& name, const Columns& found) {
+void report_windows(Report& report, const std::string& name, const WindowScores& found) {
   const double ours = percentile(found.ours, 0.9);
   report.row(name, "p90_deg", ours, "deg", "park", ours / percentile(found.park, 0.9));
   report.row(name, "p90_deg_park", percentile(found.park, 0.9), "deg");
@@ -109,14 +111,15 @@ void report_columns(Report& report, const std::string& name, const Columns& foun
   report.row(name, "coverage_percent", 100.0 * found.within / std::max(1.0, found.judged), "%");
 }
 
-constexpr double kHalfWindow = 0.03;  // of the angular rate [s]
+constexpr double kShiftHalfWindow = 0.03;  // of the angular rate [s]
 
-struct Shifts {
+struct FoundShifts {
   std::vector<double> rate, acceleration;  ///< |found - injected| of each sensor [ms]
   std::vector<double> joint, joint_over_sigma;
 };
 
-Result<evaluation::TimeShift> shifted(const std::vector<evaluation::SignalPair>& pairs, double by) {
+Result<evaluation::TimeShift> shifted_by(const std::vector<evaluation::SignalPair>& pairs,
+                                         double by) {
   std::vector<evaluation::SignalPair> moved = pairs;
   for (auto& pair : moved)
     for (auto& each : pair.inertial) each.time -= by;
@@ -133,10 +136,10 @@ Result<void> run_calibrate_real(Report& report) {
   const auto takes = real_takes();
   if (!takes) return pass(takes);
   for (const RealTake& take : *takes) {
-    for (const double length : kWindows) {
-      const Columns found = judge_take(take, length);
+    for (const double length : kCalibrationWindows) {
+      const WindowScores found = judge_take(take, length);
       if (found.windows > 0)
-        report_columns(
+        report_windows(
             report, "calibrate-real-" + take.name + "-" + std::to_string(int(length)) + "s", found);
     }
   }
@@ -153,17 +156,17 @@ Result<void> run_time_real(Report& report) {
   for (const RealTake& take : *takes) {
     std::vector<evaluation::SignalPair> rates, forces;
     for (const RealSensor& sensor : take.sensors) {
-      rates.push_back({evaluation::angular_rates(sensor.optical, kHalfWindow),
-                       evaluation::angular_rates(sensor.inertial, kHalfWindow)});
+      rates.push_back({evaluation::angular_rates(sensor.optical, kShiftHalfWindow),
+                       evaluation::angular_rates(sensor.inertial, kShiftHalfWindow)});
       forces.push_back(
-          {evaluation::accelerations(sensor.places, kHalfWindow), sensor.acceleration});
+          {evaluation::accelerations(sensor.places, kShiftHalfWindow), sensor.acceleration});
     }
     // What the set itself is off by, for each sensor and jointly: the reference of injected shifts.
     const auto own = evaluation::find_time_shift(rates);
     if (!own) return pass(own);
     report.row("time-real-" + take.name, "own_shift_ms", 1e3 * own->shift, "ms");
     report.row("time-real-" + take.name, "own_sigma_ms", 1e3 * own->sigma, "ms");
-    Shifts found;
+    FoundShifts found;
     std::vector<double> each_own, each_own_force;
     for (std::size_t i = 0; i < rates.size(); ++i) {
       const auto one = evaluation::find_time_shift({rates[i]});
@@ -176,10 +179,10 @@ Result<void> run_time_real(Report& report) {
     report.row("time-real-" + take.name, "sensor_own_high_ms", 1e3 * percentile(each_own, 1.0),
                "ms");
     for (const double by : {-0.5, -0.217, -0.063, 0.031, 0.148, 0.5}) {
-      const auto joint = shifted(rates, by);
+      const auto joint = shifted_by(rates, by);
       found.joint.push_back(ms_off(joint, by + own->shift));
       for (std::size_t i = 0; i < rates.size(); ++i)
-        found.rate.push_back(ms_off(shifted({rates[i]}, by), by + each_own[i]));
+        found.rate.push_back(ms_off(shifted_by({rates[i]}, by), by + each_own[i]));
     }
     report.row("time-real-" + take.name, "time_ms", percentile(found.joint, 1.0), "ms");
     report.row("time-real-" + take.name, "sensor_time_ms", percentile(found.rate, 1.0), "ms");

@@ -24,19 +24,19 @@ namespace {
 namespace fs = std::filesystem;
 using inertial::ImuSample;
 
-constexpr double kRateHz = 2000.0 / 7.0;  // of BROAD
-constexpr double kPeriod = 1.0 / kRateHz;
+constexpr double kBroadRateHz = 2000.0 / 7.0;  // of BROAD
+constexpr double kBroadPeriod = 1.0 / kBroadRateHz;
 // Kept for judging by whoever filed the issue.
-constexpr std::string_view kKept[] = {"07_", "21_", "28_"};
+constexpr std::string_view kKeptTrials[] = {"07_", "21_", "28_"};
 
-struct Trial {
+struct BroadTrial {
   std::string name;
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> truth;  ///< Not unit where the cameras lost the body.
   std::vector<char> moving;
 };
 
-Result<std::string> unpacked(const fs::path& file) {
+Result<std::string> unpacked_broad(const fs::path& file) {
   gzFile const packed = gzopen(file.c_str(), "rb");
   if (packed == nullptr) return fail(ErrorCode::Io, file.string(), "cannot be opened");
   std::string text;
@@ -50,7 +50,7 @@ Result<std::string> unpacked(const fs::path& file) {
 }
 
 /// The numbers of a csv line; what is no number is NaN.
-std::vector<double> numbers_of(std::string_view line) {
+std::vector<double> broad_numbers(std::string_view line) {
   std::vector<double> out;
   while (!line.empty()) {
     const std::size_t end = std::min(line.find(','), line.size());
@@ -60,17 +60,17 @@ std::vector<double> numbers_of(std::string_view line) {
   return out;
 }
 
-Result<Trial> read_trial(const fs::path& file) {
-  const auto text = unpacked(file);
+Result<BroadTrial> read_broad_trial(const fs::path& file) {
+  const auto text = unpacked_broad(file);
   if (!text) return pass(text);
-  Trial trial{file.stem().stem().string(), {}, {}, {}};
+  BroadTrial trial{file.stem().stem().string(), {}, {}, {}};
   std::string_view rest = *text;
   for (bool head = true; !rest.empty(); head = false) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     const std::string_view line = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (head) continue;
-    const auto v = numbers_of(line);
+    const auto v = broad_numbers(line);
     if (v.size() != 18) return fail(ErrorCode::Malformed, file.string(), "needs 18 columns");
     trial.samples.push_back({{v[1], v[2], v[3]}, {v[4], v[5], v[6]}, {{v[7], v[8], v[9]}}});
     trial.truth.emplace_back(v[10], v[11], v[12], v[13]);
@@ -79,14 +79,14 @@ Result<Trial> read_trial(const fs::path& file) {
   return trial;
 }
 
-struct Errors {
+struct FilterErrors {
   double total = 0.0;        ///< Root mean square [rad]
   double inclination = 0.0;  ///< Root mean square [rad]
   double us_per_sample = 0.0;
 };
 
-Errors errors_of(const std::vector<Eigen::Quaterniond>& found, const Trial& trial) {
-  Errors sums;
+FilterErrors filter_errors(const std::vector<Eigen::Quaterniond>& found, const BroadTrial& trial) {
+  FilterErrors sums;
   double count = 0.0;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (trial.moving[i] == 0 || !(trial.truth[i].norm() > 0.5)) continue;
@@ -100,12 +100,13 @@ Errors errors_of(const std::vector<Eigen::Quaterniond>& found, const Trial& tria
   return {std::sqrt(sums.total / count), std::sqrt(sums.inclination / count), 0.0};
 }
 
-using Filtered = std::vector<Eigen::Quaterniond>;
-using Run = std::function<Filtered(const std::vector<ImuSample>&)>;
+using FilteredTrial = std::vector<Eigen::Quaterniond>;
+using RunFilter = std::function<FilteredTrial(const std::vector<ImuSample>&)>;
 
-Filtered live(const std::vector<ImuSample>& samples, const inertial::VqfOptions& options) {
-  inertial::Vqf filter(kPeriod, options);
-  Filtered out;
+FilteredTrial live_filter(const std::vector<ImuSample>& samples,
+                          const inertial::VqfOptions& options) {
+  inertial::Vqf filter(kBroadPeriod, options);
+  FilteredTrial out;
   out.reserve(samples.size());
   for (const ImuSample& sample : samples) {
     filter.update(sample);
@@ -115,9 +116,9 @@ Filtered live(const std::vector<ImuSample>& samples, const inertial::VqfOptions&
 }
 
 template <class Filter, class Options>
-Filtered older(const std::vector<ImuSample>& samples, const Options& options) {
-  Filter filter(kPeriod, inertial::started_by(samples.front()), options);
-  Filtered out;
+FilteredTrial older_filter(const std::vector<ImuSample>& samples, const Options& options) {
+  Filter filter(kBroadPeriod, inertial::started_by(samples.front()), options);
+  FilteredTrial out;
   for (const ImuSample& sample : samples) {
     filter.update(sample);
     out.push_back(inertial::to_enu(filter.nwu_from_sensor()));
@@ -125,33 +126,36 @@ Filtered older(const std::vector<ImuSample>& samples, const Options& options) {
   return out;
 }
 
-struct Method {
+struct FilterMethod {
   std::string name;
-  Run run;
+  RunFilter run;
   double published_deg;  ///< Measured outside this project on the 27 trials; NaN: not.
 };
 
-std::vector<Method> methods() {
+std::vector<FilterMethod> filter_methods() {
   const inertial::VqfOptions basic{3.0, 9.0, false, false, false};
   const double none = std::nan("");
   return {
-      {"vqf", [](const auto& s) { return live(s, {}); }, 2.33},
-      {"vqf-offline", [](const auto& s) { return inertial::vqf_offline(s, kPeriod); }, 2.04},
-      {"vqf-basic", [basic](const auto& s) { return live(s, basic); }, 3.44},
+      {"vqf", [](const auto& s) { return live_filter(s, {}); }, 2.33},
+      {"vqf-offline", [](const auto& s) { return inertial::vqf_offline(s, kBroadPeriod); }, 2.04},
+      {"vqf-basic", [basic](const auto& s) { return live_filter(s, basic); }, 3.44},
       {"madgwick",
        [](const auto& s) {
-         return older<inertial::Madgwick>(s, inertial::MadgwickOptions{0.12, 0.5});
+         return older_filter<inertial::Madgwick>(s, inertial::MadgwickOptions{0.12, 0.5});
        },
        4.67},
       {"madgwick-paper",
-       [](const auto& s) { return older<inertial::Madgwick>(s, inertial::MadgwickOptions{}); },
+       [](const auto& s) {
+         return older_filter<inertial::Madgwick>(s, inertial::MadgwickOptions{});
+       },
        none},
       {"mahony",
-       [](const auto& s) { return older<inertial::Mahony>(s, inertial::MahonyOptions{}); }, 8.20},
+       [](const auto& s) { return older_filter<inertial::Mahony>(s, inertial::MahonyOptions{}); },
+       8.20},
   };
 }
 
-std::vector<fs::path> trials() {
+std::vector<fs::path> broad_files() {
   const char* const stated = std::getenv("CHORUS_BROAD");
   const fs::path folder =
       stated != nullptr ? fs::path(stated) : shared_recordings() / "broad_imu_optical" / "csv_60s";
@@ -159,27 +163,27 @@ std::vector<fs::path> trials() {
   std::error_code absent;
   for (const auto& entry : fs::directory_iterator(folder, absent)) {
     const std::string name = entry.path().filename().string();
-    const bool kept = std::ranges::any_of(kKept, [&](auto k) { return name.starts_with(k); });
+    const bool kept = std::ranges::any_of(kKeptTrials, [&](auto k) { return name.starts_with(k); });
     if (!kept && name.ends_with(".csv.gz")) out.push_back(entry.path());
   }
   std::ranges::sort(out);
   return out;
 }
 
-Errors timed(const Method& method, const Trial& trial) {
+FilterErrors timed_filter(const FilterMethod& method, const BroadTrial& trial) {
   const auto begin = std::chrono::steady_clock::now();
-  const Filtered found = method.run(trial.samples);
+  const FilteredTrial found = method.run(trial.samples);
   const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
-  Errors errors = errors_of(found, trial);
+  FilterErrors errors = filter_errors(found, trial);
   errors.us_per_sample = took.count() / static_cast<double>(trial.samples.size());
   return errors;
 }
 
-struct Sum {
-  Errors all;
+struct FilterSum {
+  FilterErrors all;
   double trials = 0.0, disturbed = 0.0, disturbed_total = 0.0, worst = 0.0;
 
-  void add(const Errors& each, bool is_disturbed) {
+  void add(const FilterErrors& each, bool is_disturbed) {
     all.total += each.total;
     all.inclination += each.inclination;
     all.us_per_sample += each.us_per_sample;
@@ -190,7 +194,7 @@ struct Sum {
   }
 };
 
-void report_method(Report& report, const Method& method, const Sum& sum) {
+void report_filter(Report& report, const FilterMethod& method, const FilterSum& sum) {
   const std::string name = "filter-" + method.name;
   const double total = to_deg(sum.all.total / sum.trials);
   report.row(name, "filter_deg", total, "deg", std::isnan(method.published_deg) ? "" : "published",
@@ -205,21 +209,22 @@ void report_method(Report& report, const Method& method, const Sum& sum) {
 }  // namespace
 
 Result<void> run_filter(Report& report) {
-  const auto files = trials();
+  const auto files = broad_files();
   if (files.empty()) {
     report.note(
         "filter: no trials of BROAD here; set CHORUS_BROAD (tests/bench/inertial/broad_csv.py)");
     return {};
   }
-  const auto all = methods();
-  std::vector<Sum> sums(all.size());
+  const auto all = filter_methods();
+  std::vector<FilterSum> sums(all.size());
   for (const fs::path& file : files) {
-    const auto trial = read_trial(file);
+    const auto trial = read_broad_trial(file);
     if (!trial) return pass(trial);
     const bool disturbed = trial->name.find("_disturbed") != std::string::npos;
-    for (std::size_t m = 0; m < all.size(); ++m) sums[m].add(timed(all[m], *trial), disturbed);
+    for (std::size_t m = 0; m < all.size(); ++m)
+      sums[m].add(timed_filter(all[m], *trial), disturbed);
   }
-  for (std::size_t m = 0; m < all.size(); ++m) report_method(report, all[m], sums[m]);
+  for (std::size_t m = 0; m < all.size(); ++m) report_filter(report, all[m], sums[m]);
   report.note("filter: mean over " + std::to_string(files.size()) +
               " trials of BROAD; \"published\" was measured outside this project on 27 trials.");
   return {};

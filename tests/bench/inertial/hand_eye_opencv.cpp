@@ -13,7 +13,7 @@ namespace {
 using evaluation::OrientationPairs;
 using evaluation::ParkCalibration;
 
-cv::Mat matrix_of(const Eigen::Quaterniond& q) {
+cv::Mat opencv_matrix(const Eigen::Quaterniond& q) {
   const Eigen::Matrix3d r = q.toRotationMatrix();
   cv::Mat out(3, 3, CV_64F);
   for (int i = 0; i < 3; ++i)
@@ -30,8 +30,8 @@ std::optional<ParkCalibration> hand_eye_by_opencv(const OrientationPairs& pairs)
   const std::size_t step = std::max<std::size_t>(1, pairs.size() / kMostPoses);
   std::vector<cv::Mat> world_from_limb, sensor_from_inertial, zeros;
   for (std::size_t i = 0; i < pairs.size(); i += step) {
-    world_from_limb.push_back(matrix_of(pairs[i].tracked.world_from_limb));
-    sensor_from_inertial.push_back(matrix_of(pairs[i].inertial_from_sensor.conjugate()));
+    world_from_limb.push_back(opencv_matrix(pairs[i].tracked.world_from_limb));
+    sensor_from_inertial.push_back(opencv_matrix(pairs[i].inertial_from_sensor.conjugate()));
     zeros.push_back(cv::Mat::zeros(3, 1, CV_64F));
   }
   cv::Mat rotation, translation;

@@ -18,16 +18,16 @@ namespace fs = std::filesystem;
 using evaluation::OrientationTrack;
 using inertial::Limb;
 
-constexpr std::uintmax_t kMostBytes = 64u << 20;
-constexpr double kGravity = 9.81;
+constexpr std::uintmax_t kMostTakeBytes = 64u << 20;
+constexpr double kTakeGravity = 9.81;
 
-using Columns = std::vector<std::vector<double>>;
+using NumberRows = std::vector<std::vector<double>>;
 
 /// Lines of numbers; any of `separators` parts them.  Lines that are no numbers are left out.
-Result<Columns> lines_of(const fs::path& file, std::string_view separators) {
-  const auto text = read_file(file, kMostBytes);
+Result<NumberRows> number_rows_of(const fs::path& file, std::string_view separators) {
+  const auto text = read_file(file, kMostTakeBytes);
   if (!text) return pass(text);
-  Columns out;
+  NumberRows out;
   std::istringstream lines(*text);
   for (std::string line; std::getline(lines, line);) {
     for (char& c : line)
@@ -51,12 +51,12 @@ Eigen::Quaterniond wxyz(const std::vector<double>& row, std::size_t at) {
 Eigen::Quaterniond xyzw(const std::vector<double>& row, std::size_t at) {
   return {row[at + 3], row[at], row[at + 1], row[at + 2]};
 }
-Eigen::Vector3d three(const std::vector<double>& row, std::size_t at) {
+Eigen::Vector3d triple(const std::vector<double>& row, std::size_t at) {
   return {row[at], row[at + 1], row[at + 2]};
 }
 
 double free_acceleration(const Eigen::Quaterniond& up_from_sensor, const Eigen::Vector3d& force) {
-  return (up_from_sensor * force - Eigen::Vector3d(0, kGravity, 0)).norm();
+  return (up_from_sensor * force - Eigen::Vector3d(0, kTakeGravity, 0)).norm();
 }
 
 struct SevenRow {
@@ -75,13 +75,13 @@ constexpr std::array<SevenRow, 7> kSeven{{
 Result<RealTake> seven() {
   constexpr double kRate = 100.0;
   const fs::path folder = shared_recordings() / "gait_imu_vicon" / "data" / "sample";
-  const auto optical = lines_of(folder / "vicon" / "S02-Trial-Walk-1.csv", ",");
+  const auto optical = number_rows_of(folder / "vicon" / "S02-Trial-Walk-1.csv", ",");
   if (!optical) return pass(optical);
   const Eigen::Quaterniond up = inertial::y_up_from_z_up();
   RealTake take{"xsens7", {}};
   for (const SevenRow& row : kSeven) {
-    const auto sensed =
-        lines_of(folder / "imu" / (std::string("S02-Trial-Walk-1-") + row.file + ".csv"), ",");
+    const auto sensed = number_rows_of(
+        folder / "imu" / (std::string("S02-Trial-Walk-1-") + row.file + ".csv"), ",");
     if (!sensed) return pass(sensed);
     RealSensor sensor;
     sensor.limb = row.limb;
@@ -89,10 +89,10 @@ Result<RealTake> seven() {
       const double t = static_cast<double>(i) / kRate;
       const auto& seen = (*optical)[i];
       sensor.optical.push_back({t, (up * wxyz(seen, row.quaternion)).normalized()});
-      sensor.places.push_back({t, up * three(seen, row.place)});
+      sensor.places.push_back({t, up * triple(seen, row.place)});
       const Eigen::Quaterniond q = (up * wxyz((*sensed)[i], 0)).normalized();
       sensor.inertial.push_back({t, q});
-      sensor.acceleration.push_back({t, free_acceleration(q, three((*sensed)[i], 4))});
+      sensor.acceleration.push_back({t, free_acceleration(q, triple((*sensed)[i], 4))});
     }
     take.sensors.push_back(std::move(sensor));
   }
@@ -114,9 +114,9 @@ Result<RealTake> thirteen(const fs::path& folder) {
   constexpr double kRate = 60.0;
   constexpr double kInch = 0.0254;
   constexpr std::size_t kFirstHalf = 1500;
-  const auto sensed = lines_of(folder / "output_quat_accel.csv", ",");
-  const auto turned = lines_of(folder / "gt_skel_gbl_ori.txt", "\t");
-  const auto placed = lines_of(folder / "gt_skel_gbl_pos.txt", "\t");
+  const auto sensed = number_rows_of(folder / "output_quat_accel.csv", ",");
+  const auto turned = number_rows_of(folder / "gt_skel_gbl_ori.txt", "\t");
+  const auto placed = number_rows_of(folder / "gt_skel_gbl_pos.txt", "\t");
   if (!sensed) return pass(sensed);
   if (!turned) return pass(turned);
   if (!placed) return pass(placed);
@@ -132,9 +132,9 @@ Result<RealTake> thirteen(const fs::path& folder) {
       if (raw.size() < 7 * row.segment + 7 || (*turned)[i].size() < 4 * row.segment + 4) continue;
       const Eigen::Quaterniond q = (up * xyzw(raw, 7 * row.segment)).normalized();
       sensor.optical.push_back({t, xyzw((*turned)[i], 4 * row.segment).normalized()});
-      sensor.places.push_back({t, kInch * three((*placed)[i], 3 * row.segment)});
+      sensor.places.push_back({t, kInch * triple((*placed)[i], 3 * row.segment)});
       sensor.inertial.push_back({t, q});
-      sensor.acceleration.push_back({t, free_acceleration(q, three(raw, 7 * row.segment + 4))});
+      sensor.acceleration.push_back({t, free_acceleration(q, triple(raw, 7 * row.segment + 4))});
     }
     take.sensors.push_back(std::move(sensor));
   }
