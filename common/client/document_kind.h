@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "common/base/strong_id.h"
+#include "common/resource/document.h"
 #include "common/resource/media_type.h"
 #include "common/sensor/sensor_frame.h"
 #include "common/time/clock_estimate.h"
@@ -16,12 +17,7 @@
 
 namespace chorus::client {
 
-/// A document that was read: what one source says of one instant.
-struct Document {
-  std::uint64_t sequence = 0;
-  Timestamp captured;                 ///< By the clock of the source's host.
-  std::shared_ptr<const void> value;  ///< What DocumentKind::read made; null: no document.
-};
+using resource::Document;
 
 struct DocumentKind {
   /// The resource, below the service's `/`: "frame".  The latest document is there, by conditional
@@ -29,6 +25,7 @@ struct DocumentKind {
   std::string_view path;
   std::string_view kept;  ///< Where earlier ones are, by sequence: "frames/"; empty: nowhere.
   bool floor = false;     ///< Whether the service's floor plane is asked for, too.
+  resource::Format preferred = resource::Format::Turtle;  ///< What it is read from fastest.
   /// Reads one.  Refuses what is not of `expected`, and any document that is not of this kind.
   Result<Document> (*read)(std::string_view text, resource::Format format,
                            const SensorId& expected) = nullptr;

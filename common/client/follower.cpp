@@ -15,10 +15,7 @@ namespace chorus::client {
 namespace {
 
 constexpr std::size_t kMaxHeld = 10;
-constexpr std::string_view kAccept = "text/turtle, application/json;q=0.9";
 constexpr std::string_view kAcceptClock = "application/json";
-constexpr std::string_view kAcceptStream =
-    "text/event-stream, text/turtle;q=0.9, application/json;q=0.8";
 
 Duration steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
@@ -44,6 +41,15 @@ http::ClientLimits limits_of(const FollowOptions& options) {
 std::vector<http::Header> authorization_of(const FollowedService& service) {
   if (service.token.empty()) return {};
   return {{"Authorization", "Bearer " + service.token}};
+}
+
+/// What is asked for: the format that is read fastest, but others rather than none.
+std::string accept_of(const DocumentKind& kind, bool stream) {
+  const bool json = kind.preferred == resource::Format::Json;
+  const std::string first = json ? "application/json" : "text/turtle";
+  const std::string other = json ? "text/turtle" : "application/json";
+  if (stream) return "text/event-stream, " + first + ";q=0.9, " + other + ";q=0.8";
+  return first + ", " + other + ";q=0.9";
 }
 
 }  // namespace
@@ -130,7 +136,9 @@ void Follower::act(const Send& send) {
   http::ClientRequest request;
   request.target = target_of(send);
   request.headers = authorization_of(service_);
-  request.headers.emplace_back("Accept", send.resource == Resource::Clock ? kAcceptClock : kAccept);
+  request.headers.emplace_back("Accept", send.resource == Resource::Clock
+                                             ? std::string(kAcceptClock)
+                                             : accept_of(following_.kind, false));
   if (!send.etag.empty()) request.headers.emplace_back("If-None-Match", send.etag);
   if (send.wait > Duration{0}) {
     const auto wait = std::chrono::ceil<std::chrono::seconds>(send.wait);
@@ -159,7 +167,7 @@ void Follower::open_stream() {
   http::ClientRequest request;
   request.target = target_of({});
   request.headers = authorization_of(service_);
-  request.headers.emplace_back("Accept", kAcceptStream);
+  request.headers.emplace_back("Accept", accept_of(following_.kind, true));
   const auto weak = weak_from_this();
   const auto guarded = [weak](const auto& doing) {
     const auto self = weak.lock();

@@ -10,18 +10,23 @@ Result<Document> read_frame_document(std::string_view text, resource::Format for
                                      const SensorId& expected) {
   auto frame = resource::read_frame(text, format);
   if (!frame) return pass(frame);
-  if (frame->space == resource::SpaceKind::Sensor && frame->source != expected.str()) {
-    return fail(ErrorCode::Conflict, "frame",
-                "the service calls itself \"" + frame->source + "\", the config calls it \"" +
-                    expected.str() + "\"; make both the same");
-  }
-  const auto value = std::make_shared<const resource::FrameResource>(std::move(*frame));
-  return Document{value->sequence, value->captured, value};
+  if (frame->space == resource::SpaceKind::Sensor && frame->source != expected.str())
+    return not_called("frame", frame->source, expected);
+  return resource::document_of_value(
+      std::make_shared<const resource::FrameResource>(std::move(*frame)));
 }
 
 }  // namespace
 
-const KindOf<resource::FrameResource> kFrames{{"frame", "frames/", true, read_frame_document}};
+tl::unexpected<Error> not_called(std::string path, const std::string& source,
+                                 const SensorId& expected) {
+  return fail(ErrorCode::Conflict, std::move(path),
+              "the service calls itself \"" + source + "\", the config calls it \"" +
+                  expected.str() + "\"; make both the same");
+}
+
+const KindOf<resource::FrameResource> kFrames{
+    {"frame", "frames/", true, resource::Format::Turtle, read_frame_document}};
 
 SensorFrame place_in_time(const Arrived<resource::FrameResource>& arrived) {
   SensorFrame placed =

@@ -15,4 +15,8 @@ extern const KindOf<resource::FrameResource> kFrames;
 /// world space is y = 0 instead.
 [[nodiscard]] SensorFrame place_in_time(const Arrived<resource::FrameResource>& arrived);
 
+/// A document at `path` is of another source than expected.
+[[nodiscard]] tl::unexpected<Error> not_called(std::string path, const std::string& source,
+                                               const SensorId& expected);
+
 }  // namespace chorus::client

@@ -21,9 +21,11 @@ class Collected {
     } else if (auto* fused = std::get_if<resource::FrameResource>(&item)) {
       bytes_ += sizeof(*fused) + fused->bodies.size() * sizeof(resource::BodyResource);
       fused_.push_back(std::move(*fused));
+    } else if (auto* text = std::get_if<std::string>(&item)) {
+      bytes_ += text->size();
+      registrations_.push_back(std::move(*text));
     } else {
-      registrations_.push_back(std::get<std::string>(std::move(item)));
-      bytes_ += registrations_.back().size();
+      take_inertial(std::move(item));
     }
     if (bytes_ <= most_) return {};
     return fail(ErrorCode::TooLarge, "recording",
@@ -35,15 +37,28 @@ class Collected {
       recording.frames = std::move(frames_[recording.sensor]);
     cell.fused = std::move(fused_);
     cell.registrations = std::move(registrations_);
+    cell.inertial = std::move(inertial_);
     return cell;
   }
 
  private:
+  void take_inertial(SessionItem item) {
+    if (auto* instant = std::get_if<inertial::InertialFrame>(&item)) {
+      bytes_ += sizeof(*instant) + instant->readings.size() * sizeof(inertial::InertialReading);
+      inertial_[instant->source].instants.push_back(std::move(*instant));
+      return;
+    }
+    auto& calibration = std::get<inertial::InertialCalibration>(item);
+    const auto source = SensorId::parse(calibration.source);
+    if (source) inertial_[*source].calibrations.push_back(std::move(calibration));
+  }
+
   std::uintmax_t most_;
   std::uintmax_t bytes_ = 0;
   std::map<SensorId, std::vector<SensorFrame>> frames_;
   std::vector<resource::FrameResource> fused_;
   std::vector<std::string> registrations_;
+  std::map<SensorId, InertialRecording> inertial_;
 };
 
 }  // namespace

@@ -8,11 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "common/inertial/calibration.h"
+#include "common/inertial/inertial_frame.h"
 #include "common/record/frame_recording.h"
 #include "common/record/recording_files.h"
 #include "common/resource/frame_resource.h"
 
 namespace chorus::record {
+
+/// What was recorded of the worn inertial sensors of one source.
+struct InertialRecording {
+  std::vector<inertial::InertialFrame> instants;            ///< With times by the recorder's clock.
+  std::vector<inertial::InertialCalibration> calibrations;  ///< Oldest first.
+};
 
 struct CellRecording {
   /// Ordered by id.  The recorded clock models have been applied to the capture times, so the
@@ -23,14 +31,16 @@ struct CellRecording {
   std::set<SensorId> cell;  ///< The sensors of all raw streams of a cell, including those not read.
   /// Every registration of the recording as JSON, oldest first.
   std::vector<std::string> registrations;
-  std::vector<resource::FrameResource> fused;  ///< Only on request.
-  std::vector<std::string> damage;             ///< Lost parts, as "FILE: what and why".
+  std::vector<resource::FrameResource> fused;      ///< Only on request.
+  std::map<SensorId, InertialRecording> inertial;  ///< By source; only on request.
+  std::vector<std::string> damage;                 ///< Lost parts, as "FILE: what and why".
 };
 
 struct CellQuery {
   ReadLimits limits = {};
-  SensorId only = {};  ///< The only one of a cell's raw streams to read; empty: all.
-  bool fused = false;  ///< Also read the fused frames.
+  SensorId only = {};     ///< The only one of a cell's raw streams to read; empty: all.
+  bool fused = false;     ///< Also read the fused frames.
+  bool inertial = false;  ///< Also read what inertial sensors said, and their calibrations.
   /// True: a frame that repeats a time or goes back in time is Malformed, unless a recorded clock
   /// model corrects its time.  Otherwise a late frame (numbered before the newest, by at most 1.5
   /// s) takes its place, and other such frames are left out and noted, as a fusion server does.

@@ -10,6 +10,8 @@
 #include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
 #include "common/resource/frame_resource.h"
+#include "common/resource/inertial_calibration_resource.h"
+#include "common/resource/orientations_resource.h"
 
 namespace chorus::record {
 namespace {
@@ -78,11 +80,11 @@ bool moved(Timestamp& t, const std::optional<Duration>& by) {
   return true;
 }
 
-std::optional<Topic> topic_of(std::string_view text) {
-  if (!text.starts_with(kSensorsPrefix)) {
+std::optional<Topic> topic_of(std::string_view text, std::string_view prefix) {
+  if (!text.starts_with(prefix)) {
     return text.starts_with('/') ? std::optional(Topic{{}, text.substr(1)}) : std::nullopt;
   }
-  text.remove_prefix(kSensorsPrefix.size());
+  text.remove_prefix(prefix.size());
   const auto slash = text.find('/');
   const auto id = SensorId::parse(text.substr(0, slash));
   if (!id || slash == std::string_view::npos) return std::nullopt;
@@ -271,7 +273,49 @@ Result<void> Sorting::take_state(const MessageView& message, const Topic& topic)
   return {};
 }
 
+Result<void> Sorting::take_orientations(const MessageView& message, const SensorId& source) {
+  auto read = resource::read_orientations(message.data, resource::Format::Json);
+  if (!read)
+    return fail(ErrorCode::Malformed, where(),
+                std::string(message.topic) + ": " + to_string(read.error()));
+  const auto shift = inertial_shifts_.find(source);
+  const std::optional by =
+      shift == inertial_shifts_.end() ? std::nullopt : std::optional(shift->second);
+  for (inertial::InertialFrame& instant : read->instants) {
+    instant.source = source;
+    instant.received = message.log_time;
+    bool told = moved(instant.captured, by);
+    for (auto& reading : instant.readings) told = moved(reading.captured, by) && told;
+    if (told) hold(std::move(instant), message.log_time);
+  }
+  return {};
+}
+
+/// Takes a message of an inertial source; `topic` is its id and what the message is.
+Result<void> Sorting::take_inertial(const MessageView& message, const Topic& topic) {
+  const SensorId& source = *topic.sensor;
+  if (topic.what == "orientations") return take_orientations(message, source);
+  if (topic.what == "clock") {
+    const auto shift = read_shift(message.data);
+    if (!shift) return fail(ErrorCode::Malformed, where(), shift.error().message);
+    inertial_shifts_[source] = *shift;
+    return {};
+  }
+  if (topic.what != "calibration") return {};
+  auto calibration = resource::read_inertial_calibration(message.data, resource::Format::Json);
+  if (!calibration)
+    return fail(ErrorCode::Malformed, where(),
+                std::string(message.topic) + ": " + to_string(calibration.error()));
+  calibration->source = source.str();
+  hold(std::move(*calibration), message.log_time);
+  return {};
+}
+
 Result<void> Sorting::take(const MessageView& message) {
+  if (message.topic.starts_with(kInertialPrefix)) {
+    const auto inertial = topic_of(message.topic, kInertialPrefix);
+    return query_.inertial && inertial ? take_inertial(message, *inertial) : Result<void>{};
+  }
   const auto topic = topic_of(message.topic);
   if (!topic) return {};
   if (topic->what == "frame") return take_frame(message, *topic);

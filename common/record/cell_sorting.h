@@ -19,13 +19,16 @@ namespace chorus::record {
 /// The topic of the fused frames of a cell, or of the frames of a single sensor.
 inline constexpr std::string_view kFusedTopic = "/frame";
 inline constexpr std::string_view kSensorsPrefix = "/sensors/";
+inline constexpr std::string_view kInertialPrefix = "/inertial/";
 
-/// "/sensors/s1/clock" -> s1 and "clock"; "/frame" -> no id and "frame".
+/// "/sensors/s1/clock" -> s1 and "clock"; "/frame" -> no id and "frame".  Below another prefix,
+/// "/inertial/suit/clock" -> suit and "clock".
 struct Topic {
   std::optional<SensorId> sensor;
   std::string_view what;
 };
-[[nodiscard]] std::optional<Topic> topic_of(std::string_view text);
+[[nodiscard]] std::optional<Topic> topic_of(std::string_view text,
+                                            std::string_view prefix = kSensorsPrefix);
 
 /// The time that a clock model, as JSON, adds to capture times.
 [[nodiscard]] Result<Duration> read_shift(std::string_view text);
@@ -99,6 +102,8 @@ class Sorting {
   Result<void> take_state(const MessageView& message, const Topic& topic);
   Result<void> take_frame(const MessageView& message, const Topic& topic);
   Result<void> take_fused(resource::FrameResource frame, Timestamp logged);
+  Result<void> take_inertial(const MessageView& message, const Topic& topic);
+  Result<void> take_orientations(const MessageView& message, const SensorId& source);
   Result<void> keep(Stream& stream, SensorFrame frame);
   [[nodiscard]] bool is_late(const Stream& stream, const SensorFrame& frame) const;
   bool put_in_place(Stream& stream, SensorFrame frame);
@@ -113,6 +118,7 @@ class Sorting {
   std::size_t files_ = 0;   ///< Number of files begun so far.
   std::size_t frames_ = 0;  ///< Number of frames so far, on all topics.
   std::map<SensorId, Stream> streams_;
+  std::map<SensorId, Duration> inertial_shifts_;  ///< As Stream::shift, by inertial source.
   Line fused_;
   std::string registration_;  ///< The registration read last, as JSON.
   std::deque<Held> held_;     ///< In log order, but for late frames.

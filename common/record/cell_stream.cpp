@@ -18,7 +18,11 @@ bool is_scene(std::string_view topic) {
 ReadLimits limits_of(const CellQuery& query) {
   ReadLimits limits = query.limits;
   const std::string own = std::string(kSensorsPrefix) + query.only.str() + "/";
-  limits.wanted = [raw = query.raw, all = query.only.str().empty(), own](std::string_view topic) {
+  const std::string worn = std::string(kInertialPrefix) + query.only.str();
+  limits.wanted = [raw = query.raw, all = query.only.str().empty(), own, worn,
+                   inertial = query.inertial](std::string_view topic) {
+    if (topic.starts_with(kInertialPrefix))
+      return inertial && (all || topic.starts_with(worn + "/"));
     if (!raw) return topic == kFusedTopic;
     const bool others = !all && topic.starts_with(kSensorsPrefix);
     return !is_scene(topic) && (!others || topic.starts_with(own));

@@ -13,8 +13,9 @@
 namespace chorus::record {
 
 /// A sensor's frame with times by the recorder's clock, or a fused frame, or a registration as
-/// JSON.
-using SessionItem = std::variant<SensorFrame, resource::FrameResource, std::string>;
+/// JSON, or an instant or a calibration of an inertial source.
+using SessionItem = std::variant<SensorFrame, resource::FrameResource, std::string,
+                                 inertial::InertialFrame, inertial::InertialCalibration>;
 
 /// Needs memory for only a few chunks, however long the recording is.
 class CellStream {

@@ -7,6 +7,7 @@
 
 #include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
+#include "common/resource/inertial_calibration_resource.h"
 #include "proto/embedded.h"
 
 namespace chorus::record {
@@ -22,6 +23,8 @@ std::string_view schema_text(std::string_view name) {
                             SchemaRow{kFloorSchemaName, kFloorSchema},
                             SchemaRow{kClockSchemaName, kClockSchema},
                             SchemaRow{kRegistrationSchemaName, kRegistrationSchema},
+                            SchemaRow{kOrientationsSchemaName, kOrientationsSchema},
+                            SchemaRow{kCalibrationSchemaName, kCalibrationSchema},
                             SchemaRow{kSceneSchemaName, scene_schema()},
                             SchemaRow{kTransformsSchemaName, transforms_schema()}};
   for (const SchemaRow& row : kSchemas) {
@@ -84,11 +87,16 @@ Result<void> CellWriter::write_state(const RawFrame& raw, const std::string& pre
       return ok;
     stream.floor = raw.floor;
   }
-  if (single_sensor_ || (stream.clock && same(*stream.clock, raw.clock))) return {};
-  if (auto ok = put(prefix + "clock", kClockSchemaName, stamps, clock_json(raw.sensor, raw.clock));
-      !ok)
+  return write_clock(raw.sensor, raw.clock, prefix, stamps);
+}
+
+Result<void> CellWriter::write_clock(const SensorId& source, const ClockModel& clock,
+                                     const std::string& prefix, const Stamps& stamps) {
+  const auto before = clocks_.find(prefix);
+  if (single_sensor_ || (before != clocks_.end() && same(before->second, clock))) return {};
+  if (auto ok = put(prefix + "clock", kClockSchemaName, stamps, clock_json(source, clock)); !ok)
     return ok;
-  stream.clock = raw.clock;
+  clocks_[prefix] = clock;
   return {};
 }
 
@@ -103,6 +111,22 @@ Result<void> CellWriter::write(const RawFrame& raw) {
     return ok;
   return put(prefix + "scene", kSceneSchemaName, stamps,
              scene_update(*raw.frame, raw.sensor.str()));
+}
+
+Result<void> CellWriter::write(const RawOrientations& raw) {
+  const std::string prefix = "/inertial/" + raw.source.str() + "/";
+  const Timestamp captured = raw.orientations->captured;
+  const Stamps stamps{single_sensor_ ? captured : raw.received, captured,
+                      raw.orientations->sequence};
+  if (auto ok = write_clock(raw.source, raw.clock, prefix, stamps); !ok) return ok;
+  return put(prefix + "orientations", kOrientationsSchemaName, stamps,
+             resource::write(*raw.orientations, resource::Format::Json));
+}
+
+Result<void> CellWriter::write(const CalibrationChanged& changed) {
+  return put("/inertial/" + changed.source.str() + "/calibration", kCalibrationSchemaName,
+             {changed.at, changed.calibration.made, 0},
+             resource::write(changed.calibration, resource::Format::Json));
 }
 
 Result<void> CellWriter::write(const FusedFrame& fused) {

@@ -7,6 +7,9 @@
 //                                                 or whether its clock offset is known
 //   /frame                     chorus.Frame       fused
 //   /registration              chorus.Registration  when it changes
+//   /inertial/{id}/orientations  chorus.Orientations  what worn inertial sensors say, as they sent
+//   it /inertial/{id}/clock         chorus.ClockModel    as for a sensor /inertial/{id}/calibration
+//   chorus.InertialCalibration  when it changes
 // and for viewers /scene, /sensors/{id}/scene, /transforms (skeleton_scene.h).  A recording of a
 // single sensor has its raw frames on /frame and its floor on /floor-plane (frame_recording.h).
 #pragma once
@@ -21,9 +24,11 @@
 #include <string>
 #include <vector>
 
+#include "common/inertial/calibration.h"
 #include "common/record/recording.h"
 #include "common/record/skeleton_scene.h"
 #include "common/resource/frame_resource.h"
+#include "common/resource/orientations_resource.h"
 #include "common/sensor/sensor_frame.h"
 
 namespace chorus::record {
@@ -45,6 +50,20 @@ struct RawFrame {
   Timestamp received;  ///< Time of receipt, by our clock.
   std::optional<FloorPlane> floor;
   ClockModel clock;
+};
+
+struct RawOrientations {
+  SensorId source;
+  std::shared_ptr<const resource::OrientationsResource> orientations;
+  Timestamp received;  ///< Time of receipt, by our clock.
+  ClockModel clock;
+};
+
+/// How the sensors of an inertial source sit on a person, from now on.
+struct CalibrationChanged {
+  SensorId source;
+  Timestamp at;
+  inertial::InertialCalibration calibration;
 };
 
 struct FusedFrame {
@@ -70,6 +89,8 @@ class CellWriter {
                                                  const CellHead& head);
 
   [[nodiscard]] Result<void> write(const RawFrame& raw);
+  [[nodiscard]] Result<void> write(const RawOrientations& raw);
+  [[nodiscard]] Result<void> write(const CalibrationChanged& changed);
   [[nodiscard]] Result<void> write(const FusedFrame& fused);
   [[nodiscard]] Result<void> write(const PlacesChanged& places);
   /// Closes the open chunk and passes it to the operating system.
@@ -84,7 +105,6 @@ class CellWriter {
  private:
   struct Stream {
     std::optional<FloorPlane> floor;
-    std::optional<ClockModel> clock;
   };
   struct Stamps {
     Timestamp logged;
@@ -96,6 +116,8 @@ class CellWriter {
       : writer_(std::move(writer)), single_sensor_(single_sensor) {}
   [[nodiscard]] Result<void> put(const std::string& topic, std::string_view schema,
                                  const Stamps& stamps, std::string text);
+  [[nodiscard]] Result<void> write_clock(const SensorId& source, const ClockModel& clock,
+                                         const std::string& prefix, const Stamps& stamps);
   [[nodiscard]] Result<void> write_state(const RawFrame& raw, const std::string& prefix,
                                          const Stamps& stamps);
 
@@ -104,6 +126,8 @@ class CellWriter {
   /// Channel numbers, by topic.
   std::map<std::string, std::uint16_t> channels_;
   std::map<SensorId, Stream> streams_;
+  /// The clocks written last, by the prefix of their topic.
+  std::map<std::string, ClockModel> clocks_;
 };
 
 }  // namespace chorus::record

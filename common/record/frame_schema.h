@@ -38,6 +38,66 @@ inline constexpr std::string_view kClockSchema = R"({
   }
 })";
 
+inline constexpr std::string_view kOrientationsSchemaName = "chorus.Orientations";
+inline constexpr std::string_view kOrientationsSchema = R"({
+  "$schema": "http://json-schema.org/draft-07/schema#",
+  "title": "chorus.Orientations",
+  "description": "What worn inertial sensors said at one or more instants: /orientations as application/json. Hamilton quaternions from the sensor's axes to a space with +y up whose heading is the sensor's own; radians, m/s^2, rad/s.",
+  "type": "object",
+  "required": ["@type", "sequence", "capturedNanoseconds", "source", "instants"],
+  "properties": {
+    "@type": {"const": "Orientations"},
+    "sequence": {"type": "integer", "minimum": 0},
+    "captured": {"type": "string", "format": "date-time", "description": "of the newest instant"},
+    "capturedNanoseconds": {"type": "string"},
+    "source": {"type": "string"},
+    "instants": {"type": "array", "minItems": 1, "maxItems": 100, "items": {
+      "type": "object",
+      "required": ["sequence", "capturedNanoseconds", "readings"],
+      "properties": {
+        "sequence": {"type": "integer", "minimum": 0},
+        "capturedNanoseconds": {"type": "string"},
+        "readings": {"type": "object", "description": "by the sensor's name", "additionalProperties": {
+          "type": "object",
+          "required": ["capturedNanoseconds"],
+          "properties": {
+            "capturedNanoseconds": {"type": "string"},
+            "limb": {"type": "string"},
+            "qx": {"type": "number"}, "qy": {"type": "number"}, "qz": {"type": "number"}, "qw": {"type": "number"},
+            "magneticState": {"enum": ["undisturbed", "disturbed", "none"]},
+            "battery": {"type": "number", "minimum": 0, "maximum": 1}
+          }
+        }}
+      }
+    }}
+  }
+})";
+
+inline constexpr std::string_view kCalibrationSchemaName = "chorus.InertialCalibration";
+inline constexpr std::string_view kCalibrationSchema = R"({
+  "$schema": "http://json-schema.org/draft-07/schema#",
+  "title": "chorus.InertialCalibration",
+  "description": "How worn inertial sensors sit on a person, valid from this message on: world_from_limb = about_y(heading) inertial_from_sensor conj(limb_from_sensor); radians",
+  "type": "object",
+  "required": ["@type", "source", "madeNanoseconds", "calibrations"],
+  "properties": {
+    "@type": {"const": "InertialCalibration"},
+    "source": {"type": "string"},
+    "madeNanoseconds": {"type": "string"},
+    "calibrations": {"type": "object", "description": "by the sensor's name", "additionalProperties": {
+      "type": "object",
+      "required": ["limb", "heading", "qx", "qy", "qz", "qw"],
+      "properties": {
+        "limb": {"type": "string"},
+        "heading": {"type": "number"},
+        "qx": {"type": "number"}, "qy": {"type": "number"}, "qz": {"type": "number"}, "qw": {"type": "number"},
+        "covariance": {"type": "array", "items": {"type": "number"}, "description": "upper triangle by rows, of heading and mount [rad^2]"},
+        "residual": {"type": "number"}, "predictionSigma": {"type": "number"}
+      }
+    }}
+  }
+})";
+
 inline constexpr std::string_view kRegistrationSchemaName = "chorus.Registration";
 inline constexpr std::string_view kRegistrationSchema = R"({
   "$schema": "http://json-schema.org/draft-07/schema#",

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <random>
 #include <system_error>
@@ -16,6 +17,12 @@
 
 namespace chorus::record {
 namespace {
+
+/// Whether the event states something about those after it.
+bool is_state(const RecordedEvent& event) {
+  return std::holds_alternative<PlacesChanged>(event) ||
+         std::holds_alternative<CalibrationChanged>(event);
+}
 
 namespace fs = std::filesystem;
 
@@ -92,7 +99,9 @@ struct Recorder::Impl {
   const RecorderOptions options;
   // Used only by the recorder's thread:
   std::optional<CellWriter> writer;
-  std::optional<PlacesChanged> places;  ///< Written at the beginning of each file.
+  // Written at the beginning of each file.
+  std::optional<PlacesChanged> places;
+  std::map<SensorId, CalibrationChanged> calibrations;
   Timestamp file_started;
   bool index_lost = false;
   std::chrono::steady_clock::time_point rested = std::chrono::steady_clock::now();
@@ -153,7 +162,12 @@ Result<void> Recorder::Impl::next_file() {
     report.files.push_back({path.filename().string(), file_started, writer->bytes()});
   }
   store_index();
-  if (places) return writer->write(*places);
+  if (places) {
+    if (auto ok = writer->write(*places); !ok) return ok;
+  }
+  for (const auto& [source, calibration] : calibrations) {
+    if (auto ok = writer->write(calibration); !ok) return ok;
+  }
   return {};
 }
 
@@ -204,8 +218,10 @@ Result<void> Recorder::Impl::write(const RecordedEvent& event) {
     }
   }
   if (const auto* changed = std::get_if<PlacesChanged>(&event)) places = *changed;
+  if (const auto* changed = std::get_if<CalibrationChanged>(&event))
+    calibrations.insert_or_assign(changed->source, *changed);
   const auto ok = std::visit([this](const auto& one) { return writer->write(one); }, event);
-  if (!ok || std::holds_alternative<PlacesChanged>(event)) return ok;
+  if (!ok || is_state(event)) return ok;
   const std::scoped_lock lock(mutex);
   ++report.frames;
   return {};
@@ -296,9 +312,9 @@ bool Recorder::offer(RecordedEvent event) {
   {
     const std::scoped_lock lock(impl_->mutex);
     if (impl_->stopping) return false;
-    // A registration is accepted even if the queue is full: it rarely changes, and the frames after
-    // it are meaningless without it.
-    if (impl_->queue.size() >= most && !std::holds_alternative<PlacesChanged>(event)) {
+    // A registration or a calibration is accepted even if the queue is full: it rarely changes, and
+    // what comes after it is meaningless without it.
+    if (impl_->queue.size() >= most && !is_state(event)) {
       ++impl_->report.dropped;
       return false;
     }

@@ -49,7 +49,8 @@ struct RecorderOptions {
   std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
 };
 
-using RecordedEvent = std::variant<RawFrame, FusedFrame, PlacesChanged>;
+using RecordedEvent =
+    std::variant<RawFrame, RawOrientations, CalibrationChanged, FusedFrame, PlacesChanged>;
 
 class Recorder {
  public:

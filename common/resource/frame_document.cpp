@@ -1,49 +1,28 @@
 #include "common/resource/frame_document.h"
 
 #include <algorithm>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/resource/document.h"
 #include "common/resource/link_lines.h"
 #include "common/resource/node.h"
 
 namespace chorus::resource {
 namespace {
 
-/// A frame never changes, but a restarted service may reuse its number.  So caches may keep a frame
-/// for about as long as a service does, but not for ever.
-constexpr std::string_view kImmutable = "public, max-age=60, immutable";
 constexpr std::string_view kArvida = "arvida";
-
-using Render = std::function<std::string(Format)>;
-
-std::vector<http::Variant> variants_of(const Render& render) {
-  std::vector<http::Variant> variants;
-  for (const Format format : kFormats) {
-    variants.push_back(
-        {std::string(media_type(format)), [render, format] { return render(format); }});
-  }
-  return variants;
-}
+constexpr std::string_view kKept = "frames/";
 
 }  // namespace
 
 http::DocumentOptions latest_options(const FrameResource& frame, const std::string& run) {
-  http::DocumentOptions options;
-  options.version = std::to_string(frame.sequence) + (run.empty() ? "" : "." + run);
-  options.content_location = "frames/" + std::to_string(frame.sequence);
-  options.captured = frame.captured;
-  return options;
+  return latest_options(Document{frame.sequence, frame.captured, nullptr}, kKept, run);
 }
 
 http::DocumentOptions kept_options(const FrameResource& frame, const std::string& run) {
-  http::DocumentOptions options = latest_options(frame, run);
-  options.cache_control = kImmutable;
-  options.content_location.clear();
-  options.captured.reset();  // The age of an old frame is of no use.
-  return options;
+  return kept_options(Document{frame.sequence, frame.captured, nullptr}, run);
 }
 
 http::DocumentPtr frame_document(FramePtr frame, const Place& place,

@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/client/orientations.h"
 #include "common/resource/link_lines.h"
 #include "common/service/common_resources.h"
 #include "common/service/http_config.h"
 #include "fusion-server/outputs/output_bank.h"
 #include "fusion-server/rest/frame_sink.h"
+#include "fusion-server/rest/inertial_resources.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/output_resources.h"
 #include "fusion-server/rest/registration_resources.h"
@@ -129,12 +131,8 @@ void report_start(const FusionSettings& settings, std::uint16_t port) {
 using RawArrival = client::Arrived<resource::FrameResource>;
 
 record::RawFrame raw_frame(const RawArrival& arrived, const SensorFrame& placed) {
-  record::ClockModel clock{placed.captured - arrived.document->captured, Duration{0}, {}};
-  if (arrived.clock) {
-    clock.ours_minus_theirs = arrived.clock->ours_minus_theirs;
-    clock.uncertainty = arrived.clock->uncertainty;
-  }
-  return {placed.sensor, arrived.document, placed.received, placed.floor, clock};
+  return {placed.sensor, arrived.document, placed.received, placed.floor,
+          clock_model(arrived.clock)};
 }
 
 }  // namespace
@@ -149,7 +147,8 @@ struct FusionServer::Impl {
 
   std::shared_ptr<http::Router> make_router();
   LoopOptions loop_options(InitialRegistration initial);
-  void follow(const std::vector<client::FollowedService>& sensors);
+  void follow(const LiveSettings& live);
+  void follow_inertial(const std::vector<client::FollowedService>& sources);
   void take_status(const Status& next);
   [[nodiscard]] Status status_now() const {
     const std::scoped_lock lock(mutex);
@@ -171,6 +170,7 @@ struct FusionServer::Impl {
   std::optional<service::FrameResources> frames;
   std::optional<rest::FrameSink> frame_sink;
   std::optional<rest::SensorResources> sensors;
+  std::optional<rest::InertialResources> inertial;
   std::optional<rest::RegistrationResources> registration;
   std::optional<service::Recordings> recordings;
   std::optional<RecordingTap> tap;
@@ -200,16 +200,18 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   };
   control.undo = [this](std::uint64_t ticket) { loop->ask(Undo{ticket}); };
   control.decide = [this](bool accept, std::uint64_t ticket) { loop->ask(Decide{accept, ticket}); };
-  frames.emplace(serving, service::FrameHistory{config.at_start.history});
+  frames.emplace(serving, service::DocumentHistory{config.at_start.history});
   frame_sink.emplace(*frames);
   frames->predict_with([this] { return frame_sink->predicted(clock->now()); });
   sensors.emplace(serving, ids_of(config.live.sensors));
+  inertial.emplace(serving, ids_of(config.live.inertial));
   registration.emplace(serving, std::move(control));
   recordings.emplace(recordings_options(config.at_start, serving, clock));
   tap.emplace(*recordings, clock);
   recordings->add_routes(*router);
   frames->add_routes(*router);
   sensors->add_routes(*router);
+  inertial->add_routes(*router);
   registration->add_routes(*router);
   rest::add_description_routes(*router, serving, config.at_start.title,
                                viewer_folder(config.at_start.viewer_dir));
@@ -235,6 +237,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
 void FusionServer::Impl::take_status(const Status& next) {
   status_at = std::chrono::steady_clock::now();
   sensors->publish(next.sensors);
+  if (followers) inertial->publish(followers->reports(client::kOrientations), clock->now());
   registration->publish(next.registration, next.progress);
   tap->places(next.registration);
   const std::scoped_lock lock(mutex);
@@ -267,7 +270,9 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   return options;
 }
 
-void FusionServer::Impl::follow(const std::vector<client::FollowedService>& all) {
+void FusionServer::Impl::follow(const LiveSettings& live) {
+  follow_inertial(live.inertial);
+  const auto& all = live.sensors;
   followers->follow<resource::FrameResource>(client::kFrames, all, [this](RawArrival arrived) {
     SensorFrame frame = client::place_in_time(arrived);
     tap->raw(raw_frame(arrived, frame));
@@ -275,6 +280,16 @@ void FusionServer::Impl::follow(const std::vector<client::FollowedService>& all)
     sensors->relay(frame.sensor, std::move(arrived.document));
     loop->give(std::move(frame));
   });
+}
+
+void FusionServer::Impl::follow_inertial(const std::vector<client::FollowedService>& sources) {
+  using Arrived = client::Arrived<resource::OrientationsResource>;
+  followers->follow<resource::OrientationsResource>(
+      client::kOrientations, sources, [this](Arrived arrived) {
+        tap->raw(record::RawOrientations{arrived.source, arrived.document, arrived.received,
+                                         clock_model(arrived.clock)});
+        inertial->relay(arrived.source, std::move(arrived.document));
+      });
 }
 
 Result<std::unique_ptr<FusionServer>> FusionServer::make(const FusionSettings& settings) {
@@ -319,7 +334,7 @@ Result<void> FusionServer::start() {
   if (auto bound = s.http->start(); !bound) return bound;
   s.followers = std::make_unique<client::Followers>(
       client::FollowOptions{.timings = s.config.at_start.poll, .clock = s.clock});
-  s.follow(s.config.live.sensors);
+  s.follow(s.config.live);
   s.status_at = std::chrono::steady_clock::now();
   s.loop->start();
   report_start(s.config, s.http->port());
@@ -337,7 +352,7 @@ void FusionServer::take(const LiveSettings& live) {
   if (const auto opened = s.outputs->apply(live.outputs); !opened)
     log::error("an output could not be opened", {{"reason", to_string(opened.error())}});
   s.loop->ask(core_config(s.config));
-  s.follow(live.sensors);
+  s.follow(live);
   s.http->set_tokens(live.tokens);
   if (live.identity) s.http->set_identity(*live.identity);
 }

@@ -271,6 +271,18 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
   read_watch(reader.child("watch"), live.watch);
 }
 
+void read_inertial(ConfigReader& root, const tls::Trust& trust, LiveSettings& out) {
+  std::set<SensorId> known;
+  for (ConfigReader& reader : root.items("inertial")) {
+    auto source = client::read_followed(reader, trust);
+    if (source && !known.insert(source->id).second)
+      reader.complain("id", "is the id of another inertial source too");
+    if (source) out.inertial.push_back(std::move(*source));
+  }
+  if (out.inertial.size() > kMaxSensors)
+    root.complain("inertial", "at most " + std::to_string(kMaxSensors) + " are possible");
+}
+
 }  // namespace
 
 Result<FusionSettings> read_fusion_settings(ConfigReader root) {
@@ -294,7 +306,9 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   ConfigReader fusion = root.child("fusion");
   read_smoothing(fusion.child("smoothing"), live.pipeline.smoothing);
   read_fusion(std::move(fusion), live.pipeline.fusion);
-  read_sensors(root, client::read_trust(root.child("poll")), live);
+  const tls::Trust trust = client::read_trust(root.child("poll"));
+  read_sensors(root, trust, live);
+  read_inertial(root, trust, live);
   read_registration(root.child("registration"), settings);
   outputs::read_outputs(root.child("outputs"), settings.live.outputs);
   root.read("state_dir", at_start.state_dir);

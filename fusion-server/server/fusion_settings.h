@@ -25,6 +25,9 @@ struct LiveSettings {
   std::vector<http::Token> tokens;        ///< From the section http.
   std::optional<tls::Identity> identity;  ///< From the section http.
   std::vector<client::FollowedService> sensors;
+  /// Services whose /orientations are followed.  They have no place, take part in no walk, and are
+  /// none of the sensors.
+  std::vector<client::FollowedService> inertial;
   core::TickConfig output;
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;

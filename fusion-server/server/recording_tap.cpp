@@ -9,6 +9,15 @@ namespace chorus::server {
 
 using service::Recordings;
 
+record::ClockModel clock_model(const std::optional<ClockEstimate>& estimate) {
+  record::ClockModel clock{correction(estimate), Duration{0}, {}};
+  if (estimate) {
+    clock.ours_minus_theirs = estimate->ours_minus_theirs;
+    clock.uncertainty = estimate->uncertainty;
+  }
+  return clock;
+}
+
 void RecordingTap::publish(std::shared_ptr<const Snapshot> snapshot) {
   const auto recorder = recordings_.recorder(Recordings::Stream::Fused);
   if (!recorder) return;
@@ -21,6 +30,11 @@ void RecordingTap::publish(std::shared_ptr<const Snapshot> snapshot) {
 void RecordingTap::raw(record::RawFrame frame) {
   if (const auto recorder = recordings_.recorder(Recordings::Stream::Raw))
     recorder->offer(std::move(frame));
+}
+
+void RecordingTap::raw(record::RawOrientations orientations) {
+  if (const auto recorder = recordings_.recorder(Recordings::Stream::Raw))
+    recorder->offer(std::move(orientations));
 }
 
 void RecordingTap::places(const Registration& registration) {

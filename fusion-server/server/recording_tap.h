@@ -5,14 +5,19 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "common/service/recordings.h"
 #include "common/time/clock.h"
+#include "common/time/clock_estimate.h"
 #include "fusion-server/flow/registration.h"
 #include "fusion-server/flow/snapshot.h"
 #include "fusion-server/sink.h"
 
 namespace chorus::server {
+
+/// How a host's times were converted to ours, as a recording states it.
+[[nodiscard]] record::ClockModel clock_model(const std::optional<ClockEstimate>& estimate);
 
 class RecordingTap final : public Sink {
  public:
@@ -24,6 +29,7 @@ class RecordingTap final : public Sink {
 
   /// May be called from any thread.
   void raw(record::RawFrame frame);
+  void raw(record::RawOrientations orientations);
   /// Records the registration in use if it, or the recording, is new; a recording does not begin
   /// with a registration without sensors. May be called repeatedly. Call it from one thread only.
   void places(const Registration& registration);

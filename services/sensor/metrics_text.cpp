@@ -15,6 +15,10 @@ std::string metrics_text(const ServiceCounters& service, const http::ServerCount
   text.counter({"chorus_failures_total", "Failures of the device, a capture or its images."},
                number(service.failures));
   text.gauge({"chorus_bodies", "Bodies in the latest frame."}, number(service.bodies));
+  text.counter({"chorus_instants_captured_total", "Instants of worn inertial sensors."},
+               number(service.instants));
+  text.gauge({"chorus_inertial_sensors", "Inertial sensors in the latest instant."},
+             number(service.sensors));
   text.gauge({"chorus_frame_age_seconds", "Since the latest frame arrived."}, service.age_s);
   service::add_server(text, server);
   return text.text();

@@ -68,6 +68,20 @@ bool rest(const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
+/// Makes the numbers of a device go on where those of its run before ended.
+class Numbering {
+ public:
+  void take(std::uint64_t& sequence) {
+    sequence += before_;
+    latest_ = sequence;
+  }
+  void begin_run() { before_ = latest_; }
+
+ private:
+  std::uint64_t before_ = 0;
+  std::uint64_t latest_ = 0;
+};
+
 }  // namespace
 
 Result<std::unique_ptr<SensorHost>> SensorHost::make(const SensorSettings& settings) {
@@ -88,6 +102,11 @@ SensorHost::SensorHost(Setup setup)
       service_([this] {
         ServiceOptions options = service_options(setup_);
         options.record = [this](const LatestCapture& latest) { record(latest); };
+        options.record_orientations = [this](const service::OrientationsPtr& orientations) {
+          if (const auto recorder = recordings_.recorder(service::Recordings::Stream::Raw))
+            recorder->offer(record::RawOrientations{
+                setup_.settings.at_start.id, orientations, setup_.clock->now(), {}});
+        };
         options.trouble = [this] { return setup_.device->trouble(); };
         return options;
       }()),
@@ -163,15 +182,22 @@ std::optional<Result<void>> SensorHost::run_once(const std::stop_token& stop,
 }
 
 void SensorHost::run_device(const std::stop_token& stop) {
-  std::uint64_t before = 0;  // The last number of earlier runs, which the numbers continue.
-  std::uint64_t latest = 0;
-  const auto take = [&](Capture capture) {
-    capture.frame.sequence += before;
-    latest = capture.frame.sequence;
-    service_.on_capture(std::move(capture));
-  };
+  Numbering frames;
+  Numbering instants;
+  const FrameSource::Sink take(
+      [&](Capture capture) {
+        frames.take(capture.frame.sequence);
+        service_.on_capture(std::move(capture));
+      },
+      [&](inertial::InertialFrame instant) {
+        instants.take(instant.sequence);
+        service_.on_orientations(std::move(instant));
+      });
   std::optional<Result<void>> how;
-  while (!(how = run_once(stop, take)) && rest(stop)) before = latest;
+  while (!(how = run_once(stop, take)) && rest(stop)) {
+    frames.begin_run();
+    instants.begin_run();
+  }
   if (stop.stop_requested()) return;
   service_.on_device_end(*how);
   if (*how) return log::info("the device has come to its end");

@@ -11,34 +11,23 @@ using http::Request;
 
 namespace {
 
-// A capture time that goes back by more than this means that the host's clock was set; by less,
-// that the device repeats itself.  The fusion server has the same limit.
-constexpr Duration kMaxRepeat = std::chrono::seconds(1);
+/// Why a frame cannot be right, whatever came before it; empty if it can.
+std::string objection_to(const SensorFrame& frame) {
+  if (frame.bodies.size() > kMaxBodies) return "too many bodies";
+  std::unordered_set<std::uint64_t> ids;
+  for (const BodyFrame& body : frame.bodies) {
+    if (!ids.insert(body.id.value).second) return "two bodies have one id";
+  }
+  return {};
+}
 
 }  // namespace
 
 SensorService::SensorService(ServiceOptions options)
     : options_(std::move(options)),
       frames_(options_.serving, options_.history),
+      orientations_(options_.serving, options_.history),
       images_(options_.images, options_.steady_now) {}
-
-/// Why a frame cannot be right; empty if it can.  Call it with the mutex held.
-std::string SensorService::objection(const SensorFrame& frame) const {
-  if (frame.bodies.size() > kMaxBodies) return "too many bodies";
-  std::unordered_set<std::uint64_t> ids;
-  for (const BodyFrame& body : frame.bodies) {
-    if (!ids.insert(body.id.value).second) return "two bodies have one id";
-  }
-  if (!latest_) return {};
-  const Duration behind = latest_->frame->captured - frame.captured;
-  const bool goes_on_from_there =  // The clock was set back.
-      behind > Duration::zero() && refused_capture_ && frame.captured > *refused_capture_;
-  if (behind >= Duration::zero() && behind <= kMaxRepeat && !goes_on_from_there) {
-    return "its capture time does not advance";
-  }
-  if (frame.sequence <= latest_->frame->sequence) return "its sequence number does not advance";
-  return {};
-}
 
 void SensorService::on_failure(std::string_view reason) noexcept {
   try {
@@ -49,53 +38,80 @@ void SensorService::on_failure(std::string_view reason) noexcept {
   }
 }
 
-void SensorService::on_capture(Capture capture) noexcept {
+template <class Doing>
+void SensorService::survive(const Doing& doing) noexcept {
   try {
-    publish(std::move(capture));
+    doing();
   } catch (const std::exception& failure) {
     on_failure(failure.what());
   } catch (...) {
     on_failure("something was thrown that is no exception");
   }
+}
+
+void SensorService::on_capture(Capture capture) noexcept {
+  survive([&] { publish(std::move(capture)); });
+}
+
+void SensorService::on_orientations(inertial::InertialFrame instant) noexcept {
+  survive([&] { publish(std::move(instant)); });
 }
 
 bool SensorService::encode_next(const std::stop_token& stop) noexcept {
-  try {
-    return images_.encode_next(stop);
-  } catch (const std::exception& failure) {
-    on_failure(failure.what());
-  } catch (...) {
-    on_failure("something was thrown that is no exception");
-  }
-  return true;
+  bool more = true;
+  survive([&] { more = images_.encode_next(stop); });
+  return more;
+}
+
+/// Call it with the mutex held.
+void SensorService::refuse(Advance& advance, Timestamp captured, const std::string& reason) {
+  ++counters_.refused;
+  refused_.hit(reason);
+  advance.refuse(captured);
 }
 
 void SensorService::publish(Capture capture) {
+  const SensorFrame& frame = capture.frame;
   LatestCapturePtr before;
   {
     const std::lock_guard lock(mutex_);
-    if (const std::string reason = objection(capture.frame); !reason.empty()) {
-      ++counters_.refused;
-      refused_.hit(reason);
-      refused_capture_ = capture.frame.captured;
-      return;
-    }
-    refused_capture_.reset();
+    std::string reason = objection_to(frame);
+    if (reason.empty()) reason = frame_order_.objection(frame.sequence, frame.captured);
+    if (!reason.empty()) return refuse(frame_order_, frame.captured, reason);
     before = latest_;
   }
   const LatestCapturePtr now = latest_capture(std::move(capture), before.get());
-  const std::uint64_t sequence = now->frame->sequence;
   {
     const std::lock_guard lock(mutex_);
     counters_.captured += 1;
     counters_.bodies = now->frame->bodies.size();
-    if (before) counters_.lost += sequence - before->frame->sequence - 1;
+    counters_.lost += frame_order_.take(now->frame->sequence, now->frame->captured);
     latest_ = now;
     last_capture_ = options_.steady_now();
   }
   frames_.publish(now->frame);
   if (options_.record) options_.record(*now);
   images_.offer(now);
+}
+
+void SensorService::publish(inertial::InertialFrame instant) {
+  const Timestamp captured = instant.captured;
+  const auto now = options_.steady_now();
+  auto checked = inertial::checked(std::move(instant));
+  {
+    const std::lock_guard lock(mutex_);
+    const std::string reason = checked ? instant_order_.objection(checked->sequence, captured)
+                                       : to_string(checked.error());
+    if (!reason.empty()) return refuse(instant_order_, captured, reason);
+    counters_.lost += instant_order_.take(checked->sequence, captured);
+    counters_.instants += 1;
+    counters_.sensors = checked->readings.size();
+    last_capture_ = now;
+  }
+  const auto document = batch_.add(std::move(*checked), now.time_since_epoch());
+  if (!document) return;
+  orientations_.publish(document);
+  if (options_.record_orientations) options_.record_orientations(document);
 }
 
 void SensorService::on_device_end(const Result<void>& how) {
@@ -113,7 +129,8 @@ std::string SensorService::or_trouble(std::string reason) const {
 service::Health SensorService::health() const {
   const std::lock_guard lock(mutex_);
   if (!ended_.empty()) return {false, ended_};
-  if (!latest_) return {false, or_trouble("no frame has been captured yet")};
+  if (!frame_order_.begun() && !instant_order_.begun())
+    return {false, or_trouble("no frame has been captured yet")};
   const Duration silent = options_.steady_now() - last_capture_;
   if (silent > options_.stall_after) {
     return {false, or_trouble("the device has been silent for " +
@@ -125,7 +142,8 @@ service::Health SensorService::health() const {
 ServiceCounters SensorService::counters() const {
   const std::lock_guard lock(mutex_);
   ServiceCounters counters = counters_;
-  if (latest_) counters.age_s = seconds(options_.steady_now() - last_capture_);
+  if (frame_order_.begun() || instant_order_.begun())
+    counters.age_s = seconds(options_.steady_now() - last_capture_);
   return counters;
 }
 
@@ -139,15 +157,21 @@ Result<LatestCapturePtr> SensorService::latest() const {
 service::Self self_of(const ServiceOptions& options, bool with_images) {
   service::Self self;
   self.title = "Sensor " + options.id.str();
-  self.description = "One body-tracking sensor: " + options.device.label + ".";
+  self.description = std::string(options.device.bodies ? "One body-tracking sensor: "
+                                                       : "Worn inertial sensors: ") +
+                     options.device.label + ".";
   self.type = "Sensor";
   self.facts = {{"sensorId", options.id.str()},
                 {"deviceKind", options.device.kind},
                 {"deviceLabel", options.device.label},
                 {"nominalRateHz", resource::Decimal{options.device.nominal_rate_hz, 2}}};
-  self.resources = {{"frame", "frame", "the latest frame: all bodies with their joints, live"},
-                    {"skeletons/", "skeletons", "the bodies in the latest frame, one by one"},
-                    {"floor-plane", "floorPlane", "where the floor is"}};
+  if (options.device.bodies) {
+    self.resources = {{"frame", "frame", "the latest frame: all bodies with their joints, live"},
+                      {"skeletons/", "skeletons", "the bodies in the latest frame, one by one"},
+                      {"floor-plane", "floorPlane", "where the floor is"}};
+  }
+  if (options.device.orientations)
+    self.resources.push_back({"orientations", "orientations", "what worn sensors say, live"});
   for (const DeviceResource& own : options.device.resources)
     self.resources.push_back({own.path, "", own.what});
   if (!with_images) return self;
@@ -187,8 +211,10 @@ void SensorService::add_image_routes(http::Router& router) {
 }
 
 void SensorService::add_routes(http::Router& router) {
-  frames_.add_routes(router);
+  if (options_.device.orientations) orientations_.add_routes(router);
   router.get("/", [this](const Request&, const PathParams&) { return self(); });
+  if (!options_.device.bodies) return;
+  frames_.add_routes(router);
   router.get("/floor-plane", [this](const Request&, const PathParams&) -> Answer {
     return latest().and_then(
         [&](const LatestCapturePtr& now) { return floor_plane(*now, options_.serving); });

@@ -1,7 +1,7 @@
 // One device as resources: takes captures and gives documents; has neither socket nor thread.
 //
-// on_capture() runs on the device's thread, the routes run on the server's; they share one
-// immutable LatestCapture.
+// on_capture() and on_orientations() run on the device's thread, the routes run on the server's;
+// they share one immutable LatestCapture.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,9 @@
 #include "common/sensor/frame_source.h"
 #include "common/service/common_resources.h"
 #include "common/service/frame_resources.h"
+#include "common/service/orientation_resources.h"
 #include "common/service/self_description.h"
+#include "services/sensor/advance.h"
 #include "services/sensor/image_desk.h"
 #include "services/sensor/latest_capture.h"
 
@@ -25,7 +27,7 @@ namespace chorus::sensor_service {
 struct ServiceOptions {
   SensorId id;
   DeviceDescription device;
-  service::FrameHistory history;
+  service::DocumentHistory history;
   bool images = false;  ///< Off by default, because images show people.
   /// Health is not ready after this time without a capture.
   Duration stall_after = std::chrono::seconds(2);
@@ -34,6 +36,8 @@ struct ServiceOptions {
   std::function<std::string()> trouble = [] { return std::string(); };
   /// Called for each capture; must return at once.
   std::function<void(const LatestCapture&)> record = {};
+  /// Called for each document of orientations; must return at once.
+  std::function<void(const service::OrientationsPtr&)> record_orientations = {};
   SteadyNow steady_now = [] { return std::chrono::steady_clock::now(); };
 };
 
@@ -43,6 +47,8 @@ struct ServiceCounters {
   std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
   std::uint64_t failures = 0;  ///< Exceptions of the device, of publishing, and of images.
   std::uint64_t bodies = 0;    ///< Bodies in the latest frame.
+  std::uint64_t instants = 0;  ///< Instants of inertial sensors taken.
+  std::uint64_t sensors = 0;   ///< Inertial sensors in the latest instant.
   double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
 };
 
@@ -53,12 +59,14 @@ class SensorService {
  public:
   explicit SensorService(ServiceOptions options);
 
-  /// Publishes one capture.  Refuses and counts a capture whose time or number does not advance,
-  /// with two bodies of the same id, or with too many bodies.  A time that goes back by more than a
-  /// second, or by less if the next capture continues from there, means that the clock was set;
-  /// from then on times are compared with the new one.  An exception is logged and counted; the
-  /// next capture is published as usual.
+  /// Publishes one capture.  Refuses and counts a capture whose time or number does not advance
+  /// (advance.h), with two bodies of the same id, or with too many bodies.  An exception is logged
+  /// and counted; the next capture is published as usual.
   void on_capture(Capture capture) noexcept;
+  /// Publishes an instant of inertial sensors, with those around it (service::OrientationBatch).
+  /// Refuses and counts one whose time or number does not advance, and what inertial::checked()
+  /// refuses.
+  void on_orientations(inertial::InertialFrame instant) noexcept;
   /// Logs and counts an exception from the device or from another thread of this service.
   void on_failure(std::string_view reason) noexcept;
   /// Call this when the device will deliver nothing more; health() then gives the reason.
@@ -81,7 +89,10 @@ class SensorService {
   using Answer = Result<http::DocumentPtr>;
 
   void publish(Capture capture);
-  [[nodiscard]] std::string objection(const SensorFrame& frame) const;
+  void publish(inertial::InertialFrame instant);
+  template <class Doing>
+  void survive(const Doing& doing) noexcept;
+  void refuse(Advance& advance, Timestamp captured, const std::string& reason);
   [[nodiscard]] Result<LatestCapturePtr> latest() const;
   [[nodiscard]] std::string or_trouble(std::string reason) const;
   [[nodiscard]] Answer self() const;
@@ -90,14 +101,16 @@ class SensorService {
 
   const ServiceOptions options_;
   service::FrameResources frames_;
+  service::OrientationResources orientations_;
+  service::OrientationBatch batch_;  ///< Used by the device's thread only.
   RateReport refused_{"capture refused"};
   RateReport failures_{"a capture or its images failed", log::Level::Error};
   ImageDesk images_;
 
   mutable std::mutex mutex_;  ///< Guards the members below.
   LatestCapturePtr latest_;
-  /// Capture time of the previous capture, if that was refused.
-  std::optional<Timestamp> refused_capture_;
+  Advance frame_order_;
+  Advance instant_order_;
   ServiceCounters counters_;
   std::chrono::steady_clock::time_point last_capture_{};
   std::string ended_;  ///< Why the device delivers nothing more; empty while it is running.

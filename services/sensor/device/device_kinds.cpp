@@ -8,6 +8,7 @@
 #include "services/sensor/device/bridge/bridge_settings.h"
 #include "services/sensor/device/camera/camera.h"
 #include "services/sensor/device/camera/camera_settings.h"
+#include "services/sensor/device/inertial/inertial.h"
 #include "services/sensor/device/positioner/positioner.h"
 #include "services/sensor/device/positioner/positioner_settings.h"
 #include "services/sensor/device/replay/replay.h"
@@ -49,6 +50,8 @@ constexpr std::array kKinds{
                  (void)positioner::read_positioner_settings(section);
                },
                &positioner::make_positioner},
+    DeviceKind{"inertial", &inertial_device::check_inertial_settings,
+               &inertial_device::make_inertial},
 };
 
 }  // namespace

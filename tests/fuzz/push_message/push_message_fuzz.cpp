@@ -41,7 +41,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     clock->advance(kBetween);
     *steady += kBetween;
     over = heard.over || (*talk)->look().over;
-    for (const Capture& capture : desk->captures(Duration{0})) check_frame(capture.frame);
+    for (const auto& one : desk->pushed(Duration{0})) {
+      if (const auto* capture = std::get_if<Capture>(&one)) check_frame(capture->frame);
+    }
   }
   talk->reset();
   require(!desk->status().state.empty());

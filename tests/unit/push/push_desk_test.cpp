@@ -90,15 +90,14 @@ TEST_F(Desk, GapsInItsOwnCountAreLostFrames) {
   ASSERT_THAT(push(*seat, milliseconds(66), 14), IsOk());
   ASSERT_THAT(push(*seat, milliseconds(99), 2), IsOk()) << "its count began anew";
   std::vector<std::uint64_t> numbers;
-  for (const Capture& capture : rig.desk->captures(Duration{0}))
-    numbers.push_back(capture.frame.sequence);
+  for (const Capture& capture : captures_of(*rig.desk)) numbers.push_back(capture.frame.sequence);
   EXPECT_EQ(numbers, (std::vector<std::uint64_t>{1, 2, 5, 6}));
 }
 
 TEST_F(Desk, FramesCarryTheSensorAndTheFloor) {
   hello.floor = FloorPlane{Eigen::Vector3d::UnitY(), 1.4};
   ASSERT_THAT(push(*sit("one"), milliseconds(5)), IsOk());
-  const auto captures = rig.desk->captures(Duration{0});
+  const auto captures = captures_of(*rig.desk);
   ASSERT_EQ(captures.size(), 1U);
   EXPECT_EQ(captures[0].frame.sensor.str(), "s1");
   EXPECT_EQ(captures[0].frame.captured, kStart + milliseconds(5));
@@ -109,7 +108,7 @@ TEST_F(Desk, FramesCarryTheSensorAndTheFloor) {
 TEST_F(Desk, TheFloorOfAProgramEndsWithIt) {
   const auto begins_anew = [&](PushDesk::Seat seat, milliseconds at) {
     EXPECT_THAT(push(seat, at), IsOk());
-    const auto captures = rig.desk->captures(Duration{0});
+    const auto captures = captures_of(*rig.desk);
     return captures.size() == 1 && captures[0].begins_anew;
   };
   hello.floor = FloorPlane{Eigen::Vector3d::UnitY(), 1.4};

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "services/sensor/device/bridge/push_desk.h"
 #include "tests/support/builders.h"
@@ -27,5 +30,14 @@ struct PushRig {
   std::shared_ptr<SteadyTime> steady = std::make_shared<SteadyTime>(std::chrono::hours(1));
   std::shared_ptr<PushDesk> desk;
 };
+
+/// The captures that were taken since the last call, without what worn sensors said.
+inline std::vector<Capture> captures_of(PushDesk& desk) {
+  std::vector<Capture> captures;
+  for (PushDesk::Pushed& one : desk.pushed(Duration{0})) {
+    if (auto* capture = std::get_if<Capture>(&one)) captures.push_back(std::move(*capture));
+  }
+  return captures;
+}
 
 }  // namespace chorus::bridge

@@ -39,7 +39,7 @@ class Session : public ::testing::Test {
                 R"(,"answered":)" + text(theirs) + "}");
   }
   [[nodiscard]] Timestamp captured() {
-    const auto captures = rig.desk->captures(Duration{0});
+    const auto captures = captures_of(*rig.desk);
     EXPECT_FALSE(captures.empty());
     return captures.empty() ? Timestamp{} : captures.back().frame.captured;
   }
@@ -57,7 +57,7 @@ TEST_F(Session, AShapeBesidePixelsMakesPoints) {
   const std::string stamp = "\"1795246200250000000\"";
   frame.replace(frame.find(stamp), stamp.size(), text(rig.clock->now()));
   ASSERT_THAT(hear(frame), IsOk());
-  const auto captures = rig.desk->captures(Duration{0});
+  const auto captures = captures_of(*rig.desk);
   ASSERT_EQ(captures.size(), 1u);
   const auto& bodies = captures[0].frame.bodies;
   ASSERT_EQ(bodies.size(), 2u);
@@ -275,6 +275,52 @@ TEST_F(Session, ItsEndFreesTheSensor) {
   }
   PushSession next(rig.desk, "WebSocket", "");
   EXPECT_THAT(next.hear(kSessionHello), IsOk());
+}
+
+struct WornSession : Session {
+  WornSession() : Session(BridgeSettings{.orientations = true}) {}
+  [[nodiscard]] std::string said_at(Timestamp captured, const char* readings) const {
+    return R"({"type":"orientations","captured":)" + text(captured) + R"(,"readings":)" + readings +
+           "}";
+  }
+  static constexpr const char* kPelvis =
+      R"({"pelvis":{"limb":"Pelvis","qx":0,"qy":0.6,"qz":0,"qw":0.8,"battery":0.5}})";
+};
+
+TEST_F(WornSession, WhatWornSensorsSayIsTakenLikeAFrameByTheClockOfThePusher) {
+  ASSERT_THAT(hear(kSessionHello), IsOk());
+  for (int i = 0; i < 8; ++i) ASSERT_THAT(answer_clock(std::chrono::seconds(-7)), IsOk());
+  const Timestamp now = rig.clock->now();
+  ASSERT_THAT(hear(said_at(now - std::chrono::seconds(7), kPelvis)), IsOk());
+  const auto pushed = rig.desk->pushed(Duration{0});
+  ASSERT_EQ(pushed.size(), 1u);
+  const auto& instant = std::get<inertial::InertialFrame>(pushed[0]);
+  EXPECT_LT(std::chrono::abs(instant.captured - now), milliseconds(3));
+  EXPECT_EQ(instant.sequence, 1u);
+  EXPECT_EQ(instant.source.str(), "s1");
+  ASSERT_EQ(instant.readings.size(), 1u);
+  EXPECT_EQ(instant.readings[0].captured, instant.captured);
+  EXPECT_EQ(instant.readings[0].limb, inertial::Limb::Pelvis);
+  EXPECT_NEAR(instant.readings[0].inertial_from_sensor->y(), 0.6, 1e-12);
+}
+
+TEST_F(WornSession, MistakesAreNamedAndTimeAdvances) {
+  ASSERT_THAT(hear(kSessionHello), IsOk());
+  const Timestamp now = rig.clock->now();
+  ASSERT_THAT(hear(said_at(now, kPelvis)), IsOk());
+  EXPECT_THAT(hear(said_at(now, kPelvis)), FailsWith(ErrorCode::Conflict)) << "the same again";
+  EXPECT_THAT(hear(frame_at(now)), IsOk()) << "frames have times of their own";
+  const auto wrong = hear(said_at(now + milliseconds(1), R"({"pelvis":{"qx":0,"qy":5}})"));
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(to_string(wrong.error()), HasSubstr("pelvis"));
+}
+
+TEST_F(Session, OrientationsAreRefusedWithAdviceWhereNobodyWantsThem) {
+  ASSERT_THAT(hear(kSessionHello), IsOk());
+  const auto refused =
+      hear(R"({"type":"orientations","readings":{},"captured":)" + text(rig.clock->now()) + "}");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(to_string(refused.error()), HasSubstr("device.bridge.orientations"));
 }
 
 }  // namespace

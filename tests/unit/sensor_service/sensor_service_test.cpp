@@ -321,5 +321,63 @@ TEST_F(SensorServiceTest, EveryWordOfItsDocumentsIsDeclared) {
   EXPECT_THAT(resource::undeclared_terms(node), ::testing::IsEmpty());
 }
 
+/// A device that yields what worn sensors say, and perhaps bodies too.
+struct Worn {
+  explicit Worn(bool bodies) : service(options(bodies)) { service.add_routes(router); }
+  ServiceOptions options(bool bodies) {
+    ServiceOptions out;
+    out.id = chorus::testing::sensor_id("suit");
+    out.device = {"inertial", "a suit", {}, 100.0};
+    out.device.bodies = bodies;
+    out.device.orientations = true;
+    out.steady_now = [this] { return now; };
+    out.record_orientations = [this](const service::OrientationsPtr& one) {
+      recorded += one->instants.size();
+    };
+    return out;
+  }
+  void say(std::uint64_t sequence, Duration at) {
+    now = std::chrono::steady_clock::time_point(std::chrono::hours(1)) + at;
+    inertial::InertialFrame instant{
+        chorus::testing::sensor_id("suit"), sequence, kStart + at, {}, {}};
+    instant.readings.push_back({"pelvis", instant.captured});
+    service.on_orientations(std::move(instant));
+  }
+
+  std::chrono::steady_clock::time_point now{std::chrono::hours(1)};
+  std::size_t recorded = 0;
+  SensorService service;
+  http::Router router;
+};
+
+TEST(WornSensors, AreServedLikeFramesAndAreAllThereIs) {
+  Worn suit(false);
+  EXPECT_EQ(get(suit.router, "/orientations").status, 503);
+  EXPECT_FALSE(suit.service.health().ready);
+  for (std::uint64_t i = 1; i <= 100; ++i) suit.say(i, std::chrono::milliseconds(10) * int(i));
+  EXPECT_TRUE(suit.service.health().ready);
+  const auto latest = nlohmann::json::parse(get(suit.router, "/orientations").body);
+  EXPECT_EQ(latest["source"], "suit");
+  EXPECT_LE(latest["sequence"], 51) << "fifty documents a second";
+  EXPECT_GE(suit.recorded, 98u);
+  EXPECT_EQ(get(suit.router, "/frame").status, 404);
+  EXPECT_THAT(get(suit.router, "/").body,
+              AllOf(HasSubstr("orientations"), Not(HasSubstr("/frame"))));
+  EXPECT_THAT(resource::undeclared_terms(service::self_node(suit.service.description())),
+              ::testing::IsEmpty());
+  EXPECT_EQ(suit.service.counters().instants, 100u);
+}
+
+TEST(WornSensors, ThatRepeatThemselvesAreRefusedAndCounted) {
+  Worn suit(true);
+  suit.say(1, std::chrono::milliseconds(10));
+  suit.say(1, std::chrono::milliseconds(20));
+  suit.say(2, std::chrono::milliseconds(10));
+  EXPECT_EQ(suit.service.counters().refused, 2u);
+  suit.say(5, std::chrono::milliseconds(50));
+  EXPECT_EQ(suit.service.counters().lost, 3u);
+  EXPECT_EQ(get(suit.router, "/frame").status, 503) << "its bodies have not come yet";
+}
+
 }  // namespace
 }  // namespace chorus::sensor_service

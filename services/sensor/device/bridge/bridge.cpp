@@ -31,6 +31,7 @@ DeviceDescription Bridge::describe() const {
   device.kind = "bridge";
   device.label = desk_->options().settings.label;
   device.depth_camera = std::nullopt;
+  device.orientations = desk_->options().settings.orientations;
   device.resources = {{"push", "who pushes frames; POST or a WebSocket pushes them"}};
   if (desk_->options().settings.page)
     device.resources.push_back({"capture/", "makes the camera of a phone or laptop this sensor"});
@@ -58,7 +59,8 @@ Result<void> Bridge::run(std::stop_token stop, const Sink& sink) {
   const auto lines = listen();
   if (!lines) return pass(lines);
   while (!stop.stop_requested()) {
-    for (Capture& capture : desk_->captures(kWait)) sink(std::move(capture));
+    for (PushDesk::Pushed& pushed : desk_->pushed(kWait))
+      std::visit([&](auto& one) { sink(std::move(one)); }, pushed);
   }
   return {};
 }

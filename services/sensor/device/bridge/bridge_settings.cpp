@@ -9,6 +9,7 @@ BridgeSettings read_bridge_settings(ConfigReader& section) {
   section.read("label", settings.label);
   section.read("socket", settings.socket);
   section.read("page", settings.page);
+  section.read("orientations", settings.orientations);
   section.read("max_rate_hz", settings.max_rate_hz, 1.0, 1000.0);
   constexpr int kKilobyte = 1024;
   int message_kb = static_cast<int>(settings.max_message_bytes / kKilobyte);

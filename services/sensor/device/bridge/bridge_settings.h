@@ -13,6 +13,7 @@ struct BridgeSettings {
   std::string label = "bridge";  ///< Human-readable.
   std::string socket = {};       ///< Path of a local socket; empty: no socket.
   bool page = false;             ///< Serves /capture/ (capture_page.h).
+  bool orientations = false;     ///< Takes orientations of worn sensors, too.
   double max_rate_hz = 120.0;    ///< Frames beyond this rate are dropped.
   std::size_t max_message_bytes = 256 * 1024;
   double max_bytes_per_s = 4e6;  ///< A pusher that sends more is disconnected.

@@ -120,41 +120,68 @@ std::uint64_t PushDesk::step_of(const PushedFrame& frame) const {
   return std::min(*frame.sequence - *holder_->last_count, kWidestGap);
 }
 
-/// True if a frame captured at this time may follow the last one.  SensorService has the same rule,
-/// but here the pusher gets an error.
-bool PushDesk::advances(Timestamp captured) const {
-  if (!last_captured_ || captured > *last_captured_) return true;
-  if (*last_captured_ - captured > kMaxRepeat) return true;
-  return captured != *last_captured_ && refused_captured_ && captured > *refused_captured_;
+/// True if what was captured at this time may follow the last one.  SensorService has the same
+/// rule, but here the pusher gets an error.
+bool PushDesk::Line::advances(Timestamp captured) const {
+  if (!last_captured || captured > *last_captured) return true;
+  if (*last_captured - captured > kMaxRepeat) return true;
+  return captured != *last_captured && refused_captured && captured > *refused_captured;
+}
+
+/// Whether this pusher may deliver what was captured at this time; then `line` has taken the time.
+/// Call it with the mutex held.
+Result<void> PushDesk::check_turn(Seat seat, Line& line, Timestamp captured) const {
+  if (!holder_ || holder_->seat != seat)
+    return fail(ErrorCode::Conflict, "type", "another program pushes to this sensor now");
+  if (!line.advances(captured)) {
+    line.refused_captured = captured;
+    return fail(ErrorCode::Conflict, "captured",
+                "must be later than that of the frame before; send frames in order, each once");
+  }
+  line.last_captured = captured;
+  line.refused_captured.reset();
+  return {};
+}
+
+/// Call it with the mutex held.
+void PushDesk::note_taken() {
+  holder_->last_frame = steady_now();
+  holder_->refused_since = false;
+  ++holder_->status.frames;
 }
 
 Result<void> PushDesk::take(Seat seat, PushedFrame frame, const Hello& hello) {
   const std::lock_guard lock(mutex_);
-  if (!holder_ || holder_->seat != seat)
-    return fail(ErrorCode::Conflict, "type", "another program pushes to this sensor now");
-  if (!advances(frame.captured)) {
-    refused_captured_ = frame.captured;
-    return fail(ErrorCode::Conflict, "captured",
-                "must be later than that of the frame before; send frames in order, each once");
-  }
+  if (auto ok = check_turn(seat, frames_, frame.captured); !ok) return ok;
   Capture capture;
   capture.frame.sensor = options_.sensor;
-  capture.frame.sequence = sequence_ += step_of(frame);
+  capture.frame.sequence = frames_.sequence += step_of(frame);
   capture.frame.captured = frame.captured;
   capture.frame.received = now();
   capture.frame.bodies = std::move(frame.bodies);
   capture.frame.floor = frame.floor ? frame.floor : hello.floor;
   // The floor is that of one pusher: another may stand elsewhere, and this one may have taken its
   // own back by a new hello.
-  capture.begins_anew = !holder_->last_frame || (holder_->hello_had_floor && !hello.floor);
+  capture.begins_anew =
+      !std::exchange(holder_->sent_frame, true) || (holder_->hello_had_floor && !hello.floor);
   holder_->hello_had_floor = hello.floor.has_value();
-  last_captured_ = frame.captured;
-  refused_captured_.reset();
   holder_->last_count = frame.sequence;
-  holder_->last_frame = steady_now();
-  holder_->refused_since = false;
-  ++holder_->status.frames;
+  note_taken();
   queue_.give(std::move(capture));
+  return {};
+}
+
+Result<void> PushDesk::take(Seat seat, PushedOrientations pushed) {
+  const std::lock_guard lock(mutex_);
+  if (!options_.settings.orientations)
+    return fail(ErrorCode::Conflict, "type",
+                "this sensor takes no orientations; set device.bridge.orientations");
+  if (auto ok = check_turn(seat, instants_, pushed.instant.captured); !ok) return ok;
+  pushed.instant.source = options_.sensor;
+  pushed.instant.received = now();
+  pushed.instant.sequence = ++instants_.sequence;
+  note_taken();
+  queue_.give(std::move(pushed.instant));
   return {};
 }
 

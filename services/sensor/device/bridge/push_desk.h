@@ -12,6 +12,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "common/base/handover.h"
 #include "common/base/rate_report.h"
@@ -93,6 +94,8 @@ class PushDesk {
   /// holds the sensor.
   [[nodiscard]] Result<void> take(Seat seat, PushedFrame frame, const Hello& hello);
   /// Seat 0: a pusher whose hello was refused.
+  /// As take(), for what worn sensors say; their times advance on their own.
+  [[nodiscard]] Result<void> take(Seat seat, PushedOrientations pushed);
   void note_refusal(Seat seat, const Error& error);
   void note_left_out(Seat seat);
   void note_doubt(Seat seat, const std::string& doubt);
@@ -100,9 +103,10 @@ class PushDesk {
 
   [[nodiscard]] PushStatus status() const;
 
-  /// For the device's thread: all captures since the last call; waits at most `patience` for the
-  /// first one.
-  [[nodiscard]] std::vector<Capture> captures(Duration patience) { return queue_.take(patience); }
+  using Pushed = std::variant<Capture, inertial::InertialFrame>;
+  /// For the device's thread: all that was taken since the last call; waits at most `patience` for
+  /// the first one.
+  [[nodiscard]] std::vector<Pushed> pushed(Duration patience) { return queue_.take(patience); }
 
  private:
   struct Holder {
@@ -111,18 +115,29 @@ class PushDesk {
     SteadyTime sat_down{};
     std::optional<SteadyTime> last_frame;
     std::optional<std::uint64_t> last_count;  ///< The number that the pusher gave its last frame.
+    bool sent_frame = false;                  ///< Not only orientations.
     bool hello_had_floor = false;             ///< At the last frame.
     /// True if a message was refused after the last frame.
     bool refused_since = false;
   };
+  /// The numbers and times of what was taken, of frames or of orientations.
+  struct Line {
+    std::uint64_t sequence = 0;
+    std::optional<Timestamp> last_captured;
+    /// Capture time of the previous one, if that was refused because its time did not advance.
+    std::optional<Timestamp> refused_captured;
+
+    [[nodiscard]] bool advances(Timestamp captured) const;
+  };
   [[nodiscard]] bool idle(const Holder& holder) const;
   [[nodiscard]] std::string silence_of(const Holder& holder) const;
-  [[nodiscard]] bool advances(Timestamp captured) const;
+  [[nodiscard]] Result<void> check_turn(Seat seat, Line& line, Timestamp captured) const;
+  void note_taken();
   [[nodiscard]] std::uint64_t step_of(const PushedFrame& frame) const;
 
   const DeskOptions options_;
   RateReport refusals_{"pushed message refused"};
-  Handover<Capture> queue_;
+  Handover<Pushed> queue_;
   mutable std::mutex mutex_;  ///< Guards everything below.
   std::optional<Holder> holder_;
   std::string departed_;     ///< Human-readable: how the last pusher left.
@@ -135,11 +150,8 @@ class PushDesk {
   std::map<Guest, Silent> silent_;  ///< Connections that have not said hello, oldest first.
   Guest last_guest_ = 0;
   SteadyTime shut_until_{};
-  std::uint64_t sequence_ = 0;
-  std::optional<Timestamp> last_captured_;
-  /// Capture time of the previous frame, if that frame was refused because its time did not
-  /// advance.
-  std::optional<Timestamp> refused_captured_;
+  Line frames_;
+  Line instants_;
 };
 
 }  // namespace chorus::bridge

@@ -13,6 +13,7 @@
 #include "common/sensor/pixel_ray.h"
 #include "services/sensor/device/bridge/body_checks.h"
 #include "services/sensor/device/bridge/json_value.h"
+#include "services/sensor/device/bridge/pushed_orientations.h"
 
 namespace chorus::bridge {
 namespace {
@@ -311,16 +312,10 @@ Result<void> read_bodies(const Json& value, const Hello& hello, PushedFrame& out
 
 Result<PushedFrame> read_frame(const Json& message, const Hello& hello) {
   PushedFrame frame;
-  const Json* captured = find(message, "captured");
-  if (captured == nullptr) return wrong(At{}["captured"], "is missing; when light hit the sensor");
-  const auto stamp = read_stamp(*captured, At{}["captured"]);
-  if (!stamp) return pass(stamp);
-  frame.captured = *stamp;
-  if (const Json* sequence = find(message, "sequence")) {
-    const auto number = read_whole(*sequence, At{}["sequence"]);
-    if (!number) return pass(number);
-    frame.sequence = *number;
-  }
+  const auto heading = read_heading(message);
+  if (!heading) return pass(heading);
+  frame.captured = heading->captured;
+  frame.sequence = heading->sequence;
   if (const Json* floor = find(message, "floor")) {
     const auto plane = read_floor(*floor, hello.sensor_from_pusher);
     if (!plane) return pass(plane);
@@ -362,11 +357,14 @@ Result<PushMessage> read_push_message(std::string_view text, const Hello* hello)
   const auto into = [](auto&& read) { return PushMessage(std::move(read)); };
   if (type != nullptr && *type == "hello") return read_hello(*message).map(into);
   if (type != nullptr && *type == "clock") return read_clock(*message).map(into);
-  if (type == nullptr || *type != "frame")
+  const bool worn = type != nullptr && *type == "orientations";
+  if (type == nullptr || (*type != "frame" && !worn))
     return wrong(At{}["type"],
-                 "each line is an object whose type is \"hello\", \"frame\" or \"clock\"");
+                 "each line is an object whose type is \"hello\", \"frame\", "
+                 "\"orientations\" or \"clock\"");
   if (hello == nullptr)
     return fail(ErrorCode::Conflict, "type", "say hello before the first frame (proto/bridge.md)");
+  if (worn) return read_pushed_orientations(*message).map(into);
   return read_frame(*message, *hello).map(into);
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/inertial/inertial_frame.h"
 #include "services/sensor/device/bridge/hello.h"
 
 namespace chorus::bridge {
@@ -32,7 +33,14 @@ struct PushedFrame {
   std::size_t zeros = 0;  ///< Points at exactly 0, 0, 0, which are taken as not seen.
 };
 
-using PushMessage = std::variant<Hello, ClockAnswer, PushedFrame>;
+/// What worn inertial sensors say at one instant, in a world with +y up; times by the pusher's
+/// clock.
+struct PushedOrientations {
+  std::optional<std::uint64_t> sequence;  ///< The pusher's own number.
+  inertial::InertialFrame instant;        ///< Without source and sequence; checked.
+};
+
+using PushMessage = std::variant<Hello, ClockAnswer, PushedFrame, PushedOrientations>;
 
 /// `hello`: the pusher's; null before it has arrived.  Unknown keys are ignored.  Errors say where
 /// in the message the mistake is ("bodies[0].points[3]") and what is expected there.

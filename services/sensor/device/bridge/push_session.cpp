@@ -126,7 +126,7 @@ Result<Duration> PushSession::shift_of(Timestamp captured) const {
                           age < Duration::zero() ? "in the future" : "ago", what));
 }
 
-Result<Heard> PushSession::on(PushedFrame frame) {
+Result<Heard> PushSession::admit_capture(Timestamp captured, Duration& shift) {
   if (!holds_sensor()) {
     lost_ = true;
     why_ = "another program took its place";
@@ -141,16 +141,35 @@ Result<Heard> PushSession::on(PushedFrame frame) {
     return fail(ErrorCode::Unavailable, "captured",
                 "your clock has just been set; frames are taken again as soon as it is known anew");
   }
-  const auto shift = shift_of(frame.captured);
-  if (!shift) return pass(shift);
-  frame.captured += *shift;
+  const auto known = shift_of(captured);
+  if (!known) return pass(known);
+  shift = *known;
+  return Heard::Frame;
+}
+
+Result<Heard> PushSession::on(PushedFrame frame) {
+  Duration shift{0};
+  const auto admitted = admit_capture(frame.captured, shift);
+  if (!admitted || *admitted != Heard::Frame) return admitted;
+  frame.captured += shift;
   for (BodyFrame& body : frame.bodies) body.captured = frame.captured;
   PlacingErrors errors;
   errors.focal = hello_->focal_sigma;
   placer_.place(frame.bodies, frame.shapes, errors);
-  doubts_.look(frame, *hello_, now);
+  doubts_.look(frame, *hello_, desk_->steady_now());
   desk_->note_doubt(seat_, doubts_.lasting());
   const auto taken = desk_->take(seat_, std::move(frame), *hello_);
+  if (!taken) return pass(taken);
+  return Heard::Frame;
+}
+
+Result<Heard> PushSession::on(PushedOrientations pushed) {
+  Duration shift{0};
+  const auto admitted = admit_capture(pushed.instant.captured, shift);
+  if (!admitted || *admitted != Heard::Frame) return admitted;
+  pushed.instant.captured += shift;
+  for (inertial::InertialReading& each : pushed.instant.readings) each.captured += shift;
+  const auto taken = desk_->take(seat_, std::move(pushed));
   if (!taken) return pass(taken);
   return Heard::Frame;
 }

@@ -18,7 +18,7 @@ namespace chorus::bridge {
 enum class Heard {
   Hello,
   Clock,
-  Frame,
+  Frame,    ///< A frame, or orientations.
   LeftOut,  ///< A frame beyond the maximum rate, or sent before the pusher's clock is known.
 };
 
@@ -55,6 +55,10 @@ class PushSession {
   [[nodiscard]] Result<Heard> on(Hello hello);
   [[nodiscard]] Result<Heard> on(const ClockAnswer& answer);
   [[nodiscard]] Result<Heard> on(PushedFrame frame);
+  [[nodiscard]] Result<Heard> on(PushedOrientations pushed);
+  /// What is common to all that is pushed: LeftOut, an error, or Frame when it may be taken after
+  /// adding `shift` to its times.
+  [[nodiscard]] Result<Heard> admit_capture(Timestamp captured, Duration& shift);
   [[nodiscard]] Result<Duration> shift_of(Timestamp captured) const;
 
   std::shared_ptr<PushDesk> desk_;

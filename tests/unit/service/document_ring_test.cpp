@@ -1,8 +1,10 @@
 // Recent frames by number and by instant.
-#include "common/service/frame_ring.h"
+#include "common/service/document_ring.h"
 
 #include <gtest/gtest.h>
 
+#include "common/resource/frame_between.h"
+#include "common/resource/frame_document.h"
 #include "tests/support/builders.h"
 
 namespace chorus::service {
@@ -11,7 +13,35 @@ namespace {
 using testing::kFrameInterval;
 using testing::kStart;
 
-const FrameHistory kTenFrames{kFrameInterval * 10};
+using resource::FramePtr;
+using resource::FrameResource;
+
+const DocumentHistory kTenFrames{kFrameInterval * 10};
+
+FramePtr frame_of(const Document& document) {
+  return std::static_pointer_cast<const FrameResource>(document.value);
+}
+
+std::shared_ptr<const void> midway(const void* before, const void* after, Timestamp instant) {
+  return std::make_shared<const FrameResource>(
+      resource::between(*static_cast<const FrameResource*>(before),
+                        *static_cast<const FrameResource*>(after), instant));
+}
+
+/// A ring of frames.
+struct FrameRing : DocumentRing {
+  explicit FrameRing(const DocumentHistory& history)
+      : DocumentRing(history, {"frame", "frames/", "frame", midway}) {}
+  void push(const FramePtr& frame) { DocumentRing::push(resource::document_of_value(frame)); }
+  void amend(const FramePtr& frame) { DocumentRing::amend(resource::document_of_value(frame)); }
+  [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const {
+    return DocumentRing::find(sequence).map(frame_of);
+  }
+  [[nodiscard]] Result<FramePtr> at(const std::string& time) const {
+    return DocumentRing::at(time).map(frame_of);
+  }
+  [[nodiscard]] FramePtr newest() const { return frame_of(DocumentRing::newest()); }
+};
 
 FramePtr frame(std::uint64_t sequence) {
   auto f = std::make_shared<resource::FrameResource>();
@@ -102,6 +132,17 @@ TEST(FrameRing, AClockSetBackEmptiesIt) {
   ring.push(earlier);
   EXPECT_EQ(ring.newest()->sequence, 11u);
   EXPECT_EQ(ring.find("10").error().code, ErrorCode::Gone);
+}
+
+TEST(DocumentRing, SaysWhichKindIsNotThereAndInterpolatesOnlyWhatItCan) {
+  DocumentRing ring(kTenFrames, {"orientations", "orientations/", "document", nullptr});
+  EXPECT_EQ(ring.find("1").error().context, "/orientations/1");
+  ring.push(resource::document_of_value(frame(1)));
+  ring.push(resource::document_of_value(frame(3)));
+  const auto between = ring.at(to_iso8601(frame(2)->captured));
+  ASSERT_TRUE(between);
+  EXPECT_EQ(between->sequence, 1u) << "the one before";
+  EXPECT_EQ(ring.at("yesterday").error().context, "/orientations?at=yesterday");
 }
 
 TEST(FrameRing, ABetterAnswerIsForWhoAsksByTimeAndNeverChangesAFrame) {

@@ -1,0 +1,104 @@
+#include "fusion-server/rest/inertial_resources.h"
+
+#include <utility>
+
+namespace chorus::rest {
+namespace {
+
+resource::Decimal in_ms(Duration d) {
+  return {std::chrono::duration<double, std::milli>(d).count(), 3};
+}
+
+}  // namespace
+
+resource::Node inertial_source_node(const client::FollowReport& source, Timestamp now,
+                                    std::string id) {
+  resource::Node node{std::move(id), {"InertialSource"}, {}};
+  auto& out = node.properties;
+  out.emplace_back("sensorId", source.service.id.str());
+  out.emplace_back("url", resource::Ref{source.service.url});
+  out.emplace_back("state", std::string(client::name_of(source.state)));
+  out.emplace_back("transport", std::string(source.streaming ? "stream" : "poll"));
+  if (source.newest) out.emplace_back("ageMilliseconds", in_ms(now - *source.newest));
+  out.emplace_back("rateHz", resource::Decimal{source.rate_hz, 2});
+  if (source.clock) {
+    out.emplace_back("clockOffsetMilliseconds", in_ms(source.clock->ours_minus_theirs));
+    out.emplace_back("clockUncertaintyMilliseconds", in_ms(source.clock->uncertainty));
+  }
+  out.emplace_back("framesReceived", static_cast<std::int64_t>(source.frames));
+  out.emplace_back("framesMissed", static_cast<std::int64_t>(source.missed));
+  out.emplace_back("framesRefused", static_cast<std::int64_t>(source.early + source.stale));
+  if (!source.last_error.empty()) out.emplace_back("lastError", source.last_error);
+  out.emplace_back("orientations",
+                   resource::Ref{"/inertial/" + source.service.id.str() + "/orientations"});
+  return node;
+}
+
+InertialResources::InertialResources(service::Serving serving, const std::vector<SensorId>& sources)
+    : serving_(std::make_shared<const service::Serving>(std::move(serving))),
+      list_(std::make_shared<http::LiveDocument>()) {
+  for (const SensorId& source : sources) live_[source] = std::make_shared<http::LiveDocument>();
+}
+
+void InertialResources::publish(const std::vector<client::FollowReport>& sources, Timestamp now) {
+  resource::Node node{"", {"InertialSourceList", "ldp:BasicContainer", "ldp:Container"}, {}};
+  std::vector<resource::Ref> contains;
+  std::vector<resource::Node> members;
+  for (const client::FollowReport& source : sources) {
+    contains.push_back({source.service.id.str()});
+    members.push_back(inertial_source_node(source, now, source.service.id.str()));
+  }
+  node.properties.emplace_back("title", std::string("followed inertial sources"));
+  node.properties.emplace_back("contains", std::move(contains));
+  node.properties.emplace_back("inertialSources", std::move(members));
+  http::DocumentOptions options;
+  {
+    const std::scoped_lock lock(mutex_);
+    options.version = serving_->run + "-" + std::to_string(++version_);
+  }
+  list_->publish(resource::document_of(std::move(node), std::move(options),
+                                       serving_->place("inertial/"), resource::Kind::Container));
+}
+
+std::shared_ptr<http::LiveDocument> InertialResources::live_of(const SensorId& source) {
+  const std::scoped_lock lock(mutex_);
+  auto& live = live_[source];
+  if (!live) live = std::make_shared<http::LiveDocument>();
+  return live;
+}
+
+void InertialResources::relay(const SensorId& source,
+                              std::shared_ptr<const resource::OrientationsResource> orientations) {
+  live_of(source)->publish_lazily(
+      [serving = serving_, source, orientations = std::move(orientations)] {
+        const std::string folder = "inertial/" + source.str() + "/";
+        auto options =
+            resource::latest_options(resource::document_of_value(orientations), {}, serving->run);
+        options.content_location.clear();
+        return resource::orientations_document(
+            orientations, serving->place(folder + "orientations", folder), std::move(options));
+      });
+}
+
+Result<http::DocumentPtr> InertialResources::orientations_of(const std::string& id) const {
+  const auto source = SensorId::parse(id);
+  const std::scoped_lock lock(mutex_);
+  const auto it = source ? live_.find(*source) : live_.end();
+  if (it == live_.end())
+    return fail(ErrorCode::NotFound, "inertial/" + id, "no inertial source of this id is followed");
+  if (auto document = it->second->current()) return document;
+  return fail(ErrorCode::Unavailable, "inertial/" + id + "/orientations",
+              "this source has not said anything yet");
+}
+
+void InertialResources::add_routes(http::Router& router) {
+  router.live("/inertial/", list_);
+  router.get("/inertial/{id}/orientations",
+             [this](const http::Request&, const http::PathParams& params) {
+               return orientations_of(params.at("id"));
+             });
+  for (const auto& [source, live] : live_)
+    router.live("/inertial/" + source.str() + "/orientations", live);
+}
+
+}  // namespace chorus::rest
