@@ -232,6 +232,12 @@ std::vector<Position> smoothed(const std::vector<FilterStep>& steps) {
   for (std::size_t i = steps.size() - 1; i-- > 0;) {
     const FilterStep& now = steps[i];
     const FilterStep& next = steps[i + 1];
+    if (next.predicted.size() == 0) {  // It began anew there.
+      state = now.filtered;
+      covariance = now.filtered_covariance;
+      out[i] = position_in(state, covariance);
+      continue;
+    }
     const Eigen::MatrixXd gain = next.predicted_covariance.ldlt()
                                      .solve(next.transition * now.filtered_covariance)
                                      .transpose();

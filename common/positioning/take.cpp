@@ -188,6 +188,7 @@ ClockFit fit_clock(std::span<const CameraTake> cameras, const suit::SuitTake& su
   out.sigma = settings.farthest_s;
   out.found = best.misfit < kTelling * median_of(coarse) && best.misfit < kLargestMisfit;
   if (out.found) sharpen(fine, pictures.size(), out);
+  out.heading = heading_at(pictures, suit, settings, out.found ? out.offset : 0.0);
   return out;
 }
 
@@ -198,13 +199,15 @@ Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::S
   if (!span) return pass(span);
   TakeResult result;
   if (settings.offset_s) {
-    result.clock = {*settings.offset_s, 0.0, 0.0, true};
+    result.clock = {*settings.offset_s, 0.0, 0.0, true, 0.0};
+    result.clock.heading = heading_at(spread(cameras), suit, settings, *settings.offset_s);
   } else {
     result.clock = fit_clock(cameras, suit, settings);
     if (!result.clock.found) result.clock.offset = 0.0;
   }
   TrackerSettings tracking = settings.tracker;
   tracking.cameras = cameras.size();
+  tracking.heading = result.clock.heading;
   Tracker tracker(tracking);
   Looks done{std::vector<std::size_t>(cameras.size(), 0)};
   std::vector<FilterStep> steps;

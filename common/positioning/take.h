@@ -22,9 +22,10 @@ struct CameraTake {
 struct ClockFit {
   /// Added to the suit's time to get the cameras' [s], counted from the cameras' first picture.
   double offset = 0.0;
-  double sigma = 0.0;   ///< [s]
-  double misfit = 0.0;  ///< Of the best offset [standard deviations].
-  bool found = false;   ///< False: no offset fits better than others.
+  double sigma = 0.0;    ///< [s]
+  double misfit = 0.0;   ///< Of the best offset [standard deviations].
+  bool found = false;    ///< False: no offset fits better than others.
+  double heading = 0.0;  ///< Of the suit, at which most pictures fit [rad].
 };
 
 struct TakeSettings {

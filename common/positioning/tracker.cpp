@@ -11,6 +11,11 @@ namespace {
 // row say the same.
 constexpr double kMostSurprise = 9.0;
 constexpr int kInARow = 8;
+// A first fit that is worse may be at a wrong heading [standard deviations].
+constexpr double kFirstMisfit = 1.8;
+// After so many pictures in a row in which nobody fits, the beginning was wrong: it begins anew.
+constexpr int kAnew = 12;
+constexpr double kKnownHeading = 0.3;        // Uncertainty of a heading that is stated [rad].
 constexpr double kFirstHeadingSigma = 0.15;  // Of the first fit [rad].
 
 }  // namespace
@@ -28,10 +33,10 @@ std::optional<Tracker::Found> Tracker::found_in(const Look& look,
     const std::array<SeenRays, 1> rays{SeenRays{look.world_from_sensor, person}};
     const Position now = filter_.position();
     constexpr double kLeastSigma = 0.1;
-    const auto fit =
-        filter_.begun()
-            ? fit_landmarks(rays, pose, {now.heading, std::max(kLeastSigma, now.heading_sigma)})
-            : fit_any_heading(rays, pose);
+    HeadingPrior prior{now.heading, std::max(kLeastSigma, now.heading_sigma)};
+    const bool known = filter_.begun() || settings_.heading;
+    if (!filter_.begun() && settings_.heading) prior = {*settings_.heading, kKnownHeading};
+    const auto fit = known ? fit_landmarks(rays, pose, prior) : fit_any_heading(rays, pose);
     if (!fit) continue;
     Found found{{look.camera, look.world_from_sensor.translation(), fit->place,
                  fit->covariance.topLeftCorner<3, 3>(), fit->heading},
@@ -52,10 +57,15 @@ void Tracker::begin(const Found& found) {
 }
 
 bool Tracker::accept(const Found& found, Tracked& out) {
-  if (found.misfit > kLargestMisfit) {
+  if (found.misfit > (filter_.begun() ? kLargestMisfit : kFirstMisfit)) {
     ++strangers_;
+    if (++misfits_ >= kAnew) {
+      filter_ = PositionFilter(settings_.cameras, settings_.errors);
+      misfits_ = 0;
+    }
     return false;
   }
+  misfits_ = 0;
   if (!filter_.begun()) {
     begin(found);
   } else if (filter_.surprise(found.seen) > kMostSurprise) {

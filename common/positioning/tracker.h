@@ -39,6 +39,8 @@ struct TrackerSettings {
   std::size_t cameras = 1;
   double stature = 1.75;  ///< [m]
   PositionErrors errors{};
+  /// Heading of the suit, if it is known already [rad]; otherwise all headings are tried.
+  std::optional<double> heading = {};
 };
 
 class Tracker {
@@ -69,6 +71,7 @@ class Tracker {
   std::optional<Duration> last_{};
   std::optional<Duration> last_seen_{};
   int refused_ = 0;
+  int misfits_ = 0;  ///< Pictures in a row in which nobody fits.
   std::uint64_t strangers_ = 0;
 };
 
