@@ -9,12 +9,11 @@ using nlohmann::json;
 
 /// Values to try for a key that holds a string; each is valid for some key.
 constexpr const char* kWords[] = {
-    "s2",        "0.0.0.0",     "http://a",    "warn",
-    "json",      "A",           "circle",      "replay",
-    "otto",      "centre-axis", "icp-only",    "when-accepted",
-    "neck",      "shoulders",   "as-recorded", "powerwall",
-    "predicted", "global",      "multicast",   "metres",
-    "239.1.2.3", "/tmp/x.bvh",  "10.0.0.1",    "tests/unit/learn/head_model.json"};
+    "s2",        "0.0.0.0",       "http://a",   "warn",      "json",
+    "A",         "circle",        "replay",     "otto",      "centre-axis",
+    "icp-only",  "when-accepted", "neck",       "shoulders", "as-recorded",
+    "powerwall", "predicted",     "global",     "multicast", "metres",
+    "239.1.2.3", "tcp",           "/tmp/x.bvh", "10.0.0.1",  "tests/unit/learn/head_model.json"};
 
 std::vector<json> other_values(const json& value) {
   std::vector<json> others;
@@ -36,6 +35,7 @@ std::vector<json> other_values(const json& value) {
     others.push_back(json::parse(R"([{"kind": "pillar"}])"));
     others.push_back(json::parse(R"([{"token": "0123456789abcdef", "role": "images"}])"));
     others.push_back(json::parse(R"([{"between": ["s1", "s2"], "m": 4.31}])"));
+    others.push_back(json::parse(R"([{"name": "cam01"}])"));
     others.push_back(json::parse(R"([{"slot": 1, "targets": ["127.0.0.1:7"]}])"));
   }
   std::erase(others, value);  // a factor does not change zero
