@@ -24,6 +24,7 @@ constexpr double kWidest = 1.1;
 constexpr double kSlimmest = 1.25;  // length over width
 constexpr double kFullest = 0.65;   // area over squared length, of thumb and little finger
 constexpr double kDeepWeb = 0.6;
+constexpr double kLowestWeb = -0.55;  // below the palm's middle, along the middle finger
 // A web is known if less than this share of the way from knuckles to tips is closed.
 constexpr double kClosedWeb = 0.62;
 constexpr std::size_t kWebsOfOneHand = 6;  // four, and one on each side of the wrist
@@ -136,6 +137,7 @@ struct Search {
 
 Flaw worst_of(const Outline& outline, const Four& row) {
   const auto [first, last] = heights(outline, row);
+  if (std::min(first, last) < kLowestWeb) return Flaw::Wide;  // a wrist's side, not the thumb's web
   const auto parts = parts_between(outline, ends_of(outline, row), first < last);
   for (std::size_t i = 0; i < 5; ++i) {
     const Flaw flaw = flaw_of(outline, parts[i], i == 0 || i == 4);

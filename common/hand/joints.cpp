@@ -13,9 +13,9 @@
 namespace chorus::hand {
 namespace {
 
-// From web to tip, as a share of the way from knuckle to tip: median of 43 photos
-// (docs/benchmarks/hand.md).
-constexpr std::array<double, kFingers> kFreePart{0.50, 0.78, 0.76, 0.77, 0.74};
+// From web to tip, as a share of the way from knuckle to tip: upper quartile of 24 photos of palms,
+// because shadows between fingers fill webs (docs/benchmarks/hand.md).
+constexpr std::array<double, kFingers> kFreePart{0.86, 0.85, 0.81, 0.80, 0.83};
 // From the middle of the palm's circle to the wrist, in its radii.
 constexpr double kWristBelow = 1.25;
 
@@ -59,13 +59,13 @@ Joints joints_usual(const Outline& outline, const Fingers& fingers) {
     }
     out[hand_joint(f, 0)] = finger.tip - gone * along;
   }
-  // The thumb's metacarpal begins beside the wrist, not on the line of its finger.
+  // The thumb's metacarpal points to the wrist, not along its finger.
   const Pixel& knuckle = out[hand_joint(0, 1)];
-  const double metacarpal =
-      kBones[0].metacarpal / kBones[2].metacarpal * (out[hand_joint(2, 0)] - out[0]).norm();
-  const Pixel aim = out[0] + 0.25 * (knuckle - out[0]) - knuckle;
+  const double free = (out[hand_joint(0, 3)] - knuckle).norm();
+  const double metacarpal = free * kBones[0].metacarpal / (kBones[0].proximal + kBones[0].tip());
+  const Pixel aim = out[0] - knuckle;
   if (aim.norm() > 0.0)
-    out[hand_joint(0, 0)] = knuckle + std::min(aim.norm(), metacarpal) * aim.normalized();
+    out[hand_joint(0, 0)] = knuckle + std::min(0.85, metacarpal / aim.norm()) * aim;
   return out;
 }
 

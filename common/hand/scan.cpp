@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include "common/base/median.h"
 #include "common/hand/anthropometry.h"
 #include "common/hand/fingers.h"
 #include "common/hand/joints.h"
@@ -23,6 +24,7 @@ constexpr double kSecondScore = 0.9;
 constexpr double kSideSure = 0.7;
 // An edge that rises over more than this share of the palm's radius (40 mm): 4 mm.
 constexpr double kBlurred = 0.10;
+constexpr double kSharp = 5.0;  // No picture is blurred whose edges rise in this [px].
 
 Result<const SeenHand*> the_one(const std::vector<SeenHand>& seen) {
   const SeenHand* best = nullptr;
@@ -92,7 +94,7 @@ void add_notes(HandShape& hand) {
 Result<HandShape> checked(Result<HandShape> hand, const cv::Mat& bgr) {
   if (!hand) return hand;
   const double width = edge_width(bgr, hand->outline);
-  if (width > kBlurred * hand->outline.palm_radius)
+  if (width > std::max(kSharp, kBlurred * hand->outline.palm_radius))
     return fail(ErrorCode::InvalidArgument, "picture",
                 fmt::format("is blurred: the hand's edge is {:.0f} % of the palm's half width wide",
                             100.0 * width / hand->outline.palm_radius));
@@ -104,6 +106,7 @@ Result<HandShape> checked(Result<HandShape> hand, const cv::Mat& bgr) {
 
 double edge_width(const cv::Mat& bgr, const Outline& outline) {
   constexpr int kReach = 24;  // [px] on each side
+  constexpr int kBase = 3;    // Steps between compared pixels, so that grain is no edge.
   cv::Mat lab;
   cv::cvtColor(bgr, lab, cv::COLOR_BGR2Lab);
   std::vector<double> widths;
@@ -113,23 +116,19 @@ double edge_width(const cv::Mat& bgr, const Outline& outline) {
     const Pixel tangent = outline.points[(i + 5) % n] - outline.points[(i + n - 5) % n];
     if (tangent.norm() < 1.0) continue;
     const Pixel normal = Pixel(-tangent.y(), tangent.x()).normalized();
-    double steepest = 0.0;
-    std::optional<cv::Vec3b> first, last, before;
+    std::vector<cv::Vec3b> across;
     for (int k = -kReach; k <= kReach; ++k) {
       const Pixel at = outline.points[i] + k * normal;
       const int x = cvRound(at.x()), y = cvRound(at.y());
-      if (x < 0 || y < 0 || x >= lab.cols || y >= lab.rows) continue;
-      const auto colour = lab.at<cv::Vec3b>(y, x);
-      if (before) steepest = std::max(steepest, cv::norm(colour, *before));
-      if (!first) first = colour;
-      last = before = colour;
+      if (x >= 0 && y >= 0 && x < lab.cols && y < lab.rows)
+        across.push_back(lab.at<cv::Vec3b>(y, x));
     }
-    if (first && steepest > 0.0) widths.push_back(cv::norm(*first, *last) / steepest);
+    double steepest = 0.0;
+    for (std::size_t k = kBase; k < across.size(); ++k)
+      steepest = std::max(steepest, cv::norm(across[k], across[k - kBase]) / kBase);
+    if (steepest > 0.0) widths.push_back(cv::norm(across.front(), across.back()) / steepest);
   }
-  if (widths.empty()) return 0.0;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  return *middle;
+  return widths.empty() ? 0.0 : median(std::move(widths));
 }
 
 Result<HandShape> hand_in(const cv::Mat& bgr, const std::vector<SeenHand>& seen,

@@ -41,10 +41,14 @@ bool has_sides_of_a4(int width, int height) {
 std::optional<std::array<Pixel, 4>> find_sheet(const cv::Mat& bgr) {
   constexpr double kLeastArea = 0.15;  // of the picture
   constexpr double kLeastFull = 0.9;  // of the quadrilateral that the sheet and the hand on it fill
-  cv::Mat grey, bright;
-  cv::cvtColor(bgr, grey, cv::COLOR_BGR2GRAY);
-  cv::GaussianBlur(grey, grey, {5, 5}, 0.0);
-  cv::threshold(grey, bright, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
+  // The darkest of the three channels tells white paper from bright skin.
+  std::vector<cv::Mat> channels;
+  cv::Mat white, bright;
+  cv::split(bgr, channels);
+  cv::min(channels[0], channels[1], white);
+  cv::min(white, channels[2], white);
+  cv::GaussianBlur(white, white, {5, 5}, 0.0);
+  cv::threshold(white, bright, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
   std::vector<Contour> contours;
   cv::findContours(bright, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   for (const Contour& contour : contours) {

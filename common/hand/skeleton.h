@@ -18,11 +18,17 @@ namespace chorus::hand {
 
 struct Skeleton {
   Side side = Side::Right;
-  std::array<Eigen::Vector3d, kHandJoints> joints{};  ///< Rest pose [m].
+  std::array<Eigen::Vector3d, kHandJoints> joints = at_origin();  ///< Rest pose [m].
   std::array<double, kFingers> widths{};           ///< Of the fingers, half-way [m]; 0: not known.
   double palm_radius = 0.0;                        ///< Of the circle inscribed in the palm [m].
   Eigen::Vector3d palm = Eigen::Vector3d::Zero();  ///< Its centre [m].
   bool relative = false;  ///< No scale is known: scaled to a hand of usual length.
+
+  [[nodiscard]] static std::array<Eigen::Vector3d, kHandJoints> at_origin() {
+    std::array<Eigen::Vector3d, kHandJoints> out;
+    out.fill(Eigen::Vector3d::Zero());
+    return out;
+  }
 };
 
 /// From wrist to the tip of the middle finger, of the mean of Buryanov and Kotiuk with its carpus
