@@ -114,8 +114,8 @@ void report_windows(Report& report, const std::string& name, const WindowScores&
 constexpr double kShiftHalfWindow = 0.03;  // of the angular rate [s]
 
 struct FoundShifts {
-  std::vector<double> rate, acceleration;  ///< |found - injected| of each sensor [ms]
-  std::vector<double> joint, joint_over_sigma;
+  std::vector<double> rate;   ///< |found - injected| of each sensor [ms]
+  std::vector<double> joint;  ///< The same of all together.
 };
 
 Result<evaluation::TimeShift> shifted_by(const std::vector<evaluation::SignalPair>& pairs,
@@ -128,6 +128,64 @@ Result<evaluation::TimeShift> shifted_by(const std::vector<evaluation::SignalPai
 
 double ms_off(const Result<evaluation::TimeShift>& found, double injected) {
   return found ? 1e3 * std::abs(found->shift - injected) : std::nan("");
+}
+
+struct TakeSignals {
+  std::vector<evaluation::SignalPair> rates, forces;
+};
+
+TakeSignals signals_of(const RealTake& take) {
+  TakeSignals out;
+  for (const RealSensor& sensor : take.sensors) {
+    out.rates.push_back({evaluation::angular_rates(sensor.optical, kShiftHalfWindow),
+                         evaluation::angular_rates(sensor.inertial, kShiftHalfWindow)});
+    out.forces.push_back(
+        {evaluation::accelerations(sensor.places, kShiftHalfWindow), sensor.acceleration});
+  }
+  return out;
+}
+
+/// The shift of each sensor alone [s]; NaN where there is none.
+std::vector<double> alone(const std::vector<evaluation::SignalPair>& pairs, double least) {
+  std::vector<double> out;
+  for (const auto& pair : pairs) {
+    const auto found = evaluation::find_time_shift({pair}, {2.0, 0.005, least});
+    out.push_back(found ? found->shift : std::nan(""));
+  }
+  return out;
+}
+
+double farthest_ms(const std::vector<double>& shifts, double from) {
+  double out = 0.0;
+  for (const double shift : shifts)
+    if (!std::isnan(shift)) out = std::max(out, 1e3 * std::abs(shift - from));
+  return out;
+}
+
+/// What the set is off by itself, for each sensor and jointly, is the reference of injected shifts.
+Result<void> time_of_take(Report& report, const RealTake& take) {
+  const TakeSignals signals = signals_of(take);
+  const auto own = evaluation::find_time_shift(signals.rates);
+  if (!own) return pass(own);
+  const std::vector<double> each = alone(signals.rates, 0.5);
+  FoundShifts found;
+  for (const double by : {-0.5, -0.217, -0.063, 0.031, 0.148, 0.5}) {
+    found.joint.push_back(ms_off(shifted_by(signals.rates, by), by + own->shift));
+    for (std::size_t i = 0; i < each.size(); ++i)
+      found.rate.push_back(ms_off(shifted_by({signals.rates[i]}, by), by + each[i]));
+  }
+  const std::string name = "time-real-" + take.name;
+  const double by_rate = farthest_ms(each, own->shift);
+  const double by_force = farthest_ms(alone(signals.forces, 0.0), own->shift);
+  report.row(name, "own_shift_ms", 1e3 * own->shift, "ms");
+  report.row(name, "own_sigma_ms", 1e3 * own->sigma, "ms");
+  report.row(name, "sensor_own_low_ms", 1e3 * percentile(each, 0.0), "ms");
+  report.row(name, "sensor_own_high_ms", 1e3 * percentile(each, 1.0), "ms");
+  report.row(name, "time_ms", percentile(found.joint, 1.0), "ms");
+  report.row(name, "sensor_time_ms", percentile(found.rate, 1.0), "ms");
+  report.row(name, "sensor_from_joint_ms", by_rate, "ms", "acceleration", by_rate / by_force);
+  report.row(name, "sensor_from_joint_ms_acceleration", by_force, "ms");
+  return {};
 }
 
 }  // namespace
@@ -153,50 +211,8 @@ Result<void> run_calibrate_real(Report& report) {
 Result<void> run_time_real(Report& report) {
   const auto takes = real_takes();
   if (!takes) return pass(takes);
-  for (const RealTake& take : *takes) {
-    std::vector<evaluation::SignalPair> rates, forces;
-    for (const RealSensor& sensor : take.sensors) {
-      rates.push_back({evaluation::angular_rates(sensor.optical, kShiftHalfWindow),
-                       evaluation::angular_rates(sensor.inertial, kShiftHalfWindow)});
-      forces.push_back(
-          {evaluation::accelerations(sensor.places, kShiftHalfWindow), sensor.acceleration});
-    }
-    // What the set itself is off by, for each sensor and jointly: the reference of injected shifts.
-    const auto own = evaluation::find_time_shift(rates);
-    if (!own) return pass(own);
-    report.row("time-real-" + take.name, "own_shift_ms", 1e3 * own->shift, "ms");
-    report.row("time-real-" + take.name, "own_sigma_ms", 1e3 * own->sigma, "ms");
-    FoundShifts found;
-    std::vector<double> each_own, each_own_force;
-    for (std::size_t i = 0; i < rates.size(); ++i) {
-      const auto one = evaluation::find_time_shift({rates[i]});
-      each_own.push_back(one ? one->shift : std::nan(""));
-      const auto force = evaluation::find_time_shift({forces[i]}, {2.0, 0.005, 0.0});
-      each_own_force.push_back(force ? force->shift : std::nan(""));
-    }
-    report.row("time-real-" + take.name, "sensor_own_low_ms", 1e3 * percentile(each_own, 0.0),
-               "ms");
-    report.row("time-real-" + take.name, "sensor_own_high_ms", 1e3 * percentile(each_own, 1.0),
-               "ms");
-    for (const double by : {-0.5, -0.217, -0.063, 0.031, 0.148, 0.5}) {
-      const auto joint = shifted_by(rates, by);
-      found.joint.push_back(ms_off(joint, by + own->shift));
-      for (std::size_t i = 0; i < rates.size(); ++i)
-        found.rate.push_back(ms_off(shifted_by({rates[i]}, by), by + each_own[i]));
-    }
-    report.row("time-real-" + take.name, "time_ms", percentile(found.joint, 1.0), "ms");
-    report.row("time-real-" + take.name, "sensor_time_ms", percentile(found.rate, 1.0), "ms");
-    double spread = 0.0, spread_force = 0.0;
-    for (std::size_t i = 0; i < rates.size(); ++i) {
-      if (!std::isnan(each_own[i]))
-        spread = std::max(spread, 1e3 * std::abs(each_own[i] - own->shift));
-      if (!std::isnan(each_own_force[i]))
-        spread_force = std::max(spread_force, 1e3 * std::abs(each_own_force[i] - own->shift));
-    }
-    report.row("time-real-" + take.name, "sensor_from_joint_ms", spread, "ms", "acceleration",
-               spread / spread_force);
-    report.row("time-real-" + take.name, "sensor_from_joint_ms_acceleration", spread_force, "ms");
-  }
+  for (const RealTake& take : *takes)
+    if (auto ok = time_of_take(report, take); !ok) return ok;
   report.note(
       "time-real: worst of six injected shifts to 500 ms against what the set is off by itself "
       "(own_shift); sensor_from_joint: how far one sensor alone lies from all jointly.");
