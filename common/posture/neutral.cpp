@@ -31,6 +31,7 @@ const std::array kBounds{
     Bound{index_of(Limb::ElbowFlexion, Side::Right), deg(45), "the right elbow is bent"}};
 
 constexpr std::size_t kLeastInstants = 5;
+constexpr std::size_t kLeastUpright = 30;
 /// A stretch is calm if no bounded angle varies by more (its standard deviation).
 constexpr double kCalm = deg(4);
 /// The middle share of the stretch's instants that must be upright.
@@ -146,7 +147,20 @@ Result<Neutral> neutral_of(std::span<const Instant> instants) {
 
 std::optional<Neutral> find_neutral(std::span<const Instant> instants) {
   if (auto found = calmest(instants, kStanceLasts)) return found;
-  return calmest(instants, kStanceLasts / 2);
+  if (auto found = calmest(instants, kStanceLasts / 2)) return found;
+  std::vector<Instant> upright;
+  for (const std::size_t i : upright_instants(instants)) upright.push_back(instants[i]);
+  if (upright.empty()) return std::nullopt;
+  return summed_up(upright);
+}
+
+std::vector<std::size_t> upright_instants(std::span<const Instant> instants) {
+  std::vector<std::size_t> upright;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    if (not_upright(instants[i].measures).empty()) upright.push_back(i);
+  }
+  if (upright.size() < kLeastUpright) upright.clear();
+  return upright;
 }
 
 }  // namespace chorus::posture

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/posture/measures.h"
@@ -38,8 +39,12 @@ inline constexpr Duration kStanceLasts = std::chrono::seconds(2);
 [[nodiscard]] Result<Neutral> neutral_of(std::span<const Instant> instants);
 
 /// The calmest upright stretch of kStanceLasts in a recording; if there is none of that length, of
-/// half of it; none otherwise.
+/// half of it; if nobody stands still so long, all upright_instants().  None otherwise.
 [[nodiscard]] std::optional<Neutral> find_neutral(std::span<const Instant> instants);
+
+/// The places of the instants at which the person is upright, wherever they are in the recording;
+/// empty if they are fewer than a second of 30 Hz.
+[[nodiscard]] std::vector<std::size_t> upright_instants(std::span<const Instant> instants);
 
 /// Why these measures are no upright stance ("the left knee is bent by 40 degrees"); empty: they
 /// are one.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "common/ergonomics/all_methods.h"
 #include "common/ergonomics/summary.h"
@@ -21,11 +22,13 @@ constexpr Duration kWindow = std::chrono::seconds(20);
 
 /// The stance as medians over a stretch, upright or not: the protocol of the recordings says when
 /// it is.
+using Stance = std::set<Timestamp>;  ///< The instants of the own stance.
+
 std::optional<posture::Neutral> stance_over(const std::vector<BodyAt>& bodies,
-                                            std::pair<Timestamp, Timestamp> stretch) {
+                                            const Stance& stance) {
   std::array<std::vector<double>, posture::kMeasures> values;
   for (const BodyAt& body : bodies) {
-    if (body.at < stretch.first || body.at > stretch.second) continue;
+    if (!stance.contains(body.at)) continue;
     const auto measures = posture::posture_of(body.body).measures;
     for (std::size_t m = 0; m < posture::kMeasures; ++m) {
       if (!std::isnan(measures.values[m])) values[m].push_back(measures.values[m]);
@@ -44,10 +47,10 @@ std::optional<posture::Neutral> stance_over(const std::vector<BodyAt>& bodies,
 }
 
 std::vector<Observation> observed(const std::vector<BodyAt>& bodies, const PostureOptions& options,
-                                  const std::optional<std::pair<Timestamp, Timestamp>>& stance) {
+                                  const Stance& stance) {
   Observer observer({.held = options.held});
-  if (options.stance && stance) {
-    if (auto neutral = stance_over(bodies, *stance)) observer.stance(*neutral);
+  if (options.stance) {
+    if (auto neutral = stance_over(bodies, stance)) observer.stance(*neutral);
   }
   std::vector<Observation> all;
   for (const BodyAt& body : bodies) all.push_back(observer.observe(body));
@@ -91,14 +94,12 @@ void add_doubt(const Observation& found, int truth, PostureAgreement& sum) {
 
 /// Of each window, whether the stated interval of each level's share holds the true share.
 void add_zones(const ScoredTake& take, const std::vector<Observation>& truth,
-               const PostureOptions& options,
-               const std::optional<std::pair<Timestamp, Timestamp>>& stance,
-               PostureAgreement& sum) {
+               const PostureOptions& options, const Stance& stance, PostureAgreement& sum) {
   const std::vector<const Method*> methods{&ergonomics::kReba, &ergonomics::kOwas};
   ergonomics::Task task;
   task.asked = empty_hands();
   std::optional<posture::Neutral> neutral;
-  if (options.stance && stance) neutral = stance_over(take.found, *stance);
+  if (options.stance) neutral = stance_over(take.found, stance);
   const ergonomics::ScoringInput input{take.found, methods, task, take.found.front().at, neutral};
   const auto person = ergonomics::score_person(input);
   for (std::size_t first = 0; first < take.found.size();) {
@@ -162,13 +163,29 @@ ergonomics::Asked empty_hands() {
   return asked;
 }
 
+namespace {
+
+Stance stance_of_take(const ScoredTake& take) {
+  std::vector<posture::Instant> instants;
+  for (const BodyAt& body : take.found)
+    instants.push_back({body.at, posture::posture_of(body.body).measures});
+  auto stretch = take.stance;
+  if (const auto found = posture::find_neutral(instants); !stretch && found)
+    stretch = std::pair{found->from, found->until};
+  Stance stance;
+  for (const auto& instant : instants) {
+    const bool upright = take.stance || posture::not_upright(instant.measures).empty();
+    if (stretch && upright && stretch->first <= instant.at && instant.at <= stretch->second)
+      stance.insert(instant.at);
+  }
+  return stance;
+}
+
+}  // namespace
+
 void compare_postures(const ScoredTake& take, const PostureOptions& options,
                       PostureAgreement& sum) {
-  auto stance = take.stance;
-  if (!stance) {
-    if (const auto neutral = ergonomics::stance_in(take.found))
-      stance = std::pair{neutral->from, neutral->until};
-  }
+  const Stance stance = stance_of_take(take);
   const auto found = observed(take.found, options, stance);
   const auto truth = observed(take.truth, options, stance);
   for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -45,9 +45,23 @@ TEST(NeutralStance, IsFoundWhereSomebodyStandsStill) {
   EXPECT_GT(instants[100].measures.at(Limb::KneeFlexion, Side::Left), deg(5));
 }
 
-TEST(NeutralStance, IsNotFoundWhereNobodyStandsStill) {
+TEST(NeutralStance, OfSomebodyWhoNeverStandsStillIsThatOfAllUprightInstants) {
   const auto instants = take();
-  EXPECT_FALSE(find_neutral(std::span(instants).first(55)));
+  std::vector<Instant> restless;  // upright and bent in turn
+  for (int i = 0; i < 80; ++i)
+    restless.push_back({kStart + i * kFrameInterval, instants[i % 2 == 0 ? 100 : 170].measures});
+  EXPECT_EQ(upright_instants(restless).size(), 40u);
+  const auto found = find_neutral(restless);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->instants, 40u);
+  EXPECT_NEAR(found->stance[Centre::TrunkFlexion], instants[100].measures[Centre::TrunkFlexion],
+              1e-12);
+  EXPECT_FALSE(find_neutral(std::span(restless).first(50))) << "25 instants are too few";
+}
+
+TEST(NeutralStance, IsNotFoundWhereNobodyIsUpright) {
+  const auto instants = take();
+  EXPECT_FALSE(find_neutral(std::span(instants).last(25)));
   EXPECT_FALSE(find_neutral({}));
 }
 
