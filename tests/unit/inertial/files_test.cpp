@@ -141,5 +141,35 @@ TEST(SlimeVr, GoesBothWaysAndRefusesDamage) {
   EXPECT_EQ(handshake_answer().substr(0, 13), "\x03Hey OVR =D 5");
 }
 
+/// Bytes as @slimevr/firmware-protocol 0.6.6 writes them, the project's own package.
+TEST(SlimeVr, ReadsAndWritesTheBytesOfAForeignSender) {
+  using namespace slimevr;
+  const char* const foreign[] = {
+      "00000011000000000000000702013dcccccd3e4ccccd3e99999a3f6d679600",
+      "0000000400000000000000083f800000400000004040000001",
+      "0000000c00000000000000094079999a3f000000",
+      "0000000f000000000000000a010104",
+      "0000000300000000000000000000000900000004000000010000000000000000000000000000000d05302e342e30"
+      "010203040506",
+      "00000012000000000000000b013f000000"};
+  std::vector<Packet> found;
+  for (const std::string hex : foreign) {
+    std::string bytes;
+    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+      bytes.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+    const auto packets = parse(bytes);
+    ASSERT_TRUE(packets) << to_string(packets.error());
+    EXPECT_EQ(encode(packets->front()), bytes) << hex;
+    found.push_back(packets->front());
+  }
+  const auto& turned = std::get<Rotation>(found[0].content);
+  EXPECT_EQ(turned.sensor, 2);
+  EXPECT_NEAR(turned.world_from_tracker.z(), 0.3, 1e-6);
+  EXPECT_EQ(std::get<Acceleration>(found[1].content).in_tracker, Eigen::Vector3d(1, 2, 3));
+  EXPECT_NEAR(std::get<Battery>(found[2].content).volts, 3.9, 1e-6);
+  EXPECT_EQ(std::get<SensorState>(found[3].content).type, 4);
+  EXPECT_EQ(std::get<Handshake>(found[4].content).board, 9u);
+}
+
 }  // namespace
 }  // namespace chorus::inertial
