@@ -59,6 +59,8 @@ std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
 Change change_of(const Registration& current, const Registration& candidate, const SensorId& sensor,
                  const std::optional<Eigen::Isometry3d>& world_from_candidate) {
   constexpr double kClearly = 0.9;
+  // Two walks of the same length differ by less; half the length gives 1.4.
+  constexpr double kMuch = 1.3;
   constexpr double kLeast = 0.001;  // [m]; below it no radius is worse than another.
   const double before = radius_of(current, sensor, current.master);
   const double after = radius_of(candidate, sensor, current.master);
@@ -68,7 +70,7 @@ Change change_of(const Registration& current, const Registration& candidate, con
       current.sensors.at(sensor).world_from_sensor.translation();
   const double moved = std::hypot(apart.x(), apart.z());
   if (moved > 2.0 * (before + after) + kLeast) return Change::Elsewhere;
-  if (after > before + kLeast) return Change::Worse;
+  if (after > kMuch * before + kLeast) return Change::Worse;
   return after < kClearly * before - kLeast ? Change::Better : Change::None;
 }
 

@@ -13,7 +13,7 @@ namespace chorus::core {
 
 /// How the candidate places a sensor that has a place already.
 enum class Change {
-  None,       ///< As well as before, within a tenth.
+  None,       ///< About as well as before.
   Better,     ///< At the same place, by a radius that is clearly smaller.
   Worse,      ///< At the same place, by a larger radius: a shorter or a narrower walk.
   Elsewhere,  ///< At another place: it was moved.
