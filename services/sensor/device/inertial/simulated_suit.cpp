@@ -27,6 +27,27 @@ JointId outer_joint(Limb limb) {
   return kJoints[inertial::index_of(limb)];
 }
 
+/// Where a scene gives the outer joint no orientation: the head turns with the chest, a hand with
+/// the forearm, a foot with the shank.
+JointId inner_joint(Limb limb) {
+  switch (limb) {
+    case Limb::Head:
+      return JointId::SpineShoulder;
+    case Limb::HandLeft:
+      return JointId::WristLeft;
+    case Limb::HandRight:
+      return JointId::WristRight;
+    case Limb::FootLeft:
+      return JointId::AnkleLeft;
+    case Limb::FootRight:
+      return JointId::AnkleRight;
+    default:
+      return outer_joint(limb);
+  }
+}
+
+bool is_unit(const Eigen::Quaterniond& q) { return std::abs(q.norm() - 1.0) < 1e-3; }
+
 Draw draw_for(const SimulatedSuit& suit, Purpose purpose, Limb limb, std::uint64_t number = 0) {
   return Draw{suit.seed, purpose, inertial::index_of(limb), number};
 }
@@ -86,8 +107,10 @@ inertial::InertialFrame suit_at(const SimulatedSuit& suit, Timestamp start, Time
     one.sensor = sensor_of(limb);
     one.captured = instant;
     one.magnetic = inertial::MagneticState::None;
-    const Eigen::Quaterniond& world_from_limb = person[outer_joint(limb)].orientation;
-    if (!(std::abs(world_from_limb.norm() - 1.0) < 1e-3)) continue;  // The scene does not say.
+    const Eigen::Quaterniond& outer = person[outer_joint(limb)].orientation;
+    const Eigen::Quaterniond& world_from_limb =
+        is_unit(outer) ? outer : person[inner_joint(limb)].orientation;
+    if (!is_unit(world_from_limb)) continue;  // The scene does not say.
     const double drift =
         suit.heading_drift * draw_for(suit, kDriftDraw, limb).uniform(-1.0, 1.0) * since;
     const Eigen::Vector3d noise = suit.noise * draw_for(suit, kNoiseDraw, limb, number).gauss3();
