@@ -4,7 +4,9 @@
 #   tests/run.sh --sanitize address|thread [ctest arguments]
 #     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
 #   tests/run.sh --sanitize address --changed [BASE]
-#     only the unit tests of the rooms whose files differ from BASE (default: HEAD~1); what CI runs beside the first line
+#     only the unit tests of the rooms whose files differ from BASE (default: HEAD~1)
+#   tests/run.sh --strict
+#     instead: builds the programs of the demo with the release options and warnings as errors, and runs the demo from them
 #   tests/run.sh --nightly
 #     instead, hours: everything under both sanitizers, and every fuzz target for ten minutes (CHORUS_FUZZ_SECONDS)
 #   tests/run.sh --workshop
@@ -81,6 +83,15 @@ run_sanitized() {
   exec ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" -L '^(unit|integration|fusion-system)$' "$@"
 }
 
+# What people run is built without assertions and with more optimisation, which finds other warnings.
+run_strict() {
+  step "release, warnings are errors, and its demo"
+  cmake --preset strict "${launcher[@]}" --log-level=WARNING
+  cmake --build build/strict -j "$jobs" --target chorus-sensor chorus-fusion chorus chorus-ergonomics
+  local free='import sys; sys.path.insert(0, "tests/support"); from ports import free_ports; print(free_ports(8))'
+  deploy/demo.sh --bin build/strict/bin --port "$(python3 -B -c "$free")" --seconds 20
+}
+
 # Every fuzz target on inputs as large as its reader takes; found inputs stay in the build tree and are where the next night goes on.
 run_nightly() {
   for one in address thread; do tests/run.sh --sanitize "$one" || failed=yes; done
@@ -102,6 +113,10 @@ fi
 [ -z "$sanitizer" ] || run_sanitized "$@"
 npm_packages tests
 npm_packages services/viewer
+if [ "${1:-}" = --strict ]; then
+  run_strict
+  exit
+fi
 npm_packages services/pose-runner
 
 step "build (dev, $jobs at a time)"
@@ -109,13 +124,6 @@ cmake --preset dev "${launcher[@]}" --log-level=WARNING
 cmake --build build/dev -j "$jobs"
 step "every header compiles alone"
 cmake --build build/dev -j "$jobs" --target all_verify_interface_header_sets
-
-# What people run is built without assertions and with more optimisation, which finds other warnings.
-step "release, warnings are errors, and its demo"
-cmake --preset strict "${launcher[@]}" --log-level=WARNING
-cmake --build build/strict -j "$jobs" --target chorus-sensor chorus-fusion chorus chorus-ergonomics
-free_ports='import sys; sys.path.insert(0, "tests/support"); from ports import free_ports; print(free_ports(8))'
-[ "$#" -gt 0 ] || deploy/demo.sh --bin build/strict/bin --port "$(python3 -B -c "$free_ports")" --seconds 20
 
 step "fuzz targets (clang)"
 cmake --preset fuzz "${launcher[@]}" --log-level=WARNING
