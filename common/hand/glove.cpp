@@ -119,7 +119,7 @@ Normal equations(const cv::Mat& distance, const cv::Mat& model, const Vector3d& 
 void refine_place(GlovePlace& place, const cv::Mat& mask, PosedGlove glove,
                   const Intrinsics& camera) {
   constexpr int kSteps = 6;
-  constexpr double kFarthest = 0.05, kEnough = 2e-4;  // [m]
+  constexpr double kFarthestStep = 0.05, kEnough = 2e-4;  // [m]
   const cv::Mat distance = signed_distance(mask);
   for (int i = 0; i < kSteps; ++i) {
     glove.pose.wrist = place.wrist;
@@ -130,7 +130,7 @@ void refine_place(GlovePlace& place, const cv::Mat& mask, PosedGlove glove,
     const double damping = 1e-6 * normal.matrix.trace();
     const Eigen::Matrix3d matrix = normal.matrix + damping * Eigen::Matrix3d::Identity();
     Vector3d step = -matrix.ldlt().solve(normal.vector);
-    if (step.norm() > kFarthest) step *= kFarthest / step.norm();
+    if (step.norm() > kFarthestStep) step *= kFarthestStep / step.norm();
     if (place.wrist.z() + step.z() < 2.0 * kNearest) return;
     place.wrist += step;
     place.covariance = kOutlineSigma * kOutlineSigma * kIndependent * matrix.inverse();
