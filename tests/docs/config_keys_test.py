@@ -9,7 +9,8 @@ ROOT = Path(__file__).resolve().parents[2]
 # Which code reads which configuration file.
 READERS = {
     "fusion.json": ["fusion-server/server", "fusion-server/outputs", "fusion-server/outlet", "fusion-server/vrpn", "fusion-server/dtrack",
-                    "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/service"],
+                    "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/service",
+                    "common/client"],
     "sensor.json": ["services/sensor", "common/service"],
 }
 READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\(|\bDeviceKind\{|\bread_mb\(|\bread_count\()\s*"([A-Za-z0-9_]+)\"""")
@@ -85,7 +86,7 @@ class ConfigFiles(unittest.TestCase):
     def test_keys_carry_the_unit_they_are_read_in(self):
         for name, _, source in self.each():
             with self.subTest(name):
-                wrong = [key for reader, key in READ_UNIT.findall(source) if not key.endswith(UNITS[reader])]
+                wrong = [key for reader, key in READ_UNIT.findall(source) if not key.removesuffix("_s" if reader == "read_deg" else "").endswith(UNITS[reader])]
                 self.assertEqual(wrong, [])
 
 

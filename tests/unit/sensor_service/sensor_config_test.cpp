@@ -119,9 +119,10 @@ TEST(SensorConfig, AReloadTakesEveryKeyOverOrItWaits) {
     ASSERT_TRUE(running && next) << key;
     EXPECT_NE(*next, *running) << key << " is read, and goes nowhere";
     EXPECT_EQ(next->at_start == running->at_start, live.contains(key)) << key;
-    const std::string named = service::waiting_keys(
+    const auto named = service::waiting_keys(
         before, after, [&](const auto& t) { return read_text(t)->at_start != running->at_start; });
-    EXPECT_EQ(named, live.contains(key) ? "" : key);
+    EXPECT_EQ(named,
+              live.contains(key) ? std::vector<std::string>{} : std::vector<std::string>{key});
   }
 }
 

@@ -152,9 +152,10 @@ TEST(FusionConfig, AReloadTakesEveryKeyOverOrItWaits) {
     EXPECT_NE(*next, *shipped) << key << " is read, and goes nowhere";
     live += next->live == shipped->live ? 0 : 1;
     waiting += next->at_start == shipped->at_start ? 0 : 1;
-    const std::string named = service::waiting_keys(
+    const auto named = service::waiting_keys(
         plain, changed, [&](const auto& t) { return read(t)->at_start != shipped->at_start; });
-    EXPECT_EQ(named, next->at_start == shipped->at_start ? "" : key);
+    EXPECT_EQ(named, next->at_start == shipped->at_start ? std::vector<std::string>{}
+                                                         : std::vector<std::string>{key});
   }
   EXPECT_GT(live, 40u);
   EXPECT_GT(waiting, 40u);
