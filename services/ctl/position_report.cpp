@@ -168,7 +168,8 @@ Plot time_plot(const PositionReport& take) {
   plot.y.label = "[m]";
   report::Series sigma{"standard deviation of the place", Mark::Line};
   report::Series height{"hips above the floor", Mark::Line};
-  std::optional<double> hidden_from;
+  double hidden_from = 0.0;
+  bool was_hidden = false;
   for (const Placed& one : take.result.placed) {
     const double at = seconds(one.time);
     sigma.x.push_back(at);
@@ -176,11 +177,11 @@ Plot time_plot(const PositionReport& take) {
     height.x.push_back(at);
     height.y.push_back(one.smooth.place.y());
     const bool hidden = seconds(one.online.hidden) > kHiddenFor;
-    if (hidden && !hidden_from) hidden_from = at;
-    if (!hidden && hidden_from) plot.spans.push_back({*hidden_from, at});
-    if (!hidden) hidden_from.reset();
+    if (hidden && !was_hidden) hidden_from = at;
+    if (!hidden && was_hidden) plot.spans.push_back({hidden_from, at});
+    was_hidden = hidden;
   }
-  if (hidden_from) plot.spans.push_back({*hidden_from, seconds(take.result.placed.back().time)});
+  if (was_hidden) plot.spans.push_back({hidden_from, seconds(take.result.placed.back().time)});
   plot.series = {std::move(sigma), std::move(height)};
   return plot;
 }
