@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr Timestamp kStart = Timestamp(std::chrono::seconds(1'700'000'000));
+constexpr Timestamp kServiceStart = Timestamp(std::chrono::seconds(1'700'000'000));
 
 class Configured : public ::testing::Test {
  protected:
@@ -28,7 +28,7 @@ class Configured : public ::testing::Test {
   }
   void start(const std::string& text) {
     write(text, 100);
-    configuration_.started({file_.string(), {}}, text, kStart);
+    configuration_.started({file_.string(), {}}, text, kServiceStart);
   }
   chorus::testing::TemporaryFolder folder_;
   std::filesystem::path file_;
@@ -59,7 +59,7 @@ TEST_F(Configured, AChangeOnDiskIsSeenBeforeTheReload) {
 TEST_F(Configured, AFailedReloadIsToldUntilOneIsTaken) {
   start(R"({"title": "a"})");
   configuration_.reload_failed({ErrorCode::Malformed, file_.string(), "line 3: unknown key"},
-                               kStart + std::chrono::seconds(5));
+                               kServiceStart + std::chrono::seconds(5));
   EXPECT_THAT(configuration_.trouble(), HasSubstr("the old one stays"));
   EXPECT_THAT(configuration_.trouble(), HasSubstr("line 3: unknown key"));
   EXPECT_THAT(configuration_.trouble(), Not(HasSubstr(folder_.path().string())))
@@ -67,7 +67,7 @@ TEST_F(Configured, AFailedReloadIsToldUntilOneIsTaken) {
   const json told = json::parse(configuration_json(configuration_.facts()));
   EXPECT_EQ(told["lastReload"], "2023-11-14T22:13:25.000000000Z");
   EXPECT_THAT(told["lastReloadError"], HasSubstr("unknown key"));
-  configuration_.reloaded(R"({"title": "b"})", {}, kStart + std::chrono::seconds(9));
+  configuration_.reloaded(R"({"title": "b"})", {}, kServiceStart + std::chrono::seconds(9));
   EXPECT_EQ(configuration_.trouble(), "");
   EXPECT_FALSE(json::parse(configuration_json(configuration_.facts())).contains("lastReloadError"));
 }
@@ -75,7 +75,8 @@ TEST_F(Configured, AFailedReloadIsToldUntilOneIsTaken) {
 TEST_F(Configured, WhatWaitsForARestartIsNotInForce) {
   start(R"({"title": "a", "http": {"port": 8080}})");
   write(R"({"title": "b", "http": {"port": 9090}})", 50);
-  configuration_.reloaded(R"({"title": "b", "http": {"port": 9090}})", {"http.port"}, kStart);
+  configuration_.reloaded(R"({"title": "b", "http": {"port": 9090}})", {"http.port"},
+                          kServiceStart);
   const auto facts = configuration_.facts();
   EXPECT_EQ(json::parse(facts.in_force)["title"], "b");
   EXPECT_EQ(json::parse(facts.in_force)["http"]["port"], 8080);
