@@ -179,7 +179,7 @@ Result<void> write_frame_recording(const std::filesystem::path& path,
 
 Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
                                             const ReadLimits& limits, const SensorId& which) {
-  auto cell = read_cell(path, {limits, which, false, true});
+  auto cell = read_cell(path, {.limits = limits, .only = which, .strict = true});
   if (!cell) return pass(cell);
   auto& sensors = cell->sensors;
   const bool any = which.str().empty() || cell->cell.empty();

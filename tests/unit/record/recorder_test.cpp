@@ -303,7 +303,7 @@ TEST(Recorder, AFullDiskEndsTheRecordingAndNothingElse) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   rlimit small = before;
-  small.rlim_cur = 20'000;
+  small.rlim_cur = 40'000;
   setrlimit(RLIMIT_FSIZE, &small);
   for (int i = 0; i < 300; ++i) (*recorder)->offer(raw(i, 1));
   (*recorder)->ask_to_stop();

@@ -30,19 +30,19 @@ std::string refusal(const MotionFile& file) {
 /// the second frame.
 std::string small_bvh() {
   const auto limb = [](const std::string& a, const std::string& b, const std::string& c,
-                       const std::string& at, const std::string& reach) {
+                       const std::string& at, const std::string& reach, const std::string& tip) {
     const std::string turns = "CHANNELS 3 Zrotation Xrotation Yrotation\n";
     return "JOINT " + a + " {\nOFFSET " + at + "\n" + turns + "JOINT " + b + " {\nOFFSET " + reach +
            "\n" + turns + "JOINT " + c + " {\nOFFSET " + reach + "\n" + turns +
-           "End Site {\nOFFSET 0 0 10\n}\n}\n}\n}\n";
+           "End Site {\nOFFSET " + tip + "\n}\n}\n}\n}\n";
   };
   std::string text =
       "HIERARCHY\nROOT Hips {\nOFFSET 0 0 0\n"
       "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n";
-  text += limb("LeftUpLeg", "LeftLeg", "LeftFoot", "10 0 0", "0 -42 0");
-  text += limb("RightUpLeg", "RightLeg", "RightFoot", "-10 0 0", "0 -42 0");
-  text += limb("LeftArm", "LeftForeArm", "LeftHand", "18 50 0", "0 -28 0");
-  text += limb("RightArm", "RightForeArm", "RightHand", "-18 50 0", "0 -28 0");
+  text += limb("LeftUpLeg", "LeftLeg", "LeftFoot", "10 0 0", "0 -42 0", "0 0 10");
+  text += limb("RightUpLeg", "RightLeg", "RightFoot", "-10 0 0", "0 -42 0", "0 0 10");
+  text += limb("LeftArm", "LeftForeArm", "LeftHand", "18 50 0", "0 -28 0", "0 -16 0");
+  text += limb("RightArm", "RightForeArm", "RightHand", "-18 50 0", "0 -28 0", "0 -16 0");
   text += "JOINT Head {\nOFFSET 0 70 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n";
   text += "End Site {\nOFFSET 0 15 0\n}\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.5\n";
   for (const char* root : {"500 90 100", "500 70 100", "520 90 100"}) {
