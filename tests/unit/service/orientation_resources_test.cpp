@@ -27,7 +27,7 @@ std::vector<OrientationsPtr> second_at(int rate_hz) {
   OrientationBatch batch;
   std::vector<OrientationsPtr> documents;
   for (int i = 0; i < rate_hz; ++i) {
-    const Duration at = std::chrono::seconds(1) * i / rate_hz;
+    const Duration at = Duration(std::chrono::seconds(1)) * i / rate_hz;
     if (auto one = batch.add(instant(static_cast<std::uint64_t>(i), at), at))
       documents.push_back(std::move(one));
   }
