@@ -147,7 +147,7 @@ TEST(Init, OverwritesNothingAndKeepsTokensFromOthers) {
   std::ifstream stream(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const Outcome second = run({"sensor", "--id", "cam-2", "--out", file});
-  EXPECT_EQ(second.code, kExitFailed);
+  EXPECT_EQ(second.code, kExitUsage);
   EXPECT_THAT(second.error, HasSubstr("exists and is not overwritten"));
   std::ifstream again(file);
   EXPECT_EQ((std::string{std::istreambuf_iterator<char>(again), {}}), text);
@@ -228,7 +228,7 @@ TEST_F(InitTls, NothingIsOverwrittenUnlessRenewed) {
   ASSERT_EQ(run({"ca", "--out", at("ca")}).code, kExitOk);
   const std::string authority = testing::bytes_of(at("ca/ca.key"));
   const Outcome twice = run({"ca", "--out", at("ca")});
-  EXPECT_EQ(twice.code, kExitFailed);
+  EXPECT_EQ(twice.code, kExitUsage);
   EXPECT_THAT(twice.error, HasSubstr("chorus init certificate"));
   EXPECT_THAT(twice.error, ::testing::Not(HasSubstr("edit it"))) << "nobody edits a key";
   EXPECT_EQ(testing::bytes_of(at("ca/ca.key")), authority);
@@ -237,7 +237,7 @@ TEST_F(InitTls, NothingIsOverwrittenUnlessRenewed) {
   ASSERT_EQ(run(again).code, kExitOk);
   const std::string first = testing::bytes_of(at("t/host.crt"));
   const Outcome refused = run(again);
-  EXPECT_EQ(refused.code, kExitFailed);
+  EXPECT_EQ(refused.code, kExitUsage);
   EXPECT_THAT(refused.error, HasSubstr("--renew"));
   EXPECT_EQ(testing::bytes_of(at("t/host.crt")), first);
   std::vector<std::string> renewed = again;

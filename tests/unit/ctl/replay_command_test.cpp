@@ -92,7 +92,7 @@ TEST(ReplayCommand, FusedFramesAloneCannotBePlayed) {
   ASSERT_TRUE(writer->close());
   const Outcome told = run_chorus({"replay", (folder / "fused.mcap").string()});
   EXPECT_EQ(told.code, kExitFailed);
-  EXPECT_THAT(told.error, HasSubstr("recorded with --fused alone"));
+  EXPECT_THAT(told.error, HasSubstr("hold no frames of a sensor"));
 }
 
 TEST(RecordCommand, NeverWritesOverAFile) {
