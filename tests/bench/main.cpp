@@ -77,7 +77,8 @@ int main(int argc, char** argv) {
     command->callback([&chosen, &each] { chosen = &each; });
     const std::string_view name = each.name;
     if (name != "faults" && name != "fusion" && name != "persons" && name != "camera" &&
-        name != "registration" && name != "scale")
+        name != "registration" && name != "scale" && name != "inertial" && name != "ergonomics" &&
+        name != "positioner")
       continue;
     command->add_option("--only", options.only, "Run this case alone");
     command->add_flag("--list", options.list, "Name the cases and run none");

@@ -8,18 +8,25 @@ namespace {
 using nlohmann::json;
 
 /// Values to try for a key that holds a string; each is valid for some key.
-constexpr const char* kWords[] = {
-    "s2",        "0.0.0.0",       "http://a",   "warn",      "json",
-    "A",         "circle",        "replay",     "otto",      "centre-axis",
-    "icp-only",  "when-accepted", "neck",       "shoulders", "as-recorded",
-    "powerwall", "predicted",     "global",     "multicast", "metres",
-    "239.1.2.3", "tcp",           "/tmp/x.bvh", "10.0.0.1",  "tests/unit/learn/head_model.json"};
+constexpr const char* kWords[] = {"s2",          "0.0.0.0",
+                                  "http://a",    "warn",
+                                  "json",        "A",
+                                  "circle",      "replay",
+                                  "otto",        "centre-axis",
+                                  "icp-only",    "when-accepted",
+                                  "neck",        "shoulders",
+                                  "as-recorded", "powerwall",
+                                  "predicted",   "global",
+                                  "multicast",   "metres",
+                                  "ForearmLeft", "239.1.2.3",
+                                  "tcp",         "/tmp/x.bvh",
+                                  "10.0.0.1",    "tests/unit/learn/head_model.json"};
 
 std::vector<json> other_values(const json& value) {
   std::vector<json> others;
   if (value.is_boolean()) others.emplace_back(!value.get<bool>());
   if (value.is_number_integer()) {
-    for (const int step : {1, -1, 100}) others.emplace_back(value.get<std::int64_t>() + step);
+    for (const int step : {1, -1, 100, -7}) others.emplace_back(value.get<std::int64_t>() + step);
   }
   if (value.is_number()) {
     for (const double factor : {0.9, 1.1}) others.emplace_back(value.get<double>() * factor);

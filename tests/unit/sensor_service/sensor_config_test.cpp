@@ -110,7 +110,7 @@ TEST(SensorConfig, AReloadTakesEveryKeyOverOrItWaits) {
   const std::set<std::string> live{"log.level", "log.format", "http.bearer_token", "http.tokens",
                                    "images"};
   for (const auto& [key, changed] : chorus::testing::every_key_changed(text, is_good)) {
-    if (key == "device.simulated.scene.motion") continue;  // this key needs a file
+    if (key.ends_with(".scene.motion")) continue;  // this key needs a file
     ASSERT_NE(changed, "") << "no other value is accepted for " << key;
     const std::string before = choosing_its_device(key, text);
     const std::string after = choosing_its_device(key, changed);
