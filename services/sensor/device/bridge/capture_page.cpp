@@ -33,7 +33,7 @@ constexpr std::array kRunner{
     Shared{"catalogue.js", "catalogue.js"}, Shared{"networks.js", "networks.js"},
     Shared{"movenet.js", "movenet.js"},     Shared{"blazepose.js", "blazepose.js"},
     Shared{"crop.js", "crop.js"},           Shared{"people.js", "people.js"},
-    Shared{"models.json", "models.json"},
+    Shared{"hands.js", "hands.js"},         Shared{"models.json", "models.json"},
 };
 constexpr std::array kEngineFiles{
     Shared{"tf-core.min.js", "tfjs-core/dist/tf-core.min.js"},
