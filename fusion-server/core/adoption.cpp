@@ -244,7 +244,9 @@ Result<Registration> extended(const Registration& current, const Registration& c
                               SolveKind kind) {
   const std::set<SensorId> added = newcomers(current, candidate, kind);
   if (!usable(current) || !usable(candidate) || added.empty())
-    return fail(ErrorCode::NotFound, "registration", "no sensor is better placed than before");
+    return fail(ErrorCode::NotFound, "registration",
+                "no sensor is better placed than before; walk longer, and where the sensors look "
+                "together");
   const auto world_from_candidate = between_worlds(current, candidate, added);
   if (!world_from_candidate) return fail(ErrorCode::Conflict, "registration", kContradicted);
   Registration wider = current;

@@ -308,7 +308,8 @@ void Registrar::explain_refusal(const Registration& candidate, const Error& why,
   // An automatic session concerns only the sensors without a place.
   if (current.automatic && !none) current.verdict = Verdict::Refused;
   current.reasons = shortfalls(candidate);
-  if (why.code == ErrorCode::Conflict) current.reasons.push_back(why.message);
+  if (why.code == ErrorCode::Conflict || current.reasons.empty())
+    current.reasons.push_back(why.message);
   if (!withdrawn) return;
   current.reasons.push_back(
       std::string("the provisional registration of this session was ") +

@@ -56,11 +56,19 @@ class Sessions(Rig):
         post = lambda what: send("POST", fusion.url + "registration" + what)[0]  # noqa: E731
         self.assertEqual((post("/accept"), post("/decline")), (404, 404))
 
-        def proposed():
+        def walked():
             status, headers, _ = send("POST", fusion.url + "registration", b'{"seconds": 8, "adopt": "when-accepted"}')
             self.assertEqual(status, 202)
             path = fusion.url + headers["Location"].lstrip("/")
-            done = wait_for("it is over", lambda: (s := get_json(path))["state"] == "done" and s)
+            return path, wait_for("it is over", lambda: (s := get_json(path))["state"] == "done" and s)
+
+        def proposed():
+            # On a busy machine a walk of 8 s may hold too few frames to place anybody as well as before: then it says so, and one walks again.
+            for _ in range(4):
+                path, done = walked()
+                if "proposal" in self.registration(fusion):
+                    break
+                self.assertIn("no sensor is better placed", " ".join(done["reasons"]))
             self.assertEqual((done["adopt"], done["adopted"]), ("when-accepted", False), done)
             shown = self.registration(fusion)
             self.assertEqual((shown["version"], shown["sensors"]), (before["version"], before["sensors"]), "nothing has changed")
