@@ -11,7 +11,7 @@ namespace {
 constexpr InertialCase kCases[] = {
     {"calibrate", run_calibrate}, {"calibrate-real", run_calibrate_real},
     {"time-real", run_time_real}, {"detect-real", run_detect_real},
-    {"filter", run_filter},
+    {"filter", run_filter},       {"residual-real", run_residual_real},
 };
 
 }  // namespace

@@ -26,6 +26,9 @@ struct InertialCase {
 /// Shifts between sensors and cameras of real takes.
 [[nodiscard]] Result<void> run_time_real(Report& report);
 
+/// What calibrated sensors leave on real limbs.
+[[nodiscard]] Result<void> run_residual_real(Report& report);
+
 /// Errors injected into real takes, and found.
 [[nodiscard]] Result<void> run_detect_real(Report& report);
 

@@ -1,10 +1,10 @@
-// Suits that are simulated, and suits that are played from a recording.
+// Suits that are played from a recording.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/record/cell_writer.h"
+#include "common/synthetic/simulated_suit.h"
 #include "services/sensor/device/inertial/inertial_feed.h"
-#include "services/sensor/device/inertial/simulated_suit.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -17,70 +17,13 @@ using chorus::testing::kStart;
 using chorus::testing::sensor_id;
 using std::chrono::milliseconds;
 
-SimulatedSuit quiet_suit() {
-  SimulatedSuit suit;
+synthetic::SimulatedSuit quiet_suit() {
+  synthetic::SimulatedSuit suit;
   suit.scene.epoch = kStart;
   suit.scene.people = synthetic::make_people({}, 1);
-  suit.limbs = limbs_of_suit(13);
-  suit.noise = 0.0;
+  suit.limbs = synthetic::limbs_of_suit(13);
+  suit.errors.noise = 0.0;
   return suit;
-}
-
-/// The largest angle between what a sensor predicts with the true calibration and its limb.
-double worst_prediction(const SimulatedSuit& suit, Duration after) {
-  const auto calibration = true_calibration(suit, sensor_id("suit"));
-  const auto frame = suit_at(suit, kStart, kStart + after, 1);
-  double worst = 0.0;
-  for (const auto& one : calibration.sensors) {
-    const auto reading =
-        std::ranges::find(frame.readings, one.sensor, &inertial::InertialReading::sensor);
-    EXPECT_TRUE(reading != frame.readings.end() && reading->inertial_from_sensor) << one.sensor;
-    if (reading == frame.readings.end() || !reading->inertial_from_sensor) continue;
-    SimulatedSuit exact = suit;  // What a sensor that sits straight and faces the world says.
-    exact.slips.reset();
-    const auto unslipped = suit_at(exact, kStart, kStart + after, 1);
-    const auto truth =
-        std::ranges::find(unslipped.readings, one.sensor, &inertial::InertialReading::sensor);
-    worst =
-        std::max(worst, predicted_limb(one, *reading->inertial_from_sensor)
-                            .angularDistance(predicted_limb(one, *truth->inertial_from_sensor)));
-  }
-  return worst;
-}
-
-TEST(SimulatedSuit, IsTakenBackToTheLimbsByItsTrueCalibration) {
-  const SimulatedSuit suit = quiet_suit();
-  const auto calibration = true_calibration(suit, sensor_id("suit"));
-  const auto person = synthetic::truth(suit.scene, 0, kStart + milliseconds(700));
-  const auto frame = suit_at(suit, kStart, kStart + milliseconds(700), 7);
-  ASSERT_EQ(frame.readings.size(), 13u);
-  ASSERT_EQ(calibration.sensors[0].limb, inertial::Limb::Pelvis);
-  ASSERT_TRUE(frame.readings[0].inertial_from_sensor);
-  EXPECT_LT(predicted_limb(calibration.sensors[0], *frame.readings[0].inertial_from_sensor)
-                .angularDistance(person[JointId::SpineBase].orientation),
-            1e-6);
-  EXPECT_THAT(inertial::checked(frame), IsOk());
-}
-
-TEST(SimulatedSuit, SlipsWhenItIsTold) {
-  SimulatedSuit suit = quiet_suit();
-  suit.slips = inertial::Limb::ForearmLeft;
-  suit.slips_after = std::chrono::seconds(2);
-  EXPECT_LT(worst_prediction(suit, milliseconds(1900)), 1e-6);
-  EXPECT_NEAR(worst_prediction(suit, milliseconds(2100)), suit.slips_by, 1e-6);
-}
-
-TEST(SimulatedSuit, SaysTheSameOfTheSameSeedOnly) {
-  SimulatedSuit suit = quiet_suit();
-  suit.noise = 0.03;
-  const auto said = [&](std::uint64_t number) {
-    return suit_at(suit, kStart, kStart, number).readings[3].inertial_from_sensor->coeffs();
-  };
-  EXPECT_EQ(said(4), said(4));
-  EXPECT_NE(said(4), said(5));
-  const auto before = said(4);
-  suit.seed = 2;
-  EXPECT_NE(said(4), before);
 }
 
 /// A clock that shows each instant as soon as somebody waits for it.
@@ -95,10 +38,11 @@ class EagerClock final : public Clock {
 void record_suit(const std::filesystem::path& file, int instants) {
   auto writer = record::CellWriter::create(file, {});
   ASSERT_THAT(writer, IsOk());
-  const SimulatedSuit suit = quiet_suit();
+  const synthetic::SimulatedSuit suit = quiet_suit();
   for (int i = 0; i < instants; ++i) {
     auto document = std::make_shared<resource::OrientationsResource>();
-    auto instant = suit_at(suit, kStart, kStart + milliseconds(10) * i, std::uint64_t(i) + 1);
+    auto instant =
+        synthetic::suit_at(suit, kStart, kStart + milliseconds(10) * i, std::uint64_t(i) + 1);
     document->sequence = std::uint64_t(i) + 1;
     document->captured = instant.captured;
     document->source = "suit";

@@ -5,12 +5,14 @@
 #include <utility>
 
 #include "common/base/units.h"
+#include "common/synthetic/simulated_suit.h"
 #include "services/sensor/device/inertial/inertial_feed.h"
-#include "services/sensor/device/inertial/simulated_suit.h"
 #include "services/sensor/device/simulated/scene_settings.h"
 
 namespace chorus::inertial_device {
 namespace {
+
+using synthetic::SimulatedSuit;
 
 enum Source : std::size_t { kSimulated, kReplay, kSlimevr };
 
@@ -23,27 +25,38 @@ struct Settings {
 
 void read_slip(ConfigReader& section, SimulatedSuit& out) {
   std::string limb = "none";
+  synthetic::SuitFault slip;
+  slip.begin = std::chrono::seconds(20);
+  slip.size = deg(60.0);
   section.read("slips", limb);
-  out.slips_after = std::chrono::seconds(20);
-  section.read_s("slips_after_s", out.slips_after, Duration{0}, std::chrono::hours(24));
-  section.read_deg("slips_by_deg", out.slips_by, -180.0, 180.0);
+  section.read_s("slips_after_s", slip.begin, Duration{0}, std::chrono::hours(24));
+  section.read_deg("slips_by_deg", slip.size, -180.0, 180.0);
   if (limb == "none") return;
-  out.slips = inertial::limb_named(limb);
-  if (!out.slips) section.complain("slips", "names no limb; \"ForearmLeft\" would be one");
+  const auto named = inertial::limb_named(limb);
+  if (!named) return section.complain("slips", "names no limb; \"ForearmLeft\" would be one");
+  slip.limb = *named;
+  out.faults.push_back(slip);
+}
+
+void read_errors(ConfigReader& section, synthetic::SuitErrors& out) {
+  section.read_deg("noise_deg", out.noise, 0.0, 30.0);
+  section.read_deg("heading_drift_deg_s", out.heading_drift, 0.0, 10.0);
+  section.read_deg("bias_walk_deg_s", out.bias_walk, 0.0, 10.0);
+  section.read("skin", out.skin, 0.0, 10.0);
 }
 
 void read_simulated(ConfigReader& section, SimulatedSuit& out) {
   int sensors = 13;
   int seed = 1;
   out.scene = sensor_service::read_scene(section.child("scene")).scene;
-  section.read("sensors", sensors, 6, 13);
-  if (sensors != 6 && sensors != 13) section.complain("sensors", "must be 6 or 13");
+  section.read("sensors", sensors, 5, 13);
+  if (sensors > 6 && sensors < 13) section.complain("sensors", "must be 5, 6 or 13");
   section.read("rate_hz", out.rate_hz, 1.0, 1000.0);
   section.read("seed", seed, 0, sensor_service::kMaxSeed);
-  section.read_deg("noise_deg", out.noise, 0.0, 30.0);
-  section.read_deg("heading_drift_deg_s", out.heading_drift, 0.0, 10.0);
+  section.read("raw", out.raw);
   out.seed = static_cast<std::uint64_t>(seed);
-  out.limbs = limbs_of_suit(sensors);
+  out.limbs = synthetic::limbs_of_suit(sensors);
+  read_errors(section, out.errors);
   read_slip(section, out);
 }
 
