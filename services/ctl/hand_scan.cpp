@@ -147,6 +147,10 @@ Result<ScannedHand> scan_hand(const std::string& file, const HandScan& how,
                 ready->mm_per_pixel.value_or(0.0),
                 shape->origin == hand::Origin::Both ? finder->name() : ""};
   out.shape = std::move(*shape);
+  if (finder != nullptr && !how.options.paper && out.shape.origin != hand::Origin::Both)
+    out.shape.notes.emplace_back(
+        seen.empty() ? "the network sees no hand: the outline alone answers"
+                     : "what the network sees does not fit the outline, which alone answers");
   if (how.scale == ScaleBy::A4) compare_with_file(out, *picture->pixels, *bytes);
   if (const auto ok = check_size(out, how); !ok) return pass(ok);
   out.drawn = std::make_shared<const cv::Mat>(hand::drawn(ready->picture, out.shape));

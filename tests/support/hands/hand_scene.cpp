@@ -79,25 +79,28 @@ double spread_of(Thing thing, Draw& draw) {
 }
 
 Figure figure_of(const HandScene& scene) {
-  Draw draw({scene.seed, 71});
+  // Without a person each picture shows another hand: body and pose then come from one stream.
+  Draw body({scene.person == 0 ? scene.seed : scene.person, 71});
+  Draw shot({scene.seed, 75});
+  Draw& pose = scene.person == 0 ? body : shot;
   Figure out;
-  const double spread = spread_of(scene.thing, draw);
-  const double size = draw.uniform(0.86, 1.12);
-  const double thumb = scene.thing == Thing::HiddenThumb ? -60.0 : draw.uniform(-12.0, 18.0);
+  const double spread = spread_of(scene.thing, pose);
+  const double size = body.uniform(0.86, 1.12);
+  const double thumb = scene.thing == Thing::HiddenThumb ? -60.0 : pose.uniform(-12.0, 18.0);
   for (std::size_t f = 0; f < 5; ++f) {
     const DrawnFinger& drawn = kDrawn[f];
     double angle = f == 0 ? drawn.angle_deg + thumb
-                          : drawn.angle_deg * std::max(0.0, spread) + draw.uniform(-1.5, 1.5);
+                          : drawn.angle_deg * std::max(0.0, spread) + pose.uniform(-1.5, 1.5);
     std::array<Pixel, 4> chain;
     chain[0] = size * Pixel(drawn.x, drawn.y);
     const double bones = scene.thing == Thing::Fist ? 0.25 : 1.0;
     for (std::size_t i = 0; i < 3; ++i) {
       chain[i + 1] =
-          chain[i] + size * bones * drawn.bones[i] * draw.uniform(0.92, 1.08) * turned(angle);
-      angle += (f == 0 ? -1.0 : 1.0) * draw.uniform(-1.0, 4.0) * (f == 0 || f > 2 ? 1.0 : -0.5);
+          chain[i] + size * bones * drawn.bones[i] * body.uniform(0.92, 1.08) * turned(angle);
+      angle += (f == 0 ? -1.0 : 1.0) * pose.uniform(-1.0, 4.0) * (f == 0 || f > 2 ? 1.0 : -0.5);
     }
     for (std::size_t i = 0; i < 4; ++i) out.joints[hand_joint(f, i)] = chain[i];
-    double width = size * drawn.width * draw.uniform(0.92, 1.1);
+    double width = size * drawn.width * body.uniform(0.92, 1.1);
     if (spread < 0.0) width *= 1.35;
     out.outlines[f] = finger_outline(chain, width);
   }
@@ -275,27 +278,53 @@ void dress(cv::Mat& picture, const Figure& figure, const HandScene& scene, const
     band(picture, {{-52, -38}, {52, -38}, {60, -280}, {-60, -280}}, placed, {120, 60, 40});
 }
 
-/// From the height of the webs to the tip, along the finger: the webs are looked for between the
-/// knuckles, in the true mask.
+bool is_hand(const cv::Mat& fine, const Pixel& at) {
+  return fine.at<unsigned char>(cvRound(kFine * at.y()), cvRound(kFine * at.x())) > 0;
+}
+
+/// Where the way from the middle of two knuckles to the middle of the tips leaves the hand.
+Pixel web_between(const Figure& figure, const cv::Mat& fine, const Placed& placed,
+                  std::pair<std::size_t, std::size_t> pair) {
+  const auto middle = [&](std::size_t joint) {
+    return Pixel(0.5 * (placed(figure.joints[hand_joint(pair.first, joint)]) +
+                        placed(figure.joints[hand_joint(pair.second, joint)])));
+  };
+  Pixel at = middle(0);
+  const Pixel way = (middle(3) - at).normalized();
+  while (is_hand(fine, at)) at += 0.25 * way;
+  return at;
+}
+
+/// The web beside the thumb is wide: its deepest point, seen from the line between both tips.
+Pixel web_of_thumb(const Figure& figure, const cv::Mat& fine, const Placed& placed) {
+  constexpr int kSteps = 400;
+  const Pixel from = placed(figure.joints[hand_joint(0, 3)]),
+              to = placed(figure.joints[hand_joint(1, 3)]);
+  Pixel down = Pixel(from.y() - to.y(), to.x() - from.x()).normalized();
+  if (down.dot(placed(figure.joints[0]) - from) < 0.0) down = -down;
+  Pixel deepest = from;
+  double most = 0.0;
+  for (int k = 1; k < kSteps; ++k) {
+    const Pixel begin = from + (to - from) * k / kSteps;
+    Pixel at = begin;
+    const cv::Rect2d picture(1, 1, fine.cols / kFine - 2, fine.rows / kFine - 2);
+    while (picture.contains({at.x(), at.y()}) && !is_hand(fine, at)) at += 0.25 * down;
+    const double depth = (at - begin).norm();
+    if (picture.contains({at.x(), at.y()}) && depth > most) most = depth, deepest = at;
+  }
+  return deepest;
+}
+
+/// From the height of the webs to the tip, along the finger, in the true mask.  Index and thumb
+/// share a web that only the thumb's length is measured from.
 double free_length(const Figure& figure, const cv::Mat& fine, const Placed& placed, std::size_t f) {
   const Pixel tip = placed(figure.joints[hand_joint(f, 3)]);
-  const auto knuckle = [&](std::size_t k) {
-    return placed(figure.joints[hand_joint(k, k == 0 ? 1 : 0)]);
-  };
-  const Pixel along = (tip - knuckle(f)).normalized();
+  const Pixel along = (tip - placed(figure.joints[hand_joint(f, f == 0 ? 1 : 0)])).normalized();
+  if (f == 0) return (tip - web_of_thumb(figure, fine, placed)).dot(along);
   double sum = 0.0, count = 0.0;
-  for (int step : {-1, +1}) {
-    const int other = static_cast<int>(f) + step;
-    // Index and thumb share a web that only the thumb's length is measured from.
-    if (other < 0 || other > 4 || (f == 1 && other == 0)) continue;
-    const auto o = static_cast<std::size_t>(other);
-    const Pixel there = placed(figure.joints[hand_joint(o, 3)]);
-    Pixel at = 0.5 * (knuckle(f) + knuckle(o));
-    const Pixel way = (0.5 * (tip + there) - at).normalized();
-    for (; fine.at<unsigned char>(cvRound(kFine * at.y()), cvRound(kFine * at.x())) > 0;
-         at += 0.25 * way) {
-    }
-    sum += (tip - at).dot(along);
+  for (std::size_t other : {f - 1, f + 1}) {
+    if (other == 0 || other > 4) continue;
+    sum += (tip - web_between(figure, fine, placed, {f, other})).dot(along);
     count += 1.0;
   }
   return sum / count;

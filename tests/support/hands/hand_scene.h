@@ -26,6 +26,7 @@ enum class Thing {
 
 struct HandScene {
   std::uint64_t seed = 1;
+  std::uint64_t person = 0;  ///< Whose hand: pictures of one person differ in pose; 0: the seed's.
   Thing thing = Thing::Hand;
   int long_side = 1200;  ///< Of an A4 sheet [px].
   bool dark_ground = false;

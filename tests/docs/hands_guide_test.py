@@ -1,0 +1,53 @@
+"""The line of docs/guide/hands.md that needs nothing but the repository runs as printed, and gives the hand that was drawn."""
+
+import json
+import math
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = Path(os.environ["CHORUS_BIN"])
+PAGE = (ROOT / "docs/guide/hands.md").read_text(encoding="utf-8")
+LINE = "chorus scan tests/data/hand/scan.png --paper a4 --out hand.bvh"
+TRUTH = json.loads((ROOT / "tests/data/hand/truth.json").read_text(encoding="utf-8"))
+MOST_TIP_PX = 2.0 / TRUTH["mmPerPixel"]
+
+
+def scan(folder, *more):
+    paths = {**os.environ, "PATH": f"{BIN.resolve()}:{os.environ['PATH']}"}
+    line = " ".join([LINE.replace("--out hand.bvh", f"--out {folder}/hand.bvh"), *more])
+    return subprocess.run(["bash", "-c", line], cwd=ROOT, env=paths, capture_output=True, text=True, timeout=100, check=False)
+
+
+class HandsGuide(unittest.TestCase):
+    def test_the_line_for_the_shipped_scan_gives_the_hand_that_was_drawn(self):
+        self.assertIn(LINE, re.sub(r"\s+", " ", PAGE))
+        with tempfile.TemporaryDirectory() as folder:
+            done = scan(folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("the picture is a whole sheet of A4", done.stdout)
+            hand = json.loads(Path(folder, "hand.json").read_text(encoding="utf-8"))
+            self.assertEqual((hand["side"], hand["seen"], hand["relative"]), (TRUTH["side"], TRUTH["seen"], False))
+            self.assertAlmostEqual(hand["scale"]["mmPerPixel"], TRUTH["mmPerPixel"], delta=0.001)
+            for name, truth in TRUTH["fingers"].items():
+                found = hand["fingers"][name]
+                self.assertLess(math.dist(found["tip"], truth["tip"]), MOST_TIP_PX, name)
+                self.assertAlmostEqual(found["fromWebMm"] / truth["fromWebMm"], 1.0, delta=0.05, msg=name)
+            bvh = Path(folder, "hand.bvh").read_text(encoding="utf-8")
+            self.assertEqual(bvh.count("JOINT RightHand"), 15)
+            self.assertGreater(Path(folder, "hand.png").stat().st_size, 10_000)
+
+    def test_the_papers_method_is_nameable(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = scan(folder, "--method paper")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            hand = json.loads(Path(folder, "hand.json").read_text(encoding="utf-8"))
+            self.assertEqual(hand["method"], "paper")
+
+
+if __name__ == "__main__":
+    unittest.main()
