@@ -12,7 +12,7 @@ ROOMS = {folder.name for folder in (ROOT / "tests/unit").iterdir() if folder.is_
 
 class ChangedRooms(unittest.TestCase):
     def test_a_file_belongs_to_the_room_whose_tests_compile_it(self):
-        for path, room in (("common/http/answer.cpp", "http"), ("fusion-server/core/world.h", "core"), ("services/ctl/console.cpp", "ctl"),
+        for path, room in (("common/http/answer.cpp", "http"), ("fusion-server/core/world.h", "core"), ("services/ctl/line/console.cpp", "ctl"),
                            ("services/sensor/device/bridge/push_desk.cpp", "push"), ("services/sensor/sensor_host.cpp", "sensor_service"),
                            ("tests/unit/http/uri_test.cpp", "http"), ("README.md", None), ("tests/system/rig.py", None),
                            ("common/CMakeLists.txt", None)):

@@ -9,7 +9,7 @@ from pathlib import Path
 ROWS = [
     ["common/base"],
     ["common/time", "common/geometry", "common/tls", "common/report"],
-    ["common/rdf", "common/net"],
+    ["common/rdf", "common/net", "common/alignment"],
     ["common/http"],
     ["common/body", "common/inertial"],
     ["common/sensor", "common/layout", "common/posture"],

@@ -7,7 +7,7 @@
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/wire/registration_file.h"
-#include "services/ctl/recorded_cell.h"
+#include "services/ctl/record/recorded_cell.h"
 #include "tests/unit/ctl/program_run.h"
 #include "tests/unit/ctl/scripted_server.h"
 

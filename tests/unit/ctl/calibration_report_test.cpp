@@ -1,5 +1,5 @@
 // What `chorus calibrate camera` says of a lens.
-#include "services/ctl/calibration_report.h"
+#include "services/ctl/calibrate/calibration_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

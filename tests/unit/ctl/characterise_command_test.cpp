@@ -5,7 +5,7 @@
 
 #include "common/base/units.h"
 #include "fusion-server/pipeline/offline.h"
-#include "services/ctl/offline_options.h"
+#include "services/ctl/line/offline_options.h"
 #include "tests/unit/characteristics/turning_person.h"
 #include "tests/unit/ctl/program_run.h"
 

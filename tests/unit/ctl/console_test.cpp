@@ -1,4 +1,4 @@
-#include "services/ctl/console.h"
+#include "services/ctl/line/console.h"
 
 #include <cmath>
 #include <sstream>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/client/service_client.h"
-#include "services/ctl/registration_report.h"
+#include "services/ctl/operate/registration_report.h"
 
 namespace chorus::ctl {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/ctl/discovery.h"
+#include "services/ctl/setup/discovery.h"
 
 #include <cstdlib>
 #include <filesystem>

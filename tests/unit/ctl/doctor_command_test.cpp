@@ -5,7 +5,7 @@
 
 #include "common/base/version.h"
 #include "common/http/server.h"
-#include "services/ctl/findings.h"
+#include "services/ctl/setup/findings.h"
 #include "tests/support/workshop_authority.h"
 #include "tests/unit/ctl/program_run.h"
 

@@ -1,4 +1,4 @@
-#include "services/ctl/findings.h"
+#include "services/ctl/setup/findings.h"
 
 #include <pwd.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "services/ctl/fused_samples.h"
+#include "services/ctl/convert/fused_samples.h"
 
 #include <gmock/gmock.h>
 

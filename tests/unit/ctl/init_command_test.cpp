@@ -9,7 +9,7 @@
 #include "common/tls/certificate.h"
 #include "common/tls/credentials.h"
 #include "fusion-server/server/fusion_settings.h"
-#include "services/ctl/written_config.h"
+#include "services/ctl/setup/written_config.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/ctl/program_run.h"
 

@@ -1,5 +1,5 @@
 // Lenses that commands are given as files.
-#include "services/ctl/lens_file.h"
+#include "services/ctl/calibrate/lens_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // `chorus record` with a fusion server some of whose resources fail.
-#include "services/ctl/live_recording.h"
+#include "services/ctl/record/live_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "common/record/cell_reader.h"
 #include "common/resource/frame_resource.h"
 #include "common/time/clock.h"
-#include "services/ctl/command.h"
+#include "services/ctl/line/command.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"

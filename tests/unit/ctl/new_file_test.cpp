@@ -1,4 +1,4 @@
-#include "services/ctl/new_file.h"
+#include "services/ctl/line/new_file.h"
 
 #include <sys/stat.h>
 

@@ -1,5 +1,5 @@
 // The options of offline fusion: the fusion server's own configuration, key by key.
-#include "services/ctl/offline_options.h"
+#include "services/ctl/line/offline_options.h"
 
 #include <CLI/CLI.hpp>
 

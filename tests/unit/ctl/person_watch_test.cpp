@@ -1,5 +1,5 @@
 // Who shows a place, and when they stand still.
-#include "services/ctl/person_watch.h"
+#include "services/ctl/operate/person_watch.h"
 
 #include <gtest/gtest.h>
 

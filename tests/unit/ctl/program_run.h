@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "common/record/frame_recording.h"
-#include "services/ctl/command.h"
+#include "services/ctl/line/command.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // What `fuse` and `replay` find in recordings before they read them through.
-#include "services/ctl/recorded_cell.h"
+#include "services/ctl/record/recorded_cell.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

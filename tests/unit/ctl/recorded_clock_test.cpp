@@ -1,5 +1,5 @@
 // The clock of a sensor as `chorus record` keeps it: the estimate from the host's own answers.
-#include "services/ctl/recorded_clock.h"
+#include "services/ctl/record/recorded_clock.h"
 
 #include <gtest/gtest.h>
 

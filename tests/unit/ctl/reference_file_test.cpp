@@ -1,5 +1,5 @@
 // The CSV of another tracker.
-#include "services/ctl/reference_file.h"
+#include "services/ctl/align/reference_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "services/ctl/replay_round.h"
+#include "services/ctl/record/replay_round.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

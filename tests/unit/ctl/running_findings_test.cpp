@@ -1,11 +1,11 @@
 // What chorus doctor learns from the programs themselves.
-#include "services/ctl/running_findings.h"
+#include "services/ctl/operate/running_findings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/http/server.h"
-#include "services/ctl/asked_program.h"
+#include "services/ctl/line/asked_program.h"
 #include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {

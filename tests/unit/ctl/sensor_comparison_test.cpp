@@ -1,5 +1,5 @@
 // Sensors beside rigid bodies that another tracker sees on them.
-#include "services/ctl/sensor_comparison.h"
+#include "services/ctl/align/sensor_comparison.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/ctl/registration_report.h"
+#include "services/ctl/operate/registration_report.h"
 #include "tests/unit/ctl/program_run.h"
 #include "tests/unit/ctl/scripted_server.h"
 

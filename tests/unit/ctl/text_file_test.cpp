@@ -1,4 +1,4 @@
-#include "services/ctl/text_file.h"
+#include "services/ctl/line/text_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include "common/base/file.h"
 #include "fusion-server/learn/error_file.h"
-#include "services/ctl/true_bodies.h"
+#include "services/ctl/calibrate/true_bodies.h"
 #include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {

@@ -1,4 +1,4 @@
-#include "services/ctl/webcams.h"
+#include "services/ctl/setup/webcams.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,217 @@
+// chorus fuse REC --out FILE: runs recordings through the pipeline, without clocks or sockets.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/geometry/error_radius.h"
+#include "common/record/cell_reader.h"
+#include "fusion-server/fusion/methods.h"
+#include "fusion-server/pipeline/offline.h"
+#include "fusion-server/wire/registration_file.h"
+#include "services/ctl/calibrate/recorded_places.h"
+#include "services/ctl/convert/fused_file.h"
+#include "services/ctl/convert/sniffed.h"
+#include "services/ctl/line/command.h"
+#include "services/ctl/line/console.h"
+#include "services/ctl/line/offline_options.h"
+#include "services/ctl/line/text_file.h"
+#include "services/ctl/operate/registration_report.h"
+#include "services/ctl/record/recorded_cell.h"
+
+namespace chorus::ctl {
+namespace {
+
+struct FuseArguments {
+  std::vector<std::string> inputs;
+  std::string out;
+  PlaceOptions places;
+  std::string save_registration;
+  OfflineOptions options;
+  bool smooth = false;
+  bool json = false;
+};
+
+/// Refuses to write to any of the input files, which would destroy it.
+Result<void> check_outputs(const FuseArguments& arguments,
+                           std::vector<std::filesystem::path> read) {
+  if (const auto beside = registration_beside(read);
+      beside && *beside && !arguments.places.from_walk)
+    read.push_back(**beside);
+  read.emplace_back(arguments.places.registration);
+  read.emplace_back(arguments.options.config);
+  if (auto ok = may_write(arguments.out, read); !ok) return ok;
+  if (auto ok = may_write(arguments.save_registration, read); !ok) return ok;
+  if (!same_file(arguments.out, arguments.save_registration)) return {};
+  return fail(ErrorCode::InvalidArgument, "--save-registration",
+              "names the file of --out, which would lose what is fused; name another");
+}
+
+/// Says so if the places were given, but options for solving them were, too.
+void note_unused(const FuseArguments& arguments, Places& places) {
+  const OfflineOptions& options = arguments.options;
+  if (places.solved) return;
+  if (options.distance.empty() && options.stature.empty() && options.joints.empty()) return;
+  places.note +=
+      (places.note.empty() ? "" : "; ") +
+      std::string("--distance, --stature and --joints change nothing without --from-walk");
+}
+
+/// What came of the distance that was measured: refused if a sensor is unknown, noted if the walk
+/// contradicts it.
+Result<void> check_distances(const registration::RegistrationConfig& config, Places& places) {
+  if (!places.solved) return {};
+  const Registration& found = *places.registration;
+  constexpr double kClose = 0.02;  // of the length
+  for (const registration::KnownDistance& known : config.known_distances) {
+    for (const SensorId& id : {known.first, known.second}) {
+      if (!found.sensors.contains(id) && !found.verdicts.contains(id))
+        return fail(ErrorCode::InvalidArgument, "--distance",
+                    "the recordings have no sensor " + id.str());
+    }
+    const auto first = found.sensors.find(known.first);
+    const auto second = found.sensors.find(known.second);
+    if (first == found.sensors.end() || second == found.sensors.end()) continue;
+    const double walked = (first->second.world_from_sensor.translation() -
+                           second->second.world_from_sensor.translation())
+                              .norm();
+    if (std::abs(walked - known.length) < kClose * known.length) continue;
+    places.note += fmt::format(
+        "{}{} and {} are {:.2f} m apart by --distance and {:.2f} m by the walk; sensors that "
+        "measure depth are not scaled by it",
+        places.note.empty() ? "" : "; ", known.first.str(), known.second.str(), known.length,
+        walked);
+  }
+  return {};
+}
+
+struct Fused {
+  Registration registration;
+  std::string method;
+  double rate_hz = 0.0;
+  bool smoothed = false;
+  std::size_t frames = 0;
+  std::size_t with_bodies = 0;
+  RecordedCell::Told told;
+};
+
+Result<Fused> fuse_into(const std::string& out, RecordedCell& cell, Registration registration,
+                        const pipeline::OfflineConfig& config) {
+  Fused fused;
+  fused.registration = std::move(registration);
+  fused.method = fusion::name_of(config.pipeline.fusion.method);
+  fused.rate_hz = config.rate_hz;
+  fused.smoothed = config.smooth;
+  const auto file = create_fused_file(out, fused.registration);
+  if (!file) return pass(file);
+  const auto done = pipeline::fuse_recordings(cell.input(), fused.registration, config,
+                                              [&](const Snapshot& snapshot) {
+                                                ++fused.frames;
+                                                if (!snapshot.bodies.empty()) ++fused.with_bodies;
+                                                return (*file)->add(snapshot);
+                                              });
+  if (!done) return pass(done);
+  if (auto ok = (*file)->finish(); !ok) return pass(ok);
+  fused.told = cell.told();
+  return fused;
+}
+
+nlohmann::json summary_of(const Fused& fused) {
+  auto registration = nlohmann::json::parse(wire::write_registration(fused.registration));
+  for (const auto& [sensor, place] : fused.registration.sensors) {
+    const double radius = radius_on_floor(place.covariance);
+    if (!place.covariance.isZero(0.0) && std::isfinite(radius))
+      registration["sensors"][sensor.str()]["presentRadius"] = radius;
+  }
+  return {{"sensors", fused.told.sensors},
+          {"frames", fused.frames},
+          {"framesWithBodies", fused.with_bodies},
+          {"method", fused.method},
+          {"rateHz", fused.rate_hz},
+          {"smoothed", fused.smoothed},
+          {"notes", fused.told.notes},
+          {"registration", std::move(registration)}};
+}
+
+/// Only the body filter smooths where joints are; the other methods are given smoothed sides.
+const char* smoothing_shown(const nlohmann::json& summary) {
+  if (!summary["smoothed"].get<bool>()) return "";
+  const bool whole = summary["method"] == fusion::name_of(fusion::Method::BodyFilter);
+  return whole ? ", smoothed" : ", left and right smoothed, places as without --smooth";
+}
+
+std::string counted(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+void print_summary(const nlohmann::json& summary, const FuseArguments& arguments) {
+  if (arguments.json) {
+    std::cerr << summary.dump(2) << '\n';
+    return;
+  }
+  for (const auto& note : summary["notes"])
+    std::cerr << "note: " << note.get<std::string>() << '\n';
+  std::cerr << registration_report(summary["registration"])
+            << fmt::format("method {}{}, {:.6g} instants a second\n",
+                           summary["method"].get<std::string>(), smoothing_shown(summary),
+                           summary["rateHz"].get<double>())
+            << fmt::format("{}, {}, {} with somebody in them\n",
+                           counted(summary["sensors"].get<std::size_t>(), "sensor"),
+                           counted(summary["frames"].get<std::size_t>(), "fused frame"),
+                           summary["framesWithBodies"].get<std::size_t>());
+}
+
+Result<int> run_fuse(const FuseArguments& arguments) {
+  auto config = offline_config(arguments.options);
+  if (!config) return pass(config);
+  config->smooth = arguments.smooth;
+  const auto files = record::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  if (!files) return pass(files);
+  if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
+  auto cell = RecordedCell::open(*files);
+  if (!cell) return pass(cell);
+  auto places = places_of(arguments.places, *files, *cell, *config);
+  if (!places) return pass(places);
+  if (auto ok = check_distances(config->registration, *places); !ok) return pass(ok);
+  auto fused = fuse_into(arguments.out, *cell, std::move(*places->registration), *config);
+  if (!fused) return pass(fused);
+  note_unused(arguments, *places);
+  auto& notes = fused->told.notes;
+  if (!places->note.empty()) notes.insert(notes.begin(), places->note);
+  if (!arguments.save_registration.empty()) {
+    const auto saved =
+        write_text(arguments.save_registration, wire::write_registration(fused->registration));
+    if (!saved) return pass(saved);
+  }
+  print_summary(summary_of(*fused), arguments);
+  // A file of empty frames is useless; the report says why there are no bodies.
+  return fused->with_bodies > 0 ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+Run add_fuse(CLI::App& options) {
+  const auto arguments = std::make_shared<FuseArguments>();
+  options
+      .add_option("recordings", arguments->inputs,
+                  "Folders or .mcap files, of sensors or of whole cells")
+      ->required();
+  options
+      .add_option("--out", arguments->out, "File to write: .mcap, or NDJSON; - is standard output")
+      ->required();
+  add_place_options(options, arguments->places);
+  options.add_option("--save-registration", arguments->save_registration,
+                     "Write the extrinsics used to this file");
+  add_offline_options(options, arguments->options);
+  options.add_flag("--smooth", arguments->smooth,
+                   "Fuse each instant knowing the seconds after it (fusion.smoothing)");
+  options.add_flag("--json", arguments->json, "Summary as JSON");
+  return [arguments] { return sniffed(run_fuse(*arguments), arguments->inputs); };
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,203 @@
+// chorus evaluate --tracking REC --inertial FILE...: judges a tracker with inertial sensors.
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "common/base/duration.h"
+#include "common/base/file.h"
+#include "common/base/units.h"
+#include "common/evaluation/judge.h"
+#include "common/evaluation/limb_frame.h"
+#include "common/report/report_files.h"
+#include "services/ctl/convert/fused_samples.h"
+#include "services/ctl/evaluate/evaluation_report.h"
+#include "services/ctl/evaluate/inertial_files.h"
+#include "services/ctl/line/command.h"
+#include "services/ctl/line/console.h"
+#include "services/ctl/line/number_range.h"
+
+namespace chorus::ctl {
+namespace {
+
+constexpr std::uintmax_t kMostAnnotationBytes = 16u << 20;
+
+struct EvaluateArguments {
+  std::string tracking, calibration, out = "evaluation";
+  std::vector<std::string> inertial, calibration_inertial, annotations, limbs;
+  std::optional<std::uint64_t> person;
+  double tau_deg = to_deg(evaluation::kPaperTau);
+  double most_percent = 5.0;
+  bool stated = false;  ///< Orientations that the tracker states, instead of those of its joints.
+  bool json = false;
+};
+
+using Samples = std::vector<exporters::FusedSample>;
+
+/// The limbs of each person over seconds after the first frame.
+std::map<std::uint64_t, evaluation::TrackedBody> people_of(const Samples& samples, bool stated) {
+  std::map<std::uint64_t, evaluation::TrackedBody> out;
+  for (const auto& sample : samples) {
+    const double time = seconds(sample.instant - samples.front().instant);
+    for (std::size_t i = 0; i < inertial::kLimbCount; ++i) {
+      const auto limb = static_cast<inertial::Limb>(i);
+      const auto seen = stated ? evaluation::limb_from_orientation(sample.skeleton, limb)
+                               : evaluation::limb_from_joints(sample.skeleton, limb);
+      if (seen) out[sample.person.value][limb].push_back({time, *seen});
+    }
+  }
+  return out;
+}
+
+std::vector<evaluation::JudgeSensor> sensors_of(const std::vector<inertial::SensorLog>& logs) {
+  std::vector<evaluation::JudgeSensor> out;
+  const auto early = [](const auto& a, const auto& b) {
+    return a.readings.front().captured < b.readings.front().captured;
+  };
+  const auto first = std::ranges::min_element(logs, early);
+  for (const inertial::SensorLog& log : logs) {
+    evaluation::JudgeSensor sensor{log.sensor, log.readings.front().limb, {}};
+    for (const auto& reading : log.readings)
+      if (reading.inertial_from_sensor)
+        sensor.track.push_back({seconds(reading.captured - first->readings.front().captured),
+                                *reading.inertial_from_sensor});
+    out.push_back(std::move(sensor));
+  }
+  return out;
+}
+
+struct Loaded {
+  evaluation::TrackedBody body;
+  std::vector<evaluation::JudgeSensor> sensors;
+};
+
+Result<evaluation::TrackedBody> chosen(std::map<std::uint64_t, evaluation::TrackedBody> people,
+                                       const EvaluateArguments& arguments) {
+  if (arguments.person) {
+    const auto found = people.find(*arguments.person);
+    if (found != people.end()) return std::move(found->second);
+    return fail(ErrorCode::NotFound, "--person", "is not in the recording");
+  }
+  if (people.size() == 1) return std::move(people.begin()->second);
+  return fail(
+      ErrorCode::InvalidArgument, arguments.tracking,
+      fmt::format("shows {} people; say with --person which one wears the sensors", people.size()));
+}
+
+Result<Loaded> load(const std::string& tracking, const std::vector<std::string>& files,
+                    const EvaluateArguments& arguments) {
+  const auto frames = read_fused_frames(tracking, std::chrono::milliseconds(0));
+  if (!frames) return pass(frames);
+  for (const std::string& note : frames->notes) std::cerr << "note: " << note << '\n';
+  if (frames->samples.empty()) return fail(ErrorCode::NotFound, tracking, "shows nobody");
+  auto body = chosen(people_of(frames->samples, arguments.stated), arguments);
+  if (!body) return pass(body);
+  const auto logs = read_inertial_files(files, arguments.limbs);
+  if (!logs) return pass(logs);
+  for (const auto& log : *logs)
+    for (const std::string& note : log.notes)
+      std::cerr << "note: sensor " << log.sensor << ": " << note << '\n';
+  for (const std::string& note : inertial::heading_notes(*logs))
+    std::cerr << "note: " << note << '\n';
+  return Loaded{std::move(*body), sensors_of(*logs)};
+}
+
+Result<EvaluationInputs> inputs_of(const EvaluateArguments& arguments) {
+  EvaluationInputs out{arguments.tracking,     arguments.inertial,    deg(arguments.tau_deg),
+                       arguments.most_percent, arguments.annotations, {}};
+  for (const std::string& file : arguments.annotations) {
+    const auto text = read_file(file, kMostAnnotationBytes);
+    if (!text) return pass(text);
+    auto read = evaluation::parse_annotations(*text, file);
+    if (!read) return pass(read);
+    out.annotations.push_back(std::move(*read));
+  }
+  return out;
+}
+
+void print_limbs(const evaluation::Judgement& found) {
+  std::vector<std::vector<std::string>> rows{
+      {"limb", "sensor", "in error %", "noise deg", "calibration deg", "own tau deg"}};
+  for (const auto& limb : found.limbs)
+    rows.push_back({std::string(words_for(limb.limb)), limb.calibration.sensor,
+                    shown(error_percent(limb), 1), shown(to_deg(limb.floor.mean), 1),
+                    shown(to_deg(limb.calibration.prediction_sigma), 1),
+                    shown(to_deg(limb.own_tau), 0)});
+  std::cout << table(rows);
+  for (const Error& error : found.refused) std::cout << "not judged: " << to_string(error) << '\n';
+}
+
+Result<int> run_evaluate(const EvaluateArguments& arguments) {
+  const auto inputs = inputs_of(arguments);
+  if (!inputs) return pass(inputs);
+  evaluation::JudgeOptions options;
+  options.tau = deg(arguments.tau_deg);
+  std::vector<inertial::SensorCalibration> calibrations;
+  if (!arguments.calibration.empty()) {
+    const auto take = load(arguments.calibration, arguments.calibration_inertial, arguments);
+    if (!take) return pass(take);
+    auto found = evaluation::calibrate_take(take->body, take->sensors, options);
+    if (!found) return pass(found);
+    calibrations = std::move(*found);
+  }
+  const auto take = load(arguments.tracking, arguments.inertial, arguments);
+  if (!take) return pass(take);
+  const auto found = evaluation::judge_tracking(take->body, take->sensors, options, calibrations);
+  if (!found) return pass(found);
+  const report::Report report = evaluation_report(*found, *inputs);
+  if (auto ok = report::write_reports(report, arguments.out, "evaluation"); !ok) return pass(ok);
+  if (arguments.json)
+    std::cout << report::json_of(report) << '\n';
+  else
+    print_limbs(*found);
+  std::cerr << "wrote " << arguments.out << "/evaluation.html, .json and .csv\n";
+  const bool good = std::ranges::all_of(found->limbs, [&](const auto& limb) {
+    return error_percent(limb) <= arguments.most_percent;
+  });
+  return good ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+Run add_evaluate(CLI::App& options) {
+  const auto arguments = std::make_shared<EvaluateArguments>();
+  options
+      .add_option("--tracking", arguments->tracking,
+                  "Fused frames: a recording, lines of JSON, or an address")
+      ->required();
+  options
+      .add_option("--inertial", arguments->inertial,
+                  "Files of the sensors: MT Manager .txt, Movella DOT .csv, OpenSim .sto, .mvnx")
+      ->required();
+  options.add_option("--limb", arguments->limbs,
+                     "SENSOR=LIMB, where names do not say; else it is found");
+  auto* const calibration = options.add_option("--calibration", arguments->calibration,
+                                               "Another take that calibrates; else the first 35 %");
+  options
+      .add_option("--calibration-inertial", arguments->calibration_inertial,
+                  "The sensors' files of that take")
+      ->needs(calibration);
+  options
+      .add_option("--annotations", arguments->annotations,
+                  "Files of annotators: limb,begin_s,end_s")
+      ->expected(1, 2);
+  options.add_option("--person", arguments->person,
+                     "Who wears the sensors, if several people are tracked");
+  options.add_option("--tau", arguments->tau_deg, "Threshold [deg]")
+      ->check(number_range(1.0, 180.0))
+      ->capture_default_str();
+  options
+      .add_option("--most", arguments->most_percent, "Time in error that passes, of every limb [%]")
+      ->check(number_range(0.0, 100.0))
+      ->capture_default_str();
+  options.add_flag("--stated", arguments->stated,
+                   "Judge the orientations that the tracker states, not its joints");
+  options.add_option("--out", arguments->out, "Folder of the report")->capture_default_str();
+  options.add_flag("--json", arguments->json, "Print the report as JSON");
+  return [arguments] { return run_evaluate(*arguments); };
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,230 @@
+#include "services/ctl/evaluate/position_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "common/base/units.h"
+
+namespace chorus::ctl {
+namespace {
+
+using positioning::Placed;
+using report::Figure;
+using report::Judgement;
+using report::Mark;
+using report::Plot;
+
+constexpr double kHiddenFor = 0.3;  // Without a camera for longer, somebody counts as hidden [s].
+
+double hidden_share(const positioning::TakeResult& result) {
+  const auto hidden =
+      std::count_if(result.placed.begin(), result.placed.end(),
+                    [](const Placed& one) { return seconds(one.online.hidden) > kHiddenFor; });
+  return static_cast<double>(hidden) / static_cast<double>(result.placed.size());
+}
+
+double sigma_of(const Placed& one) { return std::sqrt(one.smooth.covariance.trace()); }
+
+double middle_sigma(const positioning::TakeResult& result) {
+  std::vector<double> all;
+  for (const Placed& one : result.placed) all.push_back(sigma_of(one));
+  std::sort(all.begin(), all.end());
+  return all[all.size() / 2];
+}
+
+double drift_of(const PositionReport& take) {
+  return (take.walked.back() - take.result.placed.back().smooth.place).norm();
+}
+
+Judgement judged(double value, double good, double doubtful) {
+  if (!(value <= doubtful)) return Judgement::Bad;
+  return value <= good ? Judgement::Good : Judgement::Doubtful;
+}
+
+std::vector<Figure> place_figures(const PositionReport& take) {
+  const double answered = 100.0 * static_cast<double>(take.result.placed.size()) /
+                          static_cast<double>(take.result.instants);
+  const double hidden = 100.0 * hidden_share(take.result);
+  const double sigma = to_mm(middle_sigma(take.result));
+  return {{"answered",
+           "instants with a place",
+           answered,
+           "%",
+           {},
+           "from the first sight on",
+           "at least 97 %",
+           "the person must be in the picture at the beginning",
+           judged(100.0 - answered, 3.0, 20.0)},
+          {"hidden",
+           "time without a camera's sight",
+           hidden,
+           "%",
+           {},
+           "the suit's steps alone tell these places",
+           "at most 10 %",
+           "add a camera, or walk where it sees",
+           judged(hidden, 10.0, 50.0)},
+          {"sigma",
+           "stated error of a place",
+           sigma,
+           "mm",
+           {},
+           "standard deviation, median over time",
+           "at most 100 mm",
+           "a second camera quarters it",
+           judged(sigma, 100.0, 300.0)},
+          {"drift",
+           "the suit's steps alone end elsewhere by",
+           to_mm(drift_of(take)),
+           "mm",
+           {},
+           "what the cameras have corrected",
+           {},
+           {},
+           Judgement::NotJudged}};
+}
+
+std::vector<Figure> found_figures(const PositionReport& take) {
+  const positioning::ClockFit& clock = take.result.clock;
+  std::vector<Figure> out;
+  out.push_back({"clock",
+                 "clock of the suit against the cameras'",
+                 1e3 * clock.offset,
+                 "ms",
+                 clock.found ? fmt::format("give or take {:.0f} ms", 1e3 * clock.sigma)
+                             : std::string("not found: nothing moves enough; 0 is used"),
+                 "added to the suit's time",
+                 {},
+                 "wave, or state --clock-offset",
+                 clock.found ? Judgement::Good : Judgement::Doubtful});
+  out.push_back({"heading",
+                 "heading of the suit in the world",
+                 to_deg(take.result.heading),
+                 "deg",
+                 fmt::format("give or take {:.1f} deg", to_deg(take.result.heading_sigma)),
+                 "at the end; it drifts",
+                 {},
+                 {},
+                 Judgement::NotJudged});
+  for (std::size_t i = 0; i < take.cameras.size(); ++i) {
+    const auto& [error, sigma] = take.result.depth[i];
+    out.push_back({"depth." + take.cameras[i].sensor.str(),
+                   "depths of " + take.cameras[i].sensor.str() + " too long by", 100.0 * error, "%",
+                   fmt::format("give or take {:.1f} %", 100.0 * sigma),
+                   "the person is smaller than stated, or the focal length larger", "within 3 %",
+                   "state --stature", judged(std::abs(100.0 * error), 3.0, 6.0)});
+  }
+  out.push_back({"strangers",
+                 "pictures of somebody whose pose is not the suit's",
+                 static_cast<double>(take.result.strangers),
+                 "",
+                 {},
+                 "they were left out",
+                 "at most 10 % of the pictures",
+                 "is it the right take, and the right person?",
+                 judged(static_cast<double>(take.result.strangers),
+                        0.1 * static_cast<double>(take.result.pictures),
+                        0.5 * static_cast<double>(take.result.pictures))});
+  return out;
+}
+
+report::Series path_of(const std::string& name, Mark mark,
+                       const std::vector<Eigen::Vector3d>& places) {
+  report::Series out{name, mark};
+  for (const Eigen::Vector3d& place : places) {
+    out.x.push_back(place.x());
+    out.y.push_back(place.z());
+  }
+  return out;
+}
+
+Plot path_plot(const PositionReport& take) {
+  std::vector<Eigen::Vector3d> online;
+  std::vector<Eigen::Vector3d> smooth;
+  for (const Placed& one : take.result.placed) {
+    online.push_back(one.online.position.place);
+    smooth.push_back(one.smooth.place);
+  }
+  std::vector<Eigen::Vector3d> cameras;
+  for (const auto& camera : take.cameras) cameras.push_back(camera.world_from_sensor.translation());
+  Plot plot;
+  plot.title = "Path from above";
+  plot.x.label = "x [m]";
+  plot.y.label = "z [m]";
+  plot.same_scale = true;
+  plot.height = 520;
+  plot.series = {path_of("suit alone", Mark::Dashes, take.walked),
+                 path_of("online", Mark::Line, online), path_of("smoothed", Mark::Line, smooth),
+                 path_of("cameras", Mark::Points, cameras)};
+  return plot;
+}
+
+Plot time_plot(const PositionReport& take) {
+  Plot plot;
+  plot.title = "Stated error, and height of the hips";
+  plot.x.label = "time [s]";
+  plot.y.label = "[m]";
+  report::Series sigma{"standard deviation of the place", Mark::Line};
+  report::Series height{"hips above the floor", Mark::Line};
+  double hidden_from = 0.0;
+  bool was_hidden = false;
+  for (const Placed& one : take.result.placed) {
+    const double at = seconds(one.time);
+    sigma.x.push_back(at);
+    sigma.y.push_back(sigma_of(one));
+    height.x.push_back(at);
+    height.y.push_back(one.smooth.place.y());
+    const bool hidden = seconds(one.online.hidden) > kHiddenFor;
+    if (hidden && !was_hidden) hidden_from = at;
+    if (!hidden && was_hidden) plot.spans.push_back({hidden_from, at});
+    was_hidden = hidden;
+  }
+  if (was_hidden) plot.spans.push_back({hidden_from, seconds(take.result.placed.back().time)});
+  plot.series = {std::move(sigma), std::move(height)};
+  return plot;
+}
+
+}  // namespace
+
+report::Report position_report(const PositionReport& take) {
+  report::Report out;
+  out.kind = "position";
+  out.title = "Place of a suit before cameras";
+  out.subject = take.subject;
+  out.subject.emplace_back("method", take.method);
+  report::Section places{"places", "Places"};
+  places.figures = place_figures(take);
+  places.plots = {path_plot(take), time_plot(take)};
+  places.paragraphs = {"Shaded: no camera saw the person; the place is that of the suit's steps."};
+  report::Section found{"found", "Found with it"};
+  found.figures = found_figures(take);
+  found.paragraphs = {
+      "Distrust the distance from a single camera most: it is five times as uncertain as the "
+      "direction.  A wrong place of the camera moves everything alike and cannot be seen here."};
+  out.sections = {std::move(places), std::move(found)};
+  out.judgement = worst_of(out.sections);
+  out.verdict = fmt::format("{} of {} instants have a place, with a stated error of {:.0f} mm.",
+                            take.result.placed.size(), take.result.instants,
+                            to_mm(middle_sigma(take.result)));
+  return out;
+}
+
+std::string position_text(const PositionReport& take) {
+  const positioning::ClockFit& clock = take.result.clock;
+  std::string out = fmt::format(
+      "{} of {} instants placed, give or take {:.0f} mm (median); {:.0f} % without a camera\n",
+      take.result.placed.size(), take.result.instants, to_mm(middle_sigma(take.result)),
+      100.0 * hidden_share(take.result));
+  out += clock.found ? fmt::format("clock of the suit: {:+.0f} ms, give or take {:.0f}\n",
+                                   1e3 * clock.offset, 1e3 * clock.sigma)
+                     : std::string(
+                           "clock of the suit: not found, 0 is used; is there a wave, or "
+                           "a step, that both show?\n");
+  out += fmt::format("heading of the suit: {:.1f} deg; the suit's steps alone end {:.0f} mm away\n",
+                     to_deg(take.result.heading), to_mm(drift_of(take)));
+  return out;
+}
+
+}  // namespace chorus::ctl
