@@ -1,0 +1,46 @@
+"""Every file and folder that a recipe in CONTRIBUTING names exists, and every page of docs/how is listed in its index."""
+
+import re
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PATH = re.compile(r"`((?:common|services|fusion-server|proto|tests|deploy|docs)/[A-Za-z0-9_./-]*)`")
+BUILT = ("build/",)
+RECIPES = 10
+
+
+def recipes():
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    parts = re.split(r"^## ", text, flags=re.MULTILINE)
+    return {part.splitlines()[0]: part for part in parts if part.startswith("Recipe: ")}
+
+
+class Recipes(unittest.TestCase):
+    def test_there_are_all_of_them(self):
+        self.assertEqual(len(recipes()), RECIPES, sorted(recipes()))
+
+    def test_each_names_files_that_exist(self):
+        for name, text in recipes().items():
+            paths = PATH.findall(text)
+            self.assertGreaterEqual(len(paths), 2, f"{name} names no files")
+            for path in paths:
+                # A test of ctest is named like a path: docs/config_keys_test, golden/openapi_test.
+                exists = (ROOT / path).exists() or (ROOT / "tests" / f"{path}.py").exists()
+                self.assertTrue(exists, f"{name}: {path} does not exist")
+
+    def test_pages_of_how_are_listed(self):
+        index = (ROOT / "docs/how/README.md").read_text()
+        for page in (ROOT / "docs/how").glob("*.md"):
+            if page.name != "README.md":
+                self.assertIn(f"({page.name})", index, "a page that nobody finds")
+
+    def test_pages_of_how_name_files_that_exist(self):
+        sources = {p.name for room in ("common", "fusion-server", "services") for p in (ROOT / room).rglob("*.h")}
+        for page in (ROOT / "docs/how").glob("*.md"):
+            for header in re.findall(r"`(?:[a-z_/-]*/)?([a-z_]+\.h)`", page.read_text()):
+                self.assertIn(header, sources, f"{page.name} names {header}, which is not there")
+
+
+if __name__ == "__main__":
+    unittest.main()
