@@ -9,7 +9,7 @@
 #   deploy/make-packages.sh --arch arm64   chorus-sensor and chorus-common for arm64, compiled on amd64 in a Debian root (as root),
 #                                          into var/packages-arm64
 #
-# On the host: copy the folder there, then sudo DIR/install.sh chorus-sensor (or chorus-fusion, chorus-tools).
+# On the host: copy the folder there, then sudo DIR/install.sh chorus-sensor (or chorus-fusion, chorus-evaluation, ...).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -74,7 +74,7 @@ download_dependencies() {
   rm -rf "$scratch"
 }
 
-preset=package programs=(chorus-sensor chorus-sensor-small chorus-fusion chorus chorus-host)
+preset=package programs=(chorus-sensor chorus-sensor-small chorus-fusion chorus-ergonomics chorus-evaluation chorus chorus-host)
 inside=()  # goes before what must run where the compiler is
 if [[ $arch != "$own_arch" ]]; then
   [[ $arch == arm64 ]] || fail "packages can be made for $own_arch and, cross-compiled, for arm64"

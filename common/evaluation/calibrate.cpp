@@ -173,8 +173,9 @@ double independent(const std::vector<Weighted>& pairs, double correlation_time) 
 }
 
 /// Root mean square, over limbs turned evenly in every direction, of the angle by which a
-/// prediction errs because of heading and mount.
-double prediction_sigma(const SensorCalibration& calibration) {
+/// prediction errs because of heading and mount.  Of a limb whose twist the tracker never shows,
+/// only the direction of the bone is predicted and judged.
+double prediction_sigma(const SensorCalibration& calibration, bool twist_seen) {
   double sum = 0.0;
   double count = 0.0;
   for (int tilt = 0; tilt <= 90; tilt += 30) {
@@ -183,7 +184,9 @@ double prediction_sigma(const SensorCalibration& calibration) {
       const Eigen::Vector3d axis(std::cos(a), 0.0, std::sin(a));
       const Eigen::Quaterniond limb = exp_map(deg(tilt) * axis);
       const Eigen::Matrix3d zero = Eigen::Matrix3d::Zero();
-      sum += inertial::prediction_covariance(calibration, limb, zero).trace();
+      const Eigen::Matrix3d errs = inertial::prediction_covariance(calibration, limb, zero);
+      const Eigen::Vector3d bone = limb * Eigen::Vector3d::UnitY();
+      sum += errs.trace() - (twist_seen ? 0.0 : bone.dot(errs * bone));
       count += 1.0;
     }
   }
@@ -242,7 +245,9 @@ Result<CalibrationFit> fit_calibration(const OrientationPairs& pairs,
       step(fit.calibration, normal_of(usable, fit.calibration, kScalesOfSigma * fit.sigma));
   }
   state_errors(fit, usable, options);
-  fit.calibration.prediction_sigma = prediction_sigma(fit.calibration);
+  const bool twist_seen = std::ranges::any_of(
+      usable, [](const Weighted& each) { return each.pair->tracked.twist_seen; });
+  fit.calibration.prediction_sigma = prediction_sigma(fit.calibration, twist_seen);
   return fit;
 }
 

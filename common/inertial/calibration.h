@@ -28,7 +28,8 @@ struct SensorCalibration {
   /// Median angle between the tracked limb and the predicted one in the calibration take [rad].
   double residual = 0.0;
   /// Standard error of a prediction that the calibration alone causes, in the worst pose of the
-  /// limb [rad]: heading and mount, not the noise of the instant.
+  /// limb [rad]: heading and mount, not the noise of the instant.  Where the calibration take never
+  /// showed the limb's twist, of the bone's direction alone.
   double prediction_sigma = 0.0;
 };
 

@@ -3,6 +3,7 @@
 #   common  chorus (small: init, discover, doctor, status, register, record), user, folders
 #   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures its dependencies)
 #   fusion  chorus-fusion, its service and the viewer
+#   ergonomics, evaluation  a service that follows a tracker: posture scores; a judgement by worn inertial sensors
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
 #           runs this program
 #   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise, align
@@ -15,12 +16,20 @@ set(services sensor)
 set(printer_of_chorus chorus-host)
 set(printer_of_chorus-sensor chorus-sensor-small)
 if(NOT CHORUS_ONLY_SENSOR)
-  list(APPEND components camera fusion tools)
-  list(APPEND services fusion)
+  list(APPEND components camera fusion ergonomics evaluation tools)
+  list(APPEND services fusion ergonomics evaluation)
   set(printer_of_chorus chorus)
   set(printer_of_chorus-sensor chorus-sensor)
-  set(printer_of_chorus-fusion chorus-fusion)
+  foreach(service fusion ergonomics evaluation)
+    set(printer_of_chorus-${service} chorus-${service})
+  endforeach()
 endif()
+# What to do where /etc/chorus/NAME.json is not there yet: `chorus init` writes those of sensor and fusion.
+set(advice_of_sensor "chorus init sensor writes one and says what comes next.")
+set(advice_of_fusion "chorus init fusion writes one and says what comes next.")
+foreach(service ergonomics evaluation)
+  set(advice_of_${service} "copy /usr/share/doc/chorus-${service}/examples/${service}.json to /etc/chorus/, name the tracker in it, then: systemctl restart chorus-${service}")
+endforeach()
 set(docs ${CMAKE_INSTALL_DATADIR}/doc)
 
 install(PROGRAMS $<TARGET_FILE:chorus-host> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus COMPONENT common)
@@ -56,6 +65,7 @@ foreach(service ${services})
   foreach(script postinst prerm postrm)
     file(READ deploy/package/service.${script} text)
     string(REPLACE @NAME@ ${service} text "${text}")
+    string(REPLACE @ADVICE@ "${advice_of_${service}}" text "${text}")
     file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/control/${service}/${script} CONTENT "${text}" @ONLY)
     file(CHMOD ${CMAKE_BINARY_DIR}/control/${service}/${script} PERMISSIONS
       OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
@@ -90,7 +100,9 @@ if(NOT CHORUS_ONLY_SENSOR)
   endforeach()
   install(DIRECTORY services/capture DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN package.json EXCLUDE)
 
-  install(TARGETS chorus-fusion RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fusion)
+  foreach(service fusion ergonomics evaluation)
+    install(TARGETS chorus-${service} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${service})
+  endforeach()
   set(viewer ${CMAKE_INSTALL_DATADIR}/chorus/viewer)
   install(DIRECTORY services/viewer/ DESTINATION ${viewer} COMPONENT fusion
     FILES_MATCHING PATTERN node_modules EXCLUDE PATTERN *.js PATTERN *.html PATTERN *.css)
@@ -144,6 +156,10 @@ set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams, video files an
  The device camera, the runner that finds people, and a page for phones.")
 set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
  Reads sensors, places them by a person who walks, and serves one tracker.")
+set(CPACK_COMPONENT_ERGONOMICS_DESCRIPTION "Chorus: posture scores of the people of a tracker
+ Follows a tracker and serves REBA, RULA, OWAS and others with their doubt.")
+set(CPACK_COMPONENT_EVALUATION_DESCRIPTION "Chorus: a tracker judged by inertial sensors that people wear
+ Follows a tracker and worn sensors, and says which limb is off and since when.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
  The commands import, replay, fuse, export, train-error, calibrate, characterise and align.")
 include(CPack)

@@ -22,7 +22,8 @@ ROWS = [
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],
     ["fusion-server/registration"],
     ["fusion-server/pipeline", "fusion-server/learn"],
-    ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "services/sensor", "services/ergonomics"],
+    ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "services/sensor", "services/ergonomics",
+     "services/evaluation"],
     ["fusion-server/vrpn", "fusion-server/dtrack", "fusion-server/natnet", "fusion-server/trackd",
      "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest"],
     ["fusion-server/outputs"],
@@ -50,8 +51,8 @@ FORBIDDEN_ROOMS = [
     ({"fusion-server/registration"}, STAGES - {"fusion-server/align"}, "registration may use align only"),
     (NO_SOCKET, {"common/net", "common/http", "common/client", "common/service"}, "no socket here"),
     (NO_HTTP, {"common/http", "common/client", "common/service"}, "a tracker protocol needs sockets, not HTTP"),
-    ({"services/sensor", "services/ergonomics"}, FUSION_SERVER, "running services meet over HTTP"),
-    (FUSION_SERVER, {"services/sensor", "services/ergonomics"}, "running services meet over HTTP"),
+    ({"services/sensor", "services/ergonomics", "services/evaluation"}, FUSION_SERVER, "running services meet over HTTP"),
+    (FUSION_SERVER, {"services/sensor", "services/ergonomics", "services/evaluation"}, "running services meet over HTTP"),
 ]
 
 STAGE_HEADERS = re.compile(

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 BIN = Path(os.environ["CHORUS_BIN"])
-PROGRAMS = ("chorus", "chorus-sensor", "chorus-fusion")
+PROGRAMS = ("chorus", "chorus-sensor", "chorus-fusion", "chorus-ergonomics", "chorus-evaluation")
 
 
 def said(program, *arguments):

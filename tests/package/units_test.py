@@ -28,7 +28,7 @@ def runnable(unit, folder):
 @unittest.skipUnless(shutil.which("systemd-analyze"), "runs where systemd-analyze is installed (Debian: systemd)")
 class Units(unittest.TestCase):
     def test_there_is_one_for_each_service(self):
-        self.assertEqual([unit.stem for unit in UNITS], ["chorus-fusion", "chorus-sensor"])
+        self.assertEqual([unit.stem for unit in UNITS], ["chorus-ergonomics", "chorus-evaluation", "chorus-fusion", "chorus-sensor"])
 
     def test_systemd_finds_nothing_wrong(self):
         with tempfile.TemporaryDirectory() as folder:

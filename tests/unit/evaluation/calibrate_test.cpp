@@ -92,6 +92,24 @@ TEST(Calibrate, CountsNoTwistThatIsNotSeen) {
   EXPECT_GT(fit->calibration.covariance(2, 2), 100 * fit->calibration.covariance(1, 1));
 }
 
+TEST(Calibrate, OfALimbThatNeverShowsItsTwistPredictsTheBone) {
+  auto pairs = take(12.0, {deg(3.0), deg(2.0), 0.0});
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].tracked.twist_seen = false;  // A forearm whose plane is any.
+    pairs[i].tracked.world_from_limb =
+        pairs[i].tracked.world_from_limb * about_y(0.7 * static_cast<double>(i));
+  }
+  const auto fit = calibrate_sensor(pairs, "7", inertial::Limb::ForearmLeft);
+  ASSERT_TRUE(fit) << to_string(fit.error());
+  EXPECT_LT(to_deg(fit->calibration.prediction_sigma), 10.0);
+  const Eigen::Quaterniond limb = limb_at(20.0);
+  const Eigen::Quaterniond said =
+      predicted_limb(fit->calibration, about_y(-kHeading) * limb * kMount);
+  EXPECT_LT(
+      to_deg(std::acos((said * Eigen::Vector3d::UnitY()).dot(limb * Eigen::Vector3d::UnitY()))),
+      5.0);
+}
+
 TEST(Calibrate, RefusesAStillLimbByNameWithWhatToDo) {
   const auto still = [](double) { return exp_map({0.4, 0.1, 0.3}); };
   const auto fit = calibrate_sensor(take(10, {}, still), "DOT-3", inertial::Limb::ShankLeft);
