@@ -7,6 +7,9 @@
 #     only the unit tests of the rooms whose files differ from BASE (default: HEAD~1)
 #   tests/run.sh --strict
 #     instead: builds the programs of the demo with the release options and warnings as errors, and runs the demo from them
+#   tests/run.sh --fuzz
+#     instead: builds the libFuzzer targets with clang and runs each for five seconds (CHORUS_FUZZ_SECONDS); the ordinary run only tries
+#     their seeds and inputs made from them (the tests corpus/)
 #   tests/run.sh --nightly
 #     instead, hours: everything under both sanitizers, and every fuzz target for ten minutes (CHORUS_FUZZ_SECONDS)
 #   tests/run.sh --workshop
@@ -80,7 +83,7 @@ run_sanitized() {
   read -ra targets <<<"${CHORUS_TARGETS:-all}"
   cmake --build "build/$preset" -j "$jobs" --target "${targets[@]}"
   step "tests under the $sanitizer sanitizer"
-  exec ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" -L '^(unit|integration|fusion-system)$' "$@"
+  exec ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" -L '^(unit|integration|fusion-system|corpus)$' "$@"
 }
 
 # What people run is built without assertions and with more optimisation, which finds other warnings.
@@ -92,22 +95,37 @@ run_strict() {
   deploy/demo.sh --bin build/strict/bin --port "$(python3 -B -c "$free")" --seconds 20
 }
 
-# Every fuzz target on inputs as large as its reader takes; found inputs stay in the build tree and are where the next night goes on.
-run_nightly() {
-  for one in address thread; do tests/run.sh --sanitize "$one" || failed=yes; done
-  step "fuzz targets (clang), ${CHORUS_FUZZ_SECONDS:=600} s each"
-  cmake --preset fuzz "${launcher[@]}" -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1 -D_GLIBCXX_ASSERTIONS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all" --log-level=WARNING
+# Every fuzz target on inputs as large as its reader takes; found inputs stay in the build tree and are where the next run goes on.
+# $1: seconds for each; what follows goes to cmake.
+run_fuzz() {
+  local seconds=$1; shift
+  step "fuzz targets (clang), $seconds s each"
+  cmake --preset fuzz "${launcher[@]}" "$@" --log-level=WARNING
   cmake --build build/fuzz -j "$jobs" --target fuzzers
-  cmake --preset dev "${launcher[@]}" -DCHORUS_FUZZ_SECONDS="$CHORUS_FUZZ_SECONDS" --log-level=WARNING
-  ctest --test-dir build/dev --output-on-failure -j "$(nproc)" -L fuzz || failed=yes
-  cmake --preset dev -UCHORUS_FUZZ_SECONDS --log-level=WARNING
-  [ -z "${failed:-}" ]
+  cmake --preset dev "${launcher[@]}" -DCHORUS_FUZZ_TEST_SECONDS="$seconds" --log-level=WARNING
+  local failed=""
+  ctest --test-dir build/dev --output-on-failure -j "$(nproc)" -L '^fuzz$' || failed=yes
+  cmake --preset dev -UCHORUS_FUZZ_TEST_SECONDS --log-level=WARNING
+  [ -z "$failed" ]
+}
+
+# A long run puts back the optimisation that a short one does not wait for.
+run_nightly() {
+  local failed=""
+  for one in address thread; do tests/run.sh --sanitize "$one" || failed=yes; done
+  run_fuzz "${CHORUS_FUZZ_SECONDS:-600}" \
+    -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1 -D_GLIBCXX_ASSERTIONS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all" || failed=yes
+  [ -z "$failed" ]
 }
 
 step "packages"
 deploy/install-packages.sh build tests
 if [ "${1:-}" = --nightly ]; then
   run_nightly
+  exit
+fi
+if [ "${1:-}" = --fuzz ]; then
+  run_fuzz "${CHORUS_FUZZ_SECONDS:-5}"
   exit
 fi
 [ -z "$sanitizer" ] || run_sanitized "$@"
@@ -124,10 +142,6 @@ cmake --preset dev "${launcher[@]}" --log-level=WARNING
 cmake --build build/dev -j "$jobs"
 step "every header compiles alone"
 cmake --build build/dev -j "$jobs" --target all_verify_interface_header_sets
-
-step "fuzz targets (clang)"
-cmake --preset fuzz "${launcher[@]}" --log-level=WARNING
-cmake --build build/fuzz -j "$jobs" --target fuzzers
 
 step "tests"
 # Many tests wait for their child processes: so run two more than there are cores. Those with a COST start first, else they end alone.

@@ -47,7 +47,7 @@ http::Server& server() {
 class Client {
  public:
   Client() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    const sockaddr_in address = testing::loopback(server().port());
+    const sockaddr_in address = chorus::testing::loopback(server().port());
     const int failed =
         ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
     require(failed == 0 || (errno == EINTR && ready(POLLOUT, kPatience) > 0));
