@@ -1,6 +1,7 @@
 // Runs `chorus` in this process and captures its output; makes recordings as its input.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
