@@ -1,13 +1,20 @@
 // The device `inertial`: what worn inertial sensors say.  Keys of device.inertial, with defaults in
 // brackets:
 //
-//   source [simulated | replay | slimevr]
+//   source [simulated | replay | slimevr | mocopi | vmc | vrchat | rokoko | neuron | mxtp]
 //
 //   replay: a recording's /inertial/{id}/orientations again
 //     recording, loop [true], speed [1]
 //
 //   slimevr: trackers with SlimeVR's firmware, and phones with owoTrack, connect to this service
-//     address [0.0.0.0], port [6969]
+//     address [0.0.0.0], port [0: the usual one, 6969]
+//
+//   mocopi, vmc, vrchat, rokoko, mxtp: streams of makers' programs over UDP (common/inertial)
+//     address [0.0.0.0], port [0: the usual one: 12351, 39539, 9000, 14043, 9763]
+//     actor [""]        rokoko: the name of who wears this source; "": the first
+//     person [0]        mxtp, neuron: the number of who wears it
+//   neuron: BVH from Axis Neuron or Axis Studio over TCP
+//     host [127.0.0.1], port [0: the usual one, 7001]
 //
 //   simulated: a suit on the first person of a scene (common/synthetic/simulated_suit.h)
 //     scene...                as in the device `simulated`: equal keys show the same people
@@ -18,6 +25,10 @@
 //     raw [false]               also angular rates and forces, as chips measure them
 //     slips [none]              the limb whose sensor slips: "ForearmLeft"
 //     slips_after_s [20]    slips_by_deg [60]
+//     faults [[]]               what else goes wrong: a list of kind (slip, disturbance, silence,
+//                               battery, swap, lie), limb, other (of swap), begin_s [0], lasts_s
+//                               [for ever], size_deg (slip, disturbance), factor (lie: of the
+//                               standard deviation that is stated)
 #pragma once
 
 #include <memory>

@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "common/inertial/inertial_frame.h"
+#include "common/inertial/stream_reader.h"
 #include "services/sensor/device/host_time.h"
 
 namespace chorus::inertial_device {
@@ -48,5 +49,16 @@ struct SlimevrServer {
 };
 [[nodiscard]] std::unique_ptr<InertialFeed> make_slimevr_feed(const SlimevrServer& settings,
                                                               sensor_service::HostTime time);
+
+/// A maker's stream: over UDP, or over a TCP connection that this side makes again and again.
+struct LiveStream {
+  std::string name;  ///< For people: "Sony mocopi".
+  std::unique_ptr<inertial::StreamReader> reader;
+  bool connects = false;
+  std::string address = "0.0.0.0";  ///< To listen on, or the host to connect to.
+  std::uint16_t port = 0;
+};
+[[nodiscard]] std::unique_ptr<InertialFeed> make_stream_feed(LiveStream settings,
+                                                             sensor_service::HostTime time);
 
 }  // namespace chorus::inertial_device
