@@ -19,12 +19,6 @@ constexpr double kStartPatience = 15.0;  // for start-up on a busy machine [s]
 
 std::string name_of_sensor(int index) { return fmt::format("s{}", index + 1); }
 
-std::vector<std::string> words_of(const std::string& config, const Settings& settings) {
-  std::vector<std::string> words{"--config", config};
-  for (const std::string& each : settings) words.insert(words.end(), {"--set", each});
-  return words;
-}
-
 Result<void> unanswered(const ChildProcess& program, const std::string& name) {
   if (program.alive()) return fail(ErrorCode::Timeout, name, "it does not answer");
   return fail(
@@ -53,6 +47,12 @@ bool wait_until(double patience, const std::function<bool()>& holds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return true;
+}
+
+std::vector<std::string> words_of(const std::string& config, const Settings& settings) {
+  std::vector<std::string> words{"--config", config};
+  for (const std::string& each : settings) words.insert(words.end(), {"--set", each});
+  return words;
 }
 
 http::ClientResponse ask_port(std::uint16_t port, http::ClientRequest request) {

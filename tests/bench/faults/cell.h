@@ -104,6 +104,10 @@ class Cell {
   std::optional<ChildProcess> fusion_;
 };
 
+/// The arguments of a program with this configuration file and settings.
+[[nodiscard]] std::vector<std::string> words_of(const std::string& config,
+                                                const Settings& settings);
+
 /// Sends a GET or another request to any port of this host.
 [[nodiscard]] http::ClientResponse ask_port(std::uint16_t port, http::ClientRequest request);
 

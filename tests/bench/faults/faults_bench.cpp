@@ -15,8 +15,8 @@ namespace {
 FaultCases all_cases() {
   FaultCases all;
   for (const auto& part :
-       {sensor_cases(), lie_cases(), link_cases(), client_cases(), output_cases(), access_cases(),
-        server_cases(), trust_cases(), stranger_cases()})
+       {sensor_cases(), inertial_cases(), lie_cases(), link_cases(), client_cases(), output_cases(),
+        access_cases(), server_cases(), trust_cases(), stranger_cases()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

@@ -60,6 +60,7 @@ using FaultCases = std::vector<FaultCase>;
 
 [[nodiscard]] FaultCases sensor_cases();
 [[nodiscard]] FaultCases link_cases();
+[[nodiscard]] FaultCases inertial_cases();
 [[nodiscard]] FaultCases lie_cases();
 [[nodiscard]] FaultCases client_cases();
 [[nodiscard]] FaultCases output_cases();

@@ -8,6 +8,7 @@
 #include "common/evaluation/judge.h"
 #include "common/geometry/rotation.h"
 #include "tests/bench/inertial/inertial_cases.h"
+#include "tests/bench/inertial/injected_errors.h"
 #include "tests/bench/inertial/real_takes.h"
 
 namespace chorus::bench {
@@ -17,46 +18,7 @@ namespace ev = evaluation;
 using inertial::LimbGroup;
 
 constexpr double kLearnShare = 0.35;            // share of the take that calibrates
-constexpr double kWrongShare = 0.25;            // of its instants, in bursts
 constexpr double kErrorLengths[] = {0.3, 1.5};  // of injected errors [s]
-constexpr double kErrorEvery = 3.0;             // one error in so many seconds
-constexpr double kLeastErrorDeg = 55.0;         // [deg]: tau and ten more
-constexpr double kMostErrorDeg = 150.0;
-
-struct InjectedErrors {
-  ev::OrientationPairs pairs;
-  std::vector<ev::Segment> truth;
-};
-
-/// Turns the limb by an error about a random axis during [begin, end].
-void turn_limb(ev::OrientationPairs& pairs, const ev::Segment& when,
-               const Eigen::Quaterniond& off) {
-  for (ev::OrientationPair& pair : pairs)
-    if (pair.time >= when.begin && pair.time <= when.end)
-      pair.tracked.world_from_limb = pair.tracked.world_from_limb * off;
-}
-
-Eigen::Quaterniond drawn_error(std::mt19937_64& draw) {
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> angle(deg(kLeastErrorDeg), deg(kMostErrorDeg));
-  const Eigen::Vector3d axis(normal(draw), normal(draw), normal(draw));
-  return exp_map(angle(draw) * axis.normalized());
-}
-
-InjectedErrors with_errors(ev::OrientationPairs pairs, double from, double length,
-                           std::mt19937_64& draw) {
-  std::uniform_real_distribution<double> any;
-  constexpr double kBurst = 0.5;
-  for (double t = pairs.front().time; t < from; t += kBurst)
-    if (any(draw) < kWrongShare) turn_limb(pairs, {t, t + kBurst - 1e-6}, drawn_error(draw));
-  InjectedErrors out{std::move(pairs), {}};
-  for (double t = from; t + kErrorEvery < out.pairs.back().time; t += kErrorEvery) {
-    const double begin = t + any(draw) * (kErrorEvery - length - 0.5);
-    out.truth.push_back({begin, begin + length});
-    turn_limb(out.pairs, out.truth.back(), drawn_error(draw));
-  }
-  return out;
-}
 
 struct LimbGroupScore {
   ev::Counts frames, segments;
@@ -71,28 +33,13 @@ ev::ErrorTrack errors_after(const inertial::SensorCalibration& calibration,
   return out;
 }
 
-/// |difference of the angular rates| of tracker and sensor: the baseline of Fig. 9.
-std::vector<ev::Timed<double>> rate_differences(const ev::OrientationPairs& pairs, double from) {
-  ev::OrientationTrack tracked, sensed;
-  for (const auto& pair : pairs) {
-    tracked.push_back({pair.time, pair.tracked.world_from_limb});
-    sensed.push_back({pair.time, pair.inertial_from_sensor});
-  }
-  const ev::Signal a = ev::angular_rates(tracked, 0.03);
-  const ev::Signal b = ev::angular_rates(sensed, 0.03);
-  std::vector<ev::Timed<double>> out;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    if (a[i].time >= from) out.push_back({a[i].time, std::abs(a[i].value - b[i].value)});
-  return out;
-}
-
 void judge_sensor(const RealSensor& sensor, double length, std::mt19937_64& draw,
                   LimbGroupScore& score) {
   const ev::OrientationPairs clean = pairs_of(sensor);
   if (clean.size() < 100) return;
   score.limbs += 1.0;
   const double from = clean.front().time + kLearnShare * (clean.back().time - clean.front().time);
-  const InjectedErrors bad = with_errors(clean, from, length, draw);
+  const InjectedErrors bad = with_errors(clean, {from, length, ErrorAxis::Any}, draw);
   ev::OrientationPairs learn;
   for (const auto& pair : bad.pairs)
     if (pair.time < from) learn.push_back(pair);

@@ -8,11 +8,15 @@
 namespace chorus::bench {
 namespace {
 
+// clang-format off
 constexpr InertialCase kCases[] = {
-    {"calibrate", run_calibrate}, {"calibrate-real", run_calibrate_real},
-    {"time-real", run_time_real}, {"detect-real", run_detect_real},
-    {"filter", run_filter},       {"residual-real", run_residual_real},
+    {"calibrate", run_calibrate},   {"calibrate-real", run_calibrate_real},
+    {"time-real", run_time_real},   {"detect", run_detect},
+    {"detect-real", run_detect_real}, {"paper", run_paper},
+    {"keraal", run_keraal},         {"filter", run_filter},
+    {"residual-real", run_residual_real},
 };
+// clang-format on
 
 }  // namespace
 

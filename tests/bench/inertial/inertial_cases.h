@@ -29,6 +29,15 @@ struct InertialCase {
 /// What calibrated sensors leave on real limbs.
 [[nodiscard]] Result<void> run_residual_real(Report& report);
 
+/// Errors injected into a simulated tracker, found by a simulated suit; and by other quantities.
+[[nodiscard]] Result<void> run_detect(Report& report);
+
+/// The paper's experiment, simulated: 24 takes, five sensors, two synthetic annotators.
+[[nodiscard]] Result<void> run_paper(Report& report);
+
+/// A real Kinect against optical targets: $CHORUS_SHARED/data/keraal_kinect2_optical.
+[[nodiscard]] Result<void> run_keraal(Report& report);
+
 /// Errors injected into real takes, and found.
 [[nodiscard]] Result<void> run_detect_real(Report& report);
 
