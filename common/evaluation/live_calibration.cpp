@@ -26,7 +26,7 @@ LiveCalibration::LiveCalibration(inertial::SensorCalibration calibration,
     : calibration_(std::move(calibration)),
       options_(options),
       heading_(options.heading_walk),
-      watch_(about_one_axis(calibration_), options.least_slip) {}
+      watch_(about_one_axis(calibration_), options.least_slip, options.slip_lasts) {}
 
 inertial::SensorCalibration LiveCalibration::at(double time) const {
   inertial::SensorCalibration now = calibration_;

@@ -23,6 +23,9 @@ struct LiveCalibrationOptions {
   double heading_walk = deg(0.5);
   double mount_time = 60.0;  ///< Over which the mount forgets [s]; 0: it is not followed.
   double least_slip = deg(10);
+  /// How long a step must last to be a slip [s].  Where the tracker is judged, too, longer than its
+  /// own errors do.
+  double slip_lasts = SlipWatch::kUsuallyLasts;
 };
 
 class LiveCalibration {

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kLookEvery = 0.1;   // [s]
 constexpr double kSlipWindow = 2.0;  // [s] of looks that the median is over
-constexpr double kLasts = 1.2;       // [s] for which it must be beyond
 constexpr std::size_t kLeastLooks = 10;
 constexpr double kLargestGap = 10.0;  // [s] after which earlier looks say nothing
 constexpr double kTimesUsual = 3.0;
@@ -48,7 +47,7 @@ void SlipWatch::learn(double time, const Eigen::Vector3d& error, bool twist_seen
   const double usual = std::max(usual_, weight_ > 0.0 ? wander_ : 0.0);
   if (turned_ > least_ + kTimesUsual * usual) {
     if (!beyond_since_) beyond_since_ = time;
-    if (time - *beyond_since_ >= kLasts) slipped_ = turned_;
+    if (time - *beyond_since_ >= lasts_) slipped_ = turned_;
     return;
   }
   beyond_since_.reset();

@@ -2,7 +2,7 @@
 //
 // Of a sensor that slipped, the error about the limb's axes (Baak et al., Eq. 13) has a step.  What
 // is looked at is the median of each axis over the last seconds in which the limb was seen: single
-// wrong instants do not move it.  It must exceed the least slip by three times what the limb's
+// wrong instants do not move it.  It must exceed the least slip, and three times what the limb's
 // median usually wanders by (skin turns on forearms, and what cameras err by follows the pose), for
 // longer than half the window.
 #pragma once
@@ -17,8 +17,11 @@ namespace chorus::evaluation {
 class SlipWatch {
  public:
   /// `usual`: what the calibration's residual was about one axis [rad]; `least`: the least slip.
-  SlipWatch(double usual, double least) : usual_(usual), least_(least) {}
+  /// `lasts`: for how long it must be beyond [s]; longer where the tracker is in doubt, too.
+  SlipWatch(double usual, double least, double lasts = kUsuallyLasts)
+      : usual_(usual), least_(least), lasts_(lasts) {}
   SlipWatch() = default;
+  static constexpr double kUsuallyLasts = 1.2;  // [s]
 
   /// Takes the error of an instant [rad], `time` [s]; its y counts only where `twist_seen`.
   void learn(double time, const Eigen::Vector3d& error, bool twist_seen);
@@ -37,6 +40,7 @@ class SlipWatch {
 
   double usual_ = 0.0;
   double least_ = 0.0;
+  double lasts_ = kUsuallyLasts;
   std::deque<Look> looks_;
   double wander_ = 0.0;  ///< Mean size of the median while nothing has slipped [rad].
   double weight_ = 0.0;

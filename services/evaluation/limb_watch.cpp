@@ -18,6 +18,9 @@ std::string_view name_of(LimbState state) noexcept {
 std::string words_for(const LimbJudgement& limb) {
   const std::string name =
       limb.limb ? std::string(inertial::words_for(*limb.limb)) : "sensor " + limb.sensor;
+  if (limb.state == LimbState::Good && limb.slipped)
+    return fmt::format("{}: the sensor has slipped by {:.0f} deg; mount it again and calibrate",
+                       name, to_deg(*limb.slipped));
   if (limb.state == LimbState::Good) return name + " agrees";
   if (limb.state != LimbState::Off) return name + ": " + limb.reason;
   std::string text = fmt::format("{} off by {:.0f} deg for {:.0f} s", name, to_deg(limb.off_by),
@@ -39,6 +42,10 @@ LimbWatch::LimbWatch(const SensorId& source, const std::string& sensor,
 void LimbWatch::calibrate_as(inertial::SensorCalibration calibration) {
   told_.sigma = calibration.prediction_sigma;
   told_.limb = calibration.limb;
+  evaluation::LiveCalibrationOptions options;
+  options.slip_lasts = seconds(kSlippedAfter);
+  live_.emplace(calibration, options);
+  told_.slipped.reset();
   calibration_ = std::move(calibration);
   pairs_.clear();
 }
@@ -46,6 +53,8 @@ void LimbWatch::calibrate_as(inertial::SensorCalibration calibration) {
 void LimbWatch::forget_calibration() {
   if (told_.state == LimbState::Off && last_judged_) come_back(*last_judged_);
   calibration_.reset();
+  live_.reset();
+  told_.slipped.reset();
   pairs_.clear();
   pairs_seen_ = tried_at_ = 0;
   last_pair_.reset();
@@ -71,8 +80,12 @@ void LimbWatch::unseen(std::string reason, Timestamp at, const WatchOptions& opt
 void LimbWatch::judge(const evaluation::OrientationPair& pair, Timestamp at,
                       const WatchOptions& options) {
   if (!calibration_) calibrate(pair, at, options);
-  if (!calibration_) return;
-  told_.error = evaluation::limb_error(*calibration_, pair);
+  if (!live_) return;
+  evaluation::OrientationPair timed = pair;
+  timed.time = seconds(at.time_since_epoch());
+  live_->learn(timed);
+  if (live_->slip()) told_.slipped = live_->slip()->angle;
+  told_.error = evaluation::limb_error(live_->at(timed.time), timed);
   detect(*told_.error, at, options);
   last_judged_ = at;
 }

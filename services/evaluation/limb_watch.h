@@ -14,6 +14,7 @@
 #include "common/base/strong_id.h"
 #include "common/evaluation/calibrate.h"
 #include "common/evaluation/limb_error.h"
+#include "common/evaluation/live_calibration.h"
 #include "common/inertial/limb.h"
 #include "common/time/timestamp.h"
 
@@ -41,6 +42,9 @@ struct LimbJudgement {
   double tau = evaluation::kPaperTau;          ///< [rad]
   Duration off_for{0};                         ///< For how long it has been off, while it is.
   std::uint64_t segments = 0;                  ///< How often it has been off since the start.
+  /// By how much the sensor has turned on its limb since it was calibrated [rad], once that lasts
+  /// for kSlippedAfter; also where that is below tau.
+  std::optional<double> slipped = {};
 };
 
 /// "left forearm off by 70 deg for 4 s"; the reason if it is not judged.
@@ -86,6 +90,7 @@ class LimbWatch {
   void forget_calibration();
 
   [[nodiscard]] const LimbJudgement& told() const { return told_; }
+  /// As it was found, or given; what is judged with follows drifting headings, too.
   [[nodiscard]] const std::optional<inertial::SensorCalibration>& calibration() const {
     return calibration_;
   }
@@ -108,6 +113,7 @@ class LimbWatch {
   std::size_t tried_at_ = 0;  ///< Number of pairs so far when a calibration was last tried.
   std::size_t pairs_seen_ = 0;
   std::optional<inertial::SensorCalibration> calibration_;
+  std::optional<evaluation::LiveCalibration> live_;  ///< Of calibration_.
   std::optional<Timestamp> above_since_;
   std::optional<Timestamp> last_judged_;
   std::optional<Timestamp> twist_off_at_;  ///< When a twist was last seen that was off.

@@ -1,6 +1,8 @@
 // One limb: when an error begins, when it ends, and what is said of it.
 #include "services/evaluation/limb_watch.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
@@ -99,6 +101,33 @@ TEST_F(WatchedLimb, WhatGoesOnForLongIsCalledASlippedSensor) {
   EXPECT_EQ(words_for(watch.told()),
             "left shank off by 60 deg for 12 s: where the tracker is right, the sensor has "
             "slipped; mount it again and calibrate");
+}
+
+TEST_F(WatchedLimb, ASlipBelowTauIsToldOnceItLasts) {
+  for (int ms = 0; ms < 25'000; ms += 100) {
+    see(ms, ms < 5'000 ? 0 : 25);
+    if (ms >= 14'000) continue;
+    ASSERT_EQ(words_for(watch.told()), "left shank agrees") << ms;
+  }
+  EXPECT_EQ(state(), LimbState::Good) << "below tau";
+  EXPECT_EQ(words_for(watch.told()),
+            "left shank: the sensor has slipped by 25 deg; mount it again and calibrate");
+  watch.forget_calibration();
+  EXPECT_FALSE(watch.told().slipped);
+}
+
+TEST_F(WatchedLimb, AHeadingThatDriftsIsNoError) {
+  for (int ms = 0; ms < 100'000; ms += 50) {
+    const double t = ms / 1000.0;
+    evaluation::OrientationPair pair;
+    pair.tracked.world_from_limb =
+        exp_map({0, 0, deg(70)}) * exp_map({0.6 * std::sin(2 * t), 0, 0});
+    pair.inertial_from_sensor = about_y(deg(0.6) * t) * pair.tracked.world_from_limb;
+    watch.judge(pair, kStart + milliseconds(ms), options);
+  }
+  EXPECT_LT(to_deg(watch.told().error->angle), 10.0) << "of sixty that it has drifted";
+  EXPECT_EQ(watch.told().segments, 0u);
+  EXPECT_FALSE(watch.told().slipped);
 }
 
 TEST_F(WatchedLimb, RemembersTheLatestErrorsOnly) {
