@@ -11,6 +11,8 @@
 #   --cameras                       uses the videos of four cameras that ship with the tests: each has a sensor
 #                                   whose runner finds the person in its pictures, and the fusion server makes
 #                                   bodies of their rays, with the published extrinsics
+#   --suit                          puts the take of an inertial suit where a camera saw its wearer (chorus position, on the video
+#                                   and the take that ship with the tests), and fuses the result like any sensor's
 #   --until-good                    with --seconds: stops earlier, as soon as the places are good and it delivers
 #   --register                      with --recording: finds the extrinsics from the person alone
 #   --port N                        the fusion server's port (8080); the sensors use the ports after it, live posture scores
@@ -29,12 +31,13 @@ readonly start_within_s=60  # a loaded machine; a program that ends is noticed a
 readonly bundled_recording=tests/data/pose2sim_mediapipe
 readonly bundled_cameras=tests/data/pose2sim_videos/four
 readonly camera_count=4
+readonly bundled_suit=tests/data/suit
 
 usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 step() { printf '\n== %s\n' "$*"; }
 fail() { printf '\ndemo: %s\n' "$*" >&2; exit 1; }
 
-sheet='' seconds='' until_good='' recording='' cameras='' register='' port=8080 overrides=() bin=build/release/bin build=yes
+sheet='' seconds='' until_good='' recording='' cameras='' suit='' register='' port=8080 overrides=() bin=build/release/bin build=yes
 read_arguments() {
   while (( $# > 0 )); do
     case $1 in
@@ -43,6 +46,7 @@ read_arguments() {
         recording=$bundled_recording
         if [[ -n "${2:-}" && "${2:0:2}" != -- ]]; then recording=$2; shift; fi ;;
       --cameras) cameras=yes ;;
+      --suit) suit=yes ;;
       --sheet) sheet=${2:?--sheet needs a file}; shift ;;
       --register) register=yes ;;
       --until-good) until_good=yes ;;
@@ -61,6 +65,7 @@ read_arguments() {
   [[ ! -f "$recording" ]] || fail "'$recording' is a file: name the folder it is in"
   [[ -z "$recording" || -d "$recording" ]] || fail "there is no folder '$recording'"
   [[ -z "$recording" || -z "$cameras" ]] || fail "--cameras and --recording are two demos: choose one"
+  [[ -z "$suit" || -z "$recording$cameras" ]] || fail "--suit is a demo of its own: leave out --cameras and --recording"
   [[ -n "$recording" || -z "$register" ]] || fail "--register goes with --recording"
   [[ -z "$sheet" || -n "$seconds" ]] || fail "--sheet goes with --seconds"
   [[ -z "$sheet" || "$sheet" = /* ]] || sheet=$called_from/$sheet
@@ -121,7 +126,7 @@ build() {
   step "packages"
   deploy/install-packages.sh build
   install_modules services/viewer
-  [[ -z "$cameras" ]] || install_modules services/pose-runner
+  [[ -z "$cameras$suit" ]] || install_modules services/pose-runner
   step "build"
   local launcher=()
   export CCACHE_SLOPPINESS=pch_defines,time_macros
@@ -192,6 +197,21 @@ start_replays() {
   while read -r id _ url _; do add_sensor "$id" "$url"; done < <(grep ' at http' "$logs/replay.out")
 }
 
+# Without the runner's modules the outline alone tells where the person is.
+place_suit() {
+  local method=both
+  [[ -d services/pose-runner/node_modules ]] || method=outline
+  step "the suit's place, by $method"
+  rm -rf "$logs/suit" && mkdir -p "$logs/suit/play"
+  "$bin/chorus" position $bundled_suit/cam01.mp4 $bundled_suit/walk.bvh --place $bundled_suit/place.json \
+    --intrinsics $bundled_suit/lens.json --method $method --out "$logs/suit" || fail "the suit could not be placed"
+  mv "$logs/suit/position.mcap" "$logs/suit/play/"
+  # Its space is the world already.
+  echo '{"version":1,"master":"positioner","sensors":{"positioner":{"x":0,"y":0,"z":0,"qx":0,"qy":0,"qz":0,"qw":1}}}' \
+    > "$logs/suit/play/registration.json"
+  recording=$logs/suit/play
+}
+
 start_cameras() {
   local i
   for (( i = 1; i <= camera_count; ++i )); do
@@ -249,13 +269,14 @@ mkdir -p "$logs"
 rm -f "$logs"/*.log "$logs"/*.out "$logs"/registration.json
 rm -rf "$logs/state"  # each demo registers its sensors anew
 # How many sensors a recording has is only known when it is played; each of them complains if its port is taken.
-if [[ -n "$recording" ]]; then need_free_ports 1; else need_free_ports $sensor_count; fi
+if [[ -n "$recording$suit" ]]; then need_free_ports 1; else need_free_ports $sensor_count; fi
 [[ -z "$build" ]] || build
 
 trap stop_all EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 step "start"
+[[ -z "$suit" ]] || place_suit
 if [[ -n "$recording" ]]; then start_replays; elif [[ -n "$cameras" ]]; then start_cameras; else start_simulated; fi
 sensor_processes=${#children[@]}
 for sensor in "${sensors[@]}"; do

@@ -19,6 +19,7 @@ constexpr int kHeight = 6;
 constexpr int kCommonStates = 7;
 constexpr int kOfCamera = 4;  // depth, then along, level and steep errors
 
+constexpr double kNearestSeen = 0.1;  // From a camera [m].
 // Unknown: a place or a heading that nothing has told yet.
 constexpr double kAnywhere = 10.0;     // [m]
 constexpr double kFlightHeight = 0.5;  // While nobody stands, the height is not told [m].
@@ -128,33 +129,40 @@ void PositionFilter::stand(const Motion& motion) {
   update(slope, residual, Eigen::MatrixXd::Constant(1, 1, sigma * sigma));
 }
 
+/// As logarithm of the distance and two directions across the line of sight: there the error of all
+/// depths adds up with the distance instead of multiplying it.  The axes are those half-way between
+/// the expected and the seen direction, which is right to second order.  Axes of the expected
+/// direction err alike with the height, and a camera little above the hips then takes a person to
+/// be farther and farther away (axes of the seen one: nearer and nearer).
 PositionFilter::Measurement PositionFilter::measured(const Seen& seen) const {
   const int at = camera_at(seen.camera);
   const int rows = seen.heading ? 4 : 3;
   const Eigen::Vector3d line = state_.segment<3>(kPlace) - seen.eye;
-  const Eigen::Matrix3d axes = sight_axes(line);
+  const double distance = std::max(kNearestSeen, line.norm());
+  const Eigen::Vector3d sight = seen.place - seen.eye;
+  const double range = std::max(kNearestSeen, sight.norm());
+  const Eigen::Matrix3d axes = sight_axes(line / distance + sight / range);
   Measurement out{Eigen::MatrixXd::Zero(rows, state_.size()), Eigen::VectorXd::Zero(rows),
                   Eigen::MatrixXd::Zero(rows, rows)};
-  const double depth = 1.0 + state_[at];
-  // An error along the line of sight turns with it: it leaves the direction of the ray as it is.
-  const double stretch = state_[at + 1] / std::max(0.1, line.norm());
-  const Eigen::Vector3d ahead = axes.col(0);
-  out.slope.block<3, 3>(0, kPlace) =
-      (depth + stretch) * Eigen::Matrix3d::Identity() - stretch * ahead * ahead.transpose();
-  out.slope.block<3, 1>(0, at) = line;
-  out.slope.block<3, 3>(0, at + 1) = axes;
-  out.expected.head<3>() = seen.eye + depth * line + axes * state_.segment<3>(at + 1);
-  out.noise.topLeftCorner<3, 3>() = std::pow(errors_.picture, 2) * Eigen::Matrix3d::Identity();
-  // What the geometry says beyond the usual: few rays, or rays that are nearly parallel.
+  const double depth = std::max(0.5, 1.0 + state_[at]);
+  const Eigen::Vector3d ways = axes.transpose() * (sight / range - line / distance);
+  const Eigen::Vector3d errors = state_.segment<3>(at + 1) / distance;
+  out.slope.block<3, 3>(0, kPlace) = axes.transpose() / distance;
+  out.slope(0, at) = 1.0 / depth;
+  out.slope.block<3, 3>(0, at + 1) = Eigen::Matrix3d::Identity() / distance;
+  out.residual[0] = std::log(range) - std::log(distance * depth) - errors[0];
+  out.residual[1] = ways[1] - errors[1];
+  out.residual[2] = ways[2] - errors[2];
   for (int axis = 0; axis < 3; ++axis) {
+    // What the geometry says beyond the usual: few rays, or rays that are nearly parallel.
     const Eigen::Vector3d a = axes.col(axis);
-    const double usual = (axis == 0 ? errors_.along : errors_.across) * line.norm();
-    const double excess = a.dot(seen.covariance * a) - usual * usual;
-    if (excess > 0.0) out.noise.topLeftCorner<3, 3>() += excess * a * a.transpose();
+    const double usual = (axis == 0 ? errors_.along : errors_.across) * distance;
+    const double excess = std::max(0.0, a.dot(seen.covariance * a) - usual * usual);
+    out.noise(axis, axis) = (errors_.picture * errors_.picture + excess) / (distance * distance);
   }
   if (seen.heading) {
     out.slope(3, kHeading) = 1.0;
-    out.expected[3] = state_[kHeading];
+    out.residual[3] = wrap_angle(*seen.heading - state_[kHeading]);
     out.noise(3, 3) = errors_.heading_noise * errors_.heading_noise;
   }
   return out;
@@ -165,8 +173,7 @@ double PositionFilter::surprise(const Seen& seen) const {
   place.heading.reset();
   const Measurement m = measured(place);
   const Eigen::MatrixXd s = m.slope * covariance_ * m.slope.transpose() + m.noise;
-  const Eigen::VectorXd residual = seen.place - m.expected;
-  return residual.dot(s.ldlt().solve(residual)) / 3.0;
+  return m.residual.dot(s.ldlt().solve(m.residual)) / 3.0;
 }
 
 void PositionFilter::see(const Seen& seen) {
@@ -174,10 +181,7 @@ void PositionFilter::see(const Seen& seen) {
   const double wanted = std::clamp(std::sqrt(std::max(0.0, wondering)), 1.0, kMostRestless);
   restless_ += kNoticing * (wanted - restless_);
   const Measurement m = measured(seen);
-  Eigen::VectorXd residual(m.expected.size());
-  residual.head<3>() = seen.place - m.expected.head<3>();
-  if (seen.heading) residual[3] = wrap_angle(*seen.heading - m.expected[3]);
-  update(m.slope, residual, m.noise);
+  update(m.slope, m.residual, m.noise);
   distance_ = (state_.segment<3>(kPlace) - seen.eye).norm();
 }
 

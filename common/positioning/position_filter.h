@@ -89,7 +89,7 @@ class PositionFilter {
  private:
   struct Measurement {
     Eigen::MatrixXd slope;
-    Eigen::VectorXd expected;
+    Eigen::VectorXd residual;
     Eigen::MatrixXd noise;
   };
   [[nodiscard]] Measurement measured(const Seen& seen) const;

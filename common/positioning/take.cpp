@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/base/median.h"
+#include "common/positioning/paper_smoothing.h"
 
 namespace chorus::positioning {
 namespace {
@@ -130,13 +131,15 @@ struct Looks {
 std::vector<Look> looks_until(std::span<const CameraTake> cameras, Timestamp until, Looks& done) {
   std::vector<Look> out;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const SensorFrame* latest = nullptr;
-    while (done.next[i] < cameras[i].frames.size() &&
-           cameras[i].frames[done.next[i]].captured <= until)
-      latest = &cameras[i].frames[done.next[i]++];
-    if (latest == nullptr) continue;
+    const std::vector<SensorFrame>& frames = cameras[i].frames;
+    const std::size_t first = done.next[i];
+    std::size_t next = first;
+    while (next < frames.size() && frames[next].captured <= until) ++next;
+    done.next[i] = next;
+    if (next == first) continue;
     Look look{i, cameras[i].world_from_sensor, {}, {}};
-    for (const BodyFrame& body : latest->bodies) look.people.push_back(body.skeleton);
+    for (const BodyFrame& body : frames[next - 1].bodies) look.people.push_back(body.skeleton);
+    if (cameras[i].sight) look.sight = cameras[i].sight(next - 1);
     out.push_back(std::move(look));
   }
   return out;
@@ -160,15 +163,67 @@ Result<Span> span_of(std::span<const CameraTake> cameras) {
   return *span;
 }
 
+/// The stated offset, or the one that landmarks show.
+ClockFit clock_of(std::span<const CameraTake> cameras, const suit::SuitTake& suit,
+                  const TakeSettings& settings) {
+  if (!settings.offset_s) {
+    ClockFit found = fit_clock(cameras, suit, settings);
+    if (!found.found) found.offset = 0.0;
+    return found;
+  }
+  ClockFit stated{*settings.offset_s, 0.0, 0.0, true, 0.0};
+  stated.heading = heading_at(spread(cameras), suit, settings, *settings.offset_s);
+  return stated;
+}
+
+/// Refuses a suit's take that has no pose for most of the cameras' time: it would stand still.
+Result<void> overlap(const Span& span, const suit::SuitTake& suit, const TakeSettings& settings,
+                     const ClockFit& clock) {
+  constexpr double kLeastOverlap = 0.5;  // Of the cameras' time.
+  constexpr double kLeast = 0.1;         // [s]
+  if (suit.poses.empty()) return fail(ErrorCode::InvalidArgument, "suit", "it has no poses");
+  const double from = std::max(seconds(span.first - settings.start),
+                               seconds(suit.poses.front().time) + clock.offset);
+  const double to =
+      std::min(seconds(span.last - settings.start), seconds(suit.poses.back().time) + clock.offset);
+  const double length = std::max(kLeast, seconds(span.last - span.first));
+  if (to - from + kLeast >= kLeastOverlap * length) return {};
+  return fail(
+      ErrorCode::InvalidArgument, "suit",
+      fmt::format("its take covers {:.1f} s of the cameras' {:.1f} s: is it the right take, "
+                  "and its clock that of the videos? --clock-offset states the difference, "
+                  "--search looks for a larger one",
+                  std::max(0.0, to - from), length));
+}
+
+void smooth(const std::vector<FilterStep>& steps, Method method, TakeResult& result) {
+  if (method == Method::Silhouettes) {
+    gauss_smooth(result.placed);
+    return;
+  }
+  const std::vector<Position> all = smoothed(steps);
+  for (std::size_t i = 0; i < std::min(all.size(), result.placed.size()); ++i)
+    result.placed[i].smooth = all[i];
+}
+
 Result<void> check(const TakeResult& result, std::span<const CameraTake> cameras) {
   if (!result.placed.empty()) return {};
   const std::string& name = cameras.front().sensor.str();
-  if (result.strangers > 0)
+  std::size_t somebody = 0;
+  bool looked = false;
+  for (const CameraTake& camera : cameras) {
+    looked = looked || camera.sight;
+    for (const SensorFrame& frame : camera.frames) somebody += frame.bodies.empty() ? 0 : 1;
+  }
+  if (somebody > 0)
     return fail(ErrorCode::InvalidArgument, name,
                 fmt::format("somebody is in {} pictures, but nobody moves as the suit says: "
                             "another person, another take, or clocks farther apart than was tried",
-                            result.strangers));
-  return fail(ErrorCode::InvalidArgument, name, "nobody is seen in any picture");
+                            somebody));
+  return fail(ErrorCode::InvalidArgument, name,
+              !looked ? "nobody is seen in any picture"
+                      : "nobody is seen in any picture whose outline is the suit's; is the room "
+                        "without the person known (--empty-room), and the suit's heading?");
 }
 
 }  // namespace
@@ -198,16 +253,11 @@ Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::S
   const auto span = span_of(cameras);
   if (!span) return pass(span);
   TakeResult result;
-  if (settings.offset_s) {
-    result.clock = {*settings.offset_s, 0.0, 0.0, true, 0.0};
-    result.clock.heading = heading_at(spread(cameras), suit, settings, *settings.offset_s);
-  } else {
-    result.clock = fit_clock(cameras, suit, settings);
-    if (!result.clock.found) result.clock.offset = 0.0;
-  }
+  result.clock = clock_of(cameras, suit, settings);
+  if (const auto ok = overlap(*span, suit, settings, result.clock); !ok) return pass(ok);
   TrackerSettings tracking = settings.tracker;
   tracking.cameras = cameras.size();
-  tracking.heading = result.clock.heading;
+  if (!tracking.heading && !spread(cameras).empty()) tracking.heading = result.clock.heading;
   Tracker tracker(tracking);
   Looks done{std::vector<std::size_t>(cameras.size(), 0)};
   std::vector<FilterStep> steps;
@@ -222,18 +272,20 @@ Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::S
     const auto tracked = tracker.next(instant);
     if (progress) progress(seconds(now - span->first) / seconds(span->last - span->first + period));
     if (!tracked) continue;
-    result.placed.push_back({now - settings.start, instant.pose, *tracked, {}});
-    steps.push_back(tracker.filter().step());
+    result.placed.push_back({now - settings.start, instant.pose, *tracked, tracked->position});
+    result.ambiguous += tracked->ambiguous ? 1 : 0;
+    if (tracker.filter().begun()) steps.push_back(tracker.filter().step());
   }
   result.strangers = tracker.strangers();
   if (const auto ok = check(result, cameras); !ok) return pass(ok);
-  const std::vector<Position> smooth = smoothed(steps);
-  for (std::size_t i = 0; i < smooth.size(); ++i) result.placed[i].smooth = smooth[i];
-  const Position end = smooth.back();
+  smooth(steps, tracking.method, result);
+  const Position end = result.placed.back().smooth;
   result.heading = end.heading;
   result.heading_sigma = end.heading_sigma;
-  for (std::size_t i = 0; i < cameras.size(); ++i)
-    result.depth.push_back(tracker.filter().depth_of(i));
+  if (!steps.empty()) {
+    for (std::size_t i = 0; i < cameras.size(); ++i)
+      result.depth.push_back(tracker.filter().depth_of(i));
+  }
   return result;
 }
 

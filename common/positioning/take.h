@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct CameraTake {
   SensorId sensor;
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorFrame> frames;  ///< In time order.
+  /// What the picture of a frame itself shows, for the methods that ask it; null: not known.  Is
+  /// called with rising numbers of frames, each at most once.
+  std::function<std::shared_ptr<const PictureSight>(std::size_t frame)> sight = {};
 };
 
 struct ClockFit {
@@ -49,7 +53,8 @@ struct TakeResult {
   std::size_t instants = 0;    ///< That were asked for.
   std::size_t pictures = 0;
   std::uint64_t strangers = 0;
-  double heading = 0.0;  ///< Of the suit in the world, at the end [rad].
+  std::size_t ambiguous = 0;  ///< Instants at which another place fitted a picture as well.
+  double heading = 0.0;       ///< Of the suit in the world, at the end [rad].
   double heading_sigma = 0.0;
   /// For each camera, the relative error of its depths: how much taller than stated the person is.
   std::vector<std::pair<double, double>> depth;
@@ -59,8 +64,10 @@ struct TakeResult {
 [[nodiscard]] ClockFit fit_clock(std::span<const CameraTake> cameras, const suit::SuitTake& suit,
                                  const TakeSettings& settings);
 
-/// InvalidArgument, by name: no camera saw anybody, nobody whose pose is the suit's, clocks that do
-/// not overlap.  `progress` is called with the share that is done.
+/// InvalidArgument, by name: no camera saw anybody, nobody whose pose is the suit's, a suit's take
+/// that does not cover the cameras' time.  Smoothed: by the filter's own smoother; of `silhouettes`
+/// by the paper's Gaussian (paper_smoothing.h); of `suit` not at all.  `progress` is called with
+/// the share that is done.
 [[nodiscard]] Result<TakeResult> place_take(std::span<const CameraTake> cameras,
                                             const suit::SuitTake& suit,
                                             const TakeSettings& settings,

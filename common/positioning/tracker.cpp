@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/geometry/rotation.h"
+
 namespace chorus::positioning {
 namespace {
 
@@ -17,18 +19,27 @@ constexpr double kFirstMisfit = 1.8;
 constexpr int kAnew = 12;
 constexpr double kKnownHeading = 0.3;        // Uncertainty of a heading that is stated [rad].
 constexpr double kFirstHeadingSigma = 0.15;  // Of the first fit [rad].
+// After so long without a sight, an outline is looked for everywhere again.
+constexpr Duration kLost = std::chrono::milliseconds(700);
+// Of the suit's steps, per square root of a metre (common/suit/walk.cpp states the same).
+constexpr double kStepSigma = 0.08;
+
+std::size_t cameras_of(const TrackerSettings& settings) {
+  return settings.method == Method::Both ? 2 * settings.cameras : settings.cameras;
+}
 
 }  // namespace
 
 Tracker::Tracker(const TrackerSettings& settings)
-    : settings_(settings), footing_(settings.stature), filter_(settings.cameras, settings.errors) {}
+    : settings_(settings),
+      footing_(settings.stature),
+      filter_(cameras_of(settings), settings.errors) {}
 
 /// The person in the picture who fits pose and expectation best.
 std::optional<Tracker::Found> Tracker::found_in(const Look& look,
                                                 const suit::SuitPose& pose) const {
   std::optional<Found> best;
   double best_cost = 0.0;
-  if (look.seen) return Found{*look.seen, 0.0, look.seen->heading.value_or(0.0)};
   for (const Skeleton<SensorSpace>& person : look.people) {
     const std::array<SeenRays, 1> rays{SeenRays{look.world_from_sensor, person}};
     const Position now = filter_.position();
@@ -60,7 +71,7 @@ bool Tracker::accept(const Found& found, Tracked& out) {
   if (found.misfit > (filter_.begun() ? kLargestMisfit : kFirstMisfit)) {
     ++strangers_;
     if (++misfits_ >= kAnew) {
-      filter_ = PositionFilter(settings_.cameras, settings_.errors);
+      filter_ = PositionFilter(cameras_of(settings_), settings_.errors);
       misfits_ = 0;
     }
     return false;
@@ -79,21 +90,112 @@ bool Tracker::accept(const Found& found, Tracked& out) {
   return true;
 }
 
+std::size_t Tracker::outline_camera(std::size_t camera) const {
+  return settings_.method == Method::Both ? settings_.cameras + camera : camera;
+}
+
+/// Somebody who fits, in the first picture that has any.
+std::optional<SightedPlace> Tracker::first_sight(const Instant& instant, double height) const {
+  const double heading = settings_.heading.value_or(0.0);
+  if (settings_.start) {
+    SightedPlace out{*settings_.start, kStepSigma * kStepSigma * Eigen::Matrix3d::Identity(),
+                     heading};
+    out.place.y() = height;
+    return out;
+  }
+  if (settings_.method == Method::Suit)
+    return SightedPlace{{0.0, height, 0.0}, Eigen::Matrix3d::Zero(), heading};
+  for (const Look& look : instant.looks) {
+    if (!look.sight) continue;
+    if (auto seen = look.sight->anywhere(instant.pose, settings_.heading, height)) return seen;
+  }
+  return std::nullopt;
+}
+
+/// Takes the outline in one picture into the filter.
+void Tracker::outline(const Look& look, const Instant& instant, double height, Tracked& out) {
+  const Position now = filter_.position();
+  const bool lost = !last_seen_ || instant.pose.time - *last_seen_ > kLost;
+  const bool landmarks = uses_landmarks(settings_.method);
+  std::optional<SightedPlace> seen;
+  if (filter_.begun()) seen = look.sight->outlined({instant.pose, now.heading, now.place});
+  if (!landmarks && lost && (!seen || seen->ambiguous)) {
+    const auto heading = filter_.begun() ? std::optional(now.heading) : settings_.heading;
+    seen = look.sight->anywhere(instant.pose, heading, height);
+  }
+  if (!seen) return;
+  out.ambiguous = out.ambiguous || seen->ambiguous;
+  Found found{{outline_camera(look.camera), look.world_from_sensor.translation(), seen->place,
+               seen->covariance, std::nullopt},
+              0.0,
+              seen->heading};
+  // A second person or a chair that fits better does not pull the person there.
+  if (landmarks && filter_.surprise(found.seen) > kMostSurprise) return;
+  if (accept(found, out)) last_seen_ = instant.pose.time;
+}
+
+std::optional<Tracked> Tracker::filtered(const Instant& instant, const suit::Step& step,
+                                         double dt) {
+  Tracked out;
+  if (filter_.begun())
+    filter_.predict({dt, step.moved, step.height, step.stance == suit::Stance::Flight});
+  for (const Look& look : instant.looks) {
+    if (uses_landmarks(settings_.method)) {
+      const auto found = found_in(look, instant.pose);
+      if (found && accept(*found, out)) last_seen_ = instant.pose.time;
+    }
+    if (uses_pictures(settings_.method) && look.sight) outline(look, instant, step.height, out);
+  }
+  if (!filter_.begun()) return std::nullopt;
+  out.position = filter_.position();
+  return out;
+}
+
+/// One search of the paper around the last place, with the first picture that answers.
+void Tracker::search(const Instant& instant, Tracked& out) {
+  for (const Look& look : instant.looks) {
+    if (!look.sight) continue;
+    const ExpectedBody last{instant.pose, last_place_->heading, last_place_->place};
+    const auto seen = look.sight->searched(last);
+    if (!seen) continue;
+    last_place_ = seen;
+    walked_ = 0.0;
+    last_seen_ = instant.pose.time;
+    out.ambiguous = seen->ambiguous;
+    ++out.cameras;
+    return;
+  }
+}
+
+std::optional<Tracked> Tracker::added_up(const Instant& instant, const suit::Step& step) {
+  Tracked out;
+  const bool by_steps = settings_.method == Method::Suit;
+  if (!last_place_) {
+    last_place_ = first_sight(instant, step.height);
+    if (!last_place_) return std::nullopt;
+    last_seen_ = instant.pose.time;
+  } else if (by_steps) {
+    last_place_->place += about_y(last_place_->heading) * step.moved;
+    walked_ += step.moved.norm();
+  }
+  last_place_->place.y() = step.height;
+  if (!by_steps) search(instant, out);
+  out.position.place = last_place_->place;
+  out.position.heading = last_place_->heading;
+  const double more = kStepSigma * kStepSigma * walked_;
+  out.position.covariance = last_place_->covariance + more * Eigen::Matrix3d::Identity();
+  return out;
+}
+
 std::optional<Tracked> Tracker::next(const Instant& instant) {
   const suit::Step step = footing_.next(instant.pose);
   const double dt = last_ ? std::max(0.0, seconds(instant.pose.time - *last_)) : 0.0;
   last_ = instant.pose.time;
-  Tracked out;
-  out.stance = step.stance;
-  if (filter_.begun())
-    filter_.predict({dt, step.moved, step.height, step.stance == suit::Stance::Flight});
-  for (const Look& look : instant.looks) {
-    const auto found = found_in(look, instant.pose);
-    if (found && accept(*found, out)) last_seen_ = instant.pose.time;
-  }
-  if (!filter_.begun()) return std::nullopt;
-  out.position = filter_.position();
-  out.hidden = last_seen_ ? instant.pose.time - *last_seen_ : Duration{0};
+  const bool adds = settings_.method == Method::Suit || settings_.method == Method::Silhouettes;
+  auto out = adds ? added_up(instant, step) : filtered(instant, step, dt);
+  if (!out) return std::nullopt;
+  out->stance = step.stance;
+  out->hidden = last_seen_ ? instant.pose.time - *last_seen_ : Duration{0};
   return out;
 }
 

@@ -1,12 +1,19 @@
 // Follows one person in a suit through the pictures of cameras, instant by instant.  Pure; online:
 // uses no later picture.
+//
+// Landmarks, outline, and both go through one filter with the suit's steps; there, what a camera's
+// landmarks and its outline say are two cameras, each with errors of its own.  The paper's method
+// adds shifts to the last place, and the suit alone adds its steps.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "common/positioning/landmark_fit.h"
+#include "common/positioning/method.h"
+#include "common/positioning/picture_sight.h"
 #include "common/positioning/position_filter.h"
 #include "common/suit/footing.h"
 
@@ -18,8 +25,8 @@ struct Look {
   std::size_t camera = 0;
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<Skeleton<SensorSpace>> people;  ///< As rays.
-  /// A place that was measured in the picture itself (outline, silhouettes).
-  std::optional<Seen> seen = {};
+  /// What the picture itself says, for the methods that ask it; null: nothing.
+  std::shared_ptr<const PictureSight> sight = {};
 };
 
 struct Instant {
@@ -33,6 +40,7 @@ struct Tracked {
   std::size_t cameras = 0;  ///< Number of cameras that saw the person at this instant.
   Duration hidden{0};       ///< Since a camera last saw the person.
   double misfit = 0.0;      ///< Of the best fit [standard deviations]; 0 without one.
+  bool ambiguous = false;   ///< A picture shows another place that fits as well.
 };
 
 struct TrackerSettings {
@@ -41,6 +49,10 @@ struct TrackerSettings {
   PositionErrors errors{};
   /// Heading of the suit, if it is known already [rad]; otherwise all headings are tried.
   std::optional<double> heading = {};
+  Method method = Method::Landmarks;
+  /// Where the person is at first, if that is known (the board, Madaras et al. 3.3) [m]; its height
+  /// is the suit's.
+  std::optional<Eigen::Vector3d> start = {};
 };
 
 class Tracker {
@@ -64,6 +76,15 @@ class Tracker {
   [[nodiscard]] std::optional<Found> found_in(const Look& look, const suit::SuitPose& pose) const;
   [[nodiscard]] bool accept(const Found& found, Tracked& out);
   void begin(const Found& found);
+  /// By the filter.
+  std::optional<Tracked> filtered(const Instant& instant, const suit::Step& step, double dt);
+  /// By the suit's steps, or by the paper's search, from a place that is stated or found.
+  std::optional<Tracked> added_up(const Instant& instant, const suit::Step& step);
+  void outline(const Look& look, const Instant& instant, double height, Tracked& out);
+  [[nodiscard]] std::optional<SightedPlace> first_sight(const Instant& instant,
+                                                        double height) const;
+  void search(const Instant& instant, Tracked& out);
+  [[nodiscard]] std::size_t outline_camera(std::size_t camera) const;
 
   TrackerSettings settings_;
   suit::Footing footing_;
@@ -73,6 +94,8 @@ class Tracker {
   int refused_ = 0;
   int misfits_ = 0;  ///< Pictures in a row in which nobody fits.
   std::uint64_t strangers_ = 0;
+  std::optional<SightedPlace> last_place_{};  ///< Of the methods without a filter.
+  double walked_ = 0.0;                       ///< Since last_place_ was seen [m].
 };
 
 }  // namespace chorus::positioning

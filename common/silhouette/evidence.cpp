@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
+#include <opencv2/video/background_segm.hpp>
 
 namespace chorus::silhouette {
 namespace {
@@ -47,18 +48,29 @@ cv::Mat median_of(const std::vector<std::shared_ptr<const cv::Mat>>& pictures) {
   return out;
 }
 
-/// Pixels that differ by more than the threshold and more than what is around them usually does.
-cv::Mat differing(const cv::Mat& picture, const cv::Mat& background, double threshold) {
-  cv::Mat difference;
-  cv::absdiff(picture, background, difference);
-  cv::GaussianBlur(difference, difference, {5, 5}, 1.0);
-  // A change of light changes everything alike: its median is taken off.
-  cv::Mat mask;
-  const double common = cv::mean(difference)[0];
-  cv::threshold(difference, mask, std::max(threshold, 1.5 * common), 255.0, cv::THRESH_BINARY);
+void clean(cv::Mat& mask) {
   const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5});
   cv::morphologyEx(mask, mask, cv::MORPH_OPEN, kernel);
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, kernel);
+}
+
+/// Pixels that differ by more than the threshold and more than others do.
+cv::Mat differing(const cv::Mat& picture, const cv::Mat& background,
+                  const EvidenceSettings& settings) {
+  cv::Mat difference;
+  cv::absdiff(picture, background, difference);
+  cv::GaussianBlur(difference, difference, {5, 5}, 1.0);
+  cv::Mat mask;
+  if (settings.surroundings > 1) {
+    cv::adaptiveThreshold(difference, mask, 255.0, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY,
+                          settings.surroundings | 1, -settings.threshold);
+  } else {
+    // A change of light changes everything alike: its mean is taken off.
+    const double common = cv::mean(difference)[0];
+    cv::threshold(difference, mask, std::max(settings.threshold, 1.5 * common), 255.0,
+                  cv::THRESH_BINARY);
+  }
+  clean(mask);
   return mask;
 }
 
@@ -109,31 +121,62 @@ bool Evidence::is_foreground(const Eigen::Vector2d& pixel) const {
   return mask_->at<std::uint8_t>(row, column) != 0;
 }
 
+double usual_scale(int width) {
+  constexpr double kWidest = 480.0;
+  return std::min(1.0, kWidest / std::max(1, width));
+}
+
 void Background::learn(const cv::Mat& picture) {
-  if (pictures_.size() >= kMostPictures || picture.empty()) return;
+  if (picture.empty()) return;
   const OneThread one;
   auto grey = std::make_shared<const cv::Mat>(small_grey(picture, settings_.scale));
-  if (!pictures_.empty() && grey->size() != pictures_.front()->size()) return;
-  pictures_.push_back(std::move(grey));
+  const std::pair size(grey->cols, grey->rows);
+  if (learned_ > 0 && size != size_) return;
+  size_ = size;
+  ++learned_;
+  if (settings_.model == BackgroundModel::Mixtures) {
+    if (!mixtures_) mixtures_ = cv::createBackgroundSubtractorMOG2();
+    cv::Mat ignored;
+    mixtures_->apply(*grey, ignored);
+    return;
+  }
+  if ((learned_ - 1) % stride_ != 0) return;
   median_.reset();
+  pictures_.push_back(std::move(grey));
+  if (pictures_.size() < kMostPictures) return;
+  // Every second one goes, so that those that are kept stay spread over the take.
+  for (std::size_t i = 0; 2 * i < pictures_.size(); ++i) pictures_[i] = pictures_[2 * i];
+  pictures_.resize(pictures_.size() / 2);
+  stride_ *= 2;
+}
+
+cv::Mat Background::mask_of(const cv::Mat& grey) {
+  if (settings_.model == BackgroundModel::Mixtures) {
+    cv::Mat mask;
+    mixtures_->apply(grey, mask, 0.0);  // Nothing is learned: the person may be there.
+    cv::threshold(mask, mask, 200.0, 255.0, cv::THRESH_BINARY);  // Shadows are 127.
+    clean(mask);
+    return mask;
+  }
+  if (!median_) median_ = std::make_shared<const cv::Mat>(median_of(pictures_));
+  return differing(grey, *median_, settings_);
 }
 
 std::optional<Evidence> Background::evidence(const cv::Mat& picture) {
-  if (pictures_.empty() || picture.empty()) return std::nullopt;
+  if (learned_ == 0 || picture.empty()) return std::nullopt;
   const OneThread one;
-  if (!median_) median_ = std::make_shared<const cv::Mat>(median_of(pictures_));
   const cv::Mat grey = small_grey(picture, settings_.scale);
-  if (grey.size() != median_->size()) return std::nullopt;
-  return evidence_of_mask(differing(grey, *median_, settings_.threshold), settings_.scale);
+  if (std::pair(grey.cols, grey.rows) != size_) return std::nullopt;
+  return evidence_of_mask(mask_of(grey), settings_.scale, settings_);
 }
 
-Evidence Background::evidence_of_mask(const cv::Mat& mask, double scale) const {
+Evidence evidence_of_mask(const cv::Mat& mask, double scale, const EvidenceSettings& settings) {
   const OneThread one;
   Evidence out;
   out.scale_ = scale;
-  out.farthest_ = settings_.farthest;
+  out.farthest_ = settings.farthest;
   out.mask_ = std::make_shared<const cv::Mat>(mask.clone());
-  out.field_ = std::make_shared<const cv::Mat>(distances_from_edges(mask, settings_.farthest));
+  out.field_ = std::make_shared<const cv::Mat>(distances_from_edges(mask, settings.farthest));
   out.foreground_ = static_cast<double>(cv::countNonZero(mask)) /
                     static_cast<double>(std::max<std::size_t>(1, mask.total()));
   return out;

@@ -7,21 +7,35 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace cv {
+class BackgroundSubtractorMOG2;
 class Mat;
-}
+}  // namespace cv
 
 namespace chorus::silhouette {
+
+enum class BackgroundModel {
+  Median,    ///< Of pictures spread over the take; for files.
+  Mixtures,  ///< Of Gaussians for each pixel (Zivkovic's MOG2), shadows left out; also live.
+};
 
 struct EvidenceSettings {
   double scale = 0.5;       ///< The field is this much smaller than the picture.
   double farthest = 30.0;   ///< Larger distances count as this [px of the field].
   double threshold = 18.0;  ///< Least difference from the background, of 255.
+  BackgroundModel model = BackgroundModel::Median;
+  /// Above 0: the threshold adapts to the mean of so many pixels around (cv::adaptiveThreshold, as
+  /// in the paper); 0: to the picture's common change of light.  Odd [px of the field].
+  int surroundings = 0;
 };
+
+/// The scale at which a picture of this width has a field of at most 480 pixels.
+[[nodiscard]] double usual_scale(int width);
 
 /// A field of distances from the nearest edge, and what is not background.
 class Evidence {
@@ -41,7 +55,7 @@ class Evidence {
   [[nodiscard]] double farthest() const { return farthest_ / scale_; }
 
  private:
-  friend class Background;
+  friend Evidence evidence_of_mask(const cv::Mat&, double, const EvidenceSettings&);
   [[nodiscard]] double at(int column, int row) const;
 
   std::shared_ptr<const cv::Mat> field_;  ///< 32-bit floats.
@@ -51,27 +65,36 @@ class Evidence {
   double foreground_ = 0.0;
 };
 
-/// The room without the person: the median of pictures.
+/// The evidence of a mask of the person that somebody else made, as a network does (8 bits); it is
+/// `scale` times the picture's size.
+[[nodiscard]] Evidence evidence_of_mask(const cv::Mat& mask, double scale,
+                                        const EvidenceSettings& settings = {});
+
+/// The room without the person.
 class Background {
  public:
   explicit Background(const EvidenceSettings& settings = {}) : settings_(settings) {}
 
-  /// A picture (grey or BGR) for the median; at most 64 are kept.  It may show the person, as long
-  /// as no place is covered in half of the pictures.
+  /// A picture (grey or BGR).  For the median at most 64 are kept, spread over all that were given;
+  /// they may show the person, as long as no place is covered in half of them.  Mixtures should not
+  /// see the person at all.
   void learn(const cv::Mat& picture);
-  [[nodiscard]] std::size_t learned() const { return pictures_.size(); }
+  [[nodiscard]] std::size_t learned() const { return learned_; }
 
   /// Background subtraction, adaptive threshold, Canny, distance transform.  None without a learned
   /// background, or for a picture of another size.
   [[nodiscard]] std::optional<Evidence> evidence(const cv::Mat& picture);
-  /// The same from a mask of the person that somebody else made (8 bits, any size of the same
-  /// shape).
-  [[nodiscard]] Evidence evidence_of_mask(const cv::Mat& mask, double scale) const;
 
  private:
+  [[nodiscard]] cv::Mat mask_of(const cv::Mat& grey);
+
   EvidenceSettings settings_;
   std::vector<std::shared_ptr<const cv::Mat>> pictures_;
   std::shared_ptr<const cv::Mat> median_;
+  std::shared_ptr<cv::BackgroundSubtractorMOG2> mixtures_;
+  std::pair<int, int> size_{0, 0};  ///< Of the field [px].
+  std::size_t learned_ = 0;         ///< Pictures given.
+  std::size_t stride_ = 1;          ///< One picture in so many is kept for the median.
 };
 
 }  // namespace chorus::silhouette

@@ -163,6 +163,7 @@ std::optional<OutlineFit> fit_outline(const SearchView& view, const OutlineSetti
   const Normal normal = normal_at(view, outline, Eigen::Vector3d::Zero(), settings);
   const double noise = std::max(kLeastNoise, out.mean_px);
   Eigen::Matrix3d information = normal.matrix / (noise * noise * kAlike);
+  if (settings.over_floor) information(1, 1) = 0.0;  // The height was not measured.
   information.diagonal().array() += 1e-2;
   out.covariance = information.inverse();
   return out;

@@ -5,7 +5,7 @@
 #   fusion  chorus-fusion, its service and the viewer
 #   ergonomics, evaluation  a service that follows a tracker: posture scores; a judgement by worn inertial sensors
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
-#           runs this program
+#           runs this program; chorus-positioner, which looks through cameras
 #   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise, align
 #
 # With CHORUS_ONLY_SENSOR, only common and sensor.
@@ -23,6 +23,7 @@ if(NOT CHORUS_ONLY_SENSOR)
   foreach(service fusion ergonomics evaluation)
     set(printer_of_chorus-${service} chorus-${service})
   endforeach()
+  set(printer_of_chorus-positioner chorus-positioner)
 endif()
 # What to do where /etc/chorus/NAME.json is not there yet: `chorus init` writes those of sensor and fusion.
 set(advice_of_sensor "chorus init sensor writes one and says what comes next.")
@@ -76,6 +77,10 @@ foreach(service ${services})
   set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA
     "${control}/postinst;${control}/prerm;${control}/postrm;${control}/conffiles")
 endforeach()
+if(NOT CHORUS_ONLY_SENSOR)
+  install(TARGETS chorus-positioner RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT camera)
+  chorus_pages(chorus-positioner 8 camera)
+endif()
 add_custom_target(pages DEPENDS ${made})
 
 if(NOT CHORUS_ONLY_SENSOR)

@@ -10,11 +10,13 @@ const VALUES = 5; // x, y, z, visibility, presence
 const DETECTION = 13; // logit, box, four key points
 const LEAST_PERSON = 0.5;
 const MARGIN = 1.25;
+const MASK_SIDE = 256; // of the longer side of a mask; the network's own is no finer
+const LEAST_COVER = 0.5; // of a pixel, to be the person's
 const MIDDLE = 33; // the two auxiliary landmarks: middle of the hips, and a point on the circle around the person
 const RIM = 34;
 
 export const FILES = { lite: ['blazepose-detector', 'blazepose-lite'], full: ['blazepose-detector', 'blazepose-full'] };
-export const HELLO = { layout: 'mediapipe_33', pixelSigma: 4, image: { maxSide: 640 } };
+export const HELLO = { layout: 'mediapipe_33', pixelSigma: 4, image: { maxSide: 640 }, gives: ['masks'] };
 
 const sigmoid = (x) => 1 / (1 + Math.exp(-x));
 const round = (value, digits) => Number(value.toFixed(digits));
@@ -67,6 +69,29 @@ export function readLandmarks(values, world, square) {
   return { pixels, metres, next: squareAround(place(MIDDLE), place(RIM)) };
 }
 
+/// Which pixels of the image are the person's, as lengths of runs from the upper left corner, row by row: background first
+/// (proto/runner.md, section 6).  `cover`: how much of each cell of the square is the person, 0 to 1.
+export function maskOf(cover, square, { width, height }) {
+  const scale = Math.min(1, MASK_SIDE / Math.max(width, height));
+  const [columns, rows] = [Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale))];
+  const [cos, sin] = [Math.cos(square.angle), Math.sin(square.angle)];
+  const runs = [0];
+  let inside = false;
+  for (let row = 0; row < rows; ++row) {
+    const dy = ((row + 0.5) * height) / rows - square.y;
+    for (let column = 0; column < columns; ++column) {
+      const dx = ((column + 0.5) * width) / columns - square.x;
+      const u = Math.floor(((dx * cos + dy * sin) / square.size + 0.5) * SIDE);
+      const v = Math.floor(((dy * cos - dx * sin) / square.size + 0.5) * SIDE);
+      const person = u >= 0 && v >= 0 && u < SIDE && v < SIDE && cover[v * SIDE + u] >= LEAST_COVER;
+      if (person !== inside) runs.push(0);
+      inside = person;
+      runs[runs.length - 1] += 1;
+    }
+  }
+  return { width: columns, height: rows, runs };
+}
+
 export class BlazePose {
   constructor(tf, models, size) {
     this.tf = tf;
@@ -75,17 +100,20 @@ export class BlazePose {
     this.homes = anchors();
     this.people = new People();
     this.square = null;
+    this.mask = undefined; // of the last image, if it was wanted and shows somebody
   }
 
   /// The bodies of a frame (proto/bridge.md, section 3).  `time`: its capture time [s].
-  async bodies(image, time) {
+  async bodies(image, time, wants = []) {
+    const masks = wants.includes('mask');
     const before = this.square;
-    let found = before && (await this.#landmarks(image, before));
+    let found = before && (await this.#landmarks(image, before, masks));
     if (!found) {
       const square = await this.#detect(image);
-      found = square && (await this.#landmarks(image, square));
+      found = square && (await this.#landmarks(image, square, masks));
     }
     this.square = found ? found.next : null;
+    this.mask = found?.mask;
     const where = found && placeOf(found.pixels, 0);
     if (!where) return [];
     const [id] = this.people.numbers([where], time);
@@ -101,11 +129,13 @@ export class BlazePose {
     return detected(values, this.homes, square);
   }
 
-  async #landmarks(image, square) {
+  async #landmarks(image, square, masks) {
     const input = this.tf.tensor4d(cropped(image, square, SIDE), [1, SIDE, SIDE, 3]);
-    const outputs = this.network.execute(input, ['ld_3d', 'world_3d', 'output_poseflag']);
-    const [values, world, [sure]] = await Promise.all(outputs.map((output) => output.data()));
+    const names = ['ld_3d', 'world_3d', 'output_poseflag', ...(masks ? ['activation_segmentation'] : [])];
+    const outputs = this.network.execute(input, names);
+    const [values, world, [sure], cover] = await Promise.all(outputs.map((output) => output.data()));
     this.tf.dispose([input, ...outputs]);
-    return sure >= LEAST_PERSON ? readLandmarks(values, world, square) : null;
+    if (sure < LEAST_PERSON) return null;
+    return { ...readLandmarks(values, world, square), mask: cover && maskOf(cover, square, image) };
   }
 }

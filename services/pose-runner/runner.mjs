@@ -25,9 +25,9 @@ async function answer(network, { header, pixels }) {
   const began = performance.now();
   const time = Number(header.captured) / NANOSECONDS;
   const image = { width: header.width, height: header.height, pixels };
-  const bodies = await network.bodies(image, time);
+  const bodies = await network.bodies(image, time, header.wants);
   const hands = await network.hands?.(image); // undefined is left out of the line
-  say({ type: 'frame', sequence: header.sequence, captured: header.captured, bodies, hands, milliseconds: Number((performance.now() - began).toFixed(1)) });
+  say({ type: 'frame', sequence: header.sequence, captured: header.captured, bodies, hands, mask: network.mask, milliseconds: Number((performance.now() - began).toFixed(1)) });
 }
 
 async function run() {

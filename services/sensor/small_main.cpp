@@ -4,6 +4,7 @@
 #include "common/service/hosted_program.h"
 #include "common/service/whole_program.h"
 #include "services/sensor/device/camera/camera.h"
+#include "services/sensor/device/positioner/picture_eye.h"
 #include "services/sensor/sensor_host.h"
 
 namespace chorus::camera {
@@ -16,7 +17,19 @@ Result<std::unique_ptr<FrameSource>> make_camera(ConfigReader& /*section*/,
               "cameras come with a package of their own: apt install chorus-camera");
 }
 
+Result<std::unique_ptr<FrameSource>> make_watched_camera(
+    ConfigReader& section, const sensor_service::DeviceContext& context, PictureWatch /*watch*/) {
+  return make_camera(section, context);
+}
+
 }  // namespace chorus::camera
+
+namespace chorus::positioner {
+
+/// The same for what looks at pictures; without cameras there are none.
+std::unique_ptr<PictureEye> make_eye(EyeSettings /*settings*/) { return nullptr; }
+
+}  // namespace chorus::positioner
 
 int main(int argc, char** argv) {
   using namespace chorus::sensor_service;

@@ -58,7 +58,17 @@ class SuitGuide(unittest.TestCase):
             self.assertGreater(moved, 0.3, "the take had no path; the camera gave it one")
 
     def test_mistakes_are_told_by_name(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        wide = Path(folder.name, "wide.json")
+        wide.write_text('{"width": 640, "height": 480, "fx": 500, "fy": 500, "cx": 320, "cy": 240}', encoding="utf-8")
+        video = [f"{SUIT}/cam01.mp4", f"{SUIT}/walk.bvh", "--place", f"{SUIT}/place.json", "--intrinsics", f"{SUIT}/lens.json", "--out", "x"]
         for words, said in [
+                (["position", *video, "--method", "magic"], "magic"),
+                (["position", *video, "--method", "suit", "--start", "1;2"], "x,z in metres"),
+                (["position", *video, "--method", "outline", "--background", "network"], "--method both"),
+                (["position", *video, "--method", "suit", "--clock-offset", "3600"], "covers 0.0 s"),
+                (["position", *video[:4], "--intrinsics", wide, "--out", "x", "--method", "outline"], "another part of the view"),
                 (["position", f"{SUIT}/walk.bvh", "--place", f"{SUIT}/place.json", "--out", "x"], "a video is missing"),
                 (["position", f"{SUIT}/cam01.mp4", "--place", f"{SUIT}/place.json", "--out", "x"], "a take of the suit is missing"),
                 (["position", f"{SUIT}/cam01.mp4", f"{SUIT}/walk.bvh", "--place", f"{SUIT}/place.json", "--out", "x"], "--intrinsics"),

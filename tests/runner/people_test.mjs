@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { anchors, detected, readLandmarks, squareAround } from '../../services/pose-runner/blazepose.js';
+import { anchors, detected, maskOf, readLandmarks, squareAround } from '../../services/pose-runner/blazepose.js';
 import { cropped, toImage, wholeImage } from '../../services/pose-runner/crop.js';
 import { readPeople } from '../../services/pose-runner/movenet.js';
 import { People, placeOf } from '../../services/pose-runner/people.js';
@@ -80,4 +80,15 @@ test('a crop shows the place it is asked for, and black outside', () => {
 test('a place spans what is seen', () => {
   assert.equal(placeOf([null, [1, 2, 0.1]]), null);
   assert.deepEqual(placeOf([[0, 0, 1], [10, 40, 1], [900, 900, 0.1]]).size, 40);
+});
+
+test('BlazePose: a mask is what the network says of its square, in cells of the whole image', () => {
+  const cover = new Float32Array(256 * 256);
+  for (let v = 128; v < 256; ++v) cover.fill(0.9, v * 256, v * 256 + 256); // the lower half of the square
+  const image = { width: 8, height: 4 };
+  assert.deepEqual(maskOf(cover, { x: 4, y: 2, size: 4, angle: 0 }, image), { width: 8, height: 4, runs: [18, 4, 4, 4, 2] });
+  // Turned by a quarter, the lower half of the square lies to the left in the image.
+  assert.deepEqual(maskOf(cover, { x: 4, y: 2, size: 4, angle: Math.PI / 2 }, image).runs, [2, 2, 6, 2, 6, 2, 6, 2, 4]);
+  const large = maskOf(cover, { x: 320, y: 180, size: 100, angle: 0 }, { width: 640, height: 360 });
+  assert.deepEqual([large.width, large.height, large.runs.reduce((sum, n) => sum + n)], [256, 144, 256 * 144]);
 });

@@ -107,8 +107,13 @@ Result<record::FrameRecording> import_one(const fs::path& file, const VideoImpor
   auto command = camera::runner_command(*settings);
   if (!command) return pass(command);
   ImportProgress progress(file.filename().string());
-  auto film = camera::look_through({std::move(*settings), std::move(*command), *sensor,
-                                    options.start, [&](double share) { progress(share); }});
+  camera::Film looked{std::move(*settings), std::move(*command), *sensor, options.start,
+                      [&](double share) { progress(share); }};
+  if (how.mask)
+    looked.mask = [&](Timestamp captured, camera::PersonMask mask) {
+      how.mask(*sensor, captured, std::move(mask));
+    };
+  auto film = camera::look_through(looked);
   progress.end();
   if (!film) return pass(film);
   record::FrameRecording recording;

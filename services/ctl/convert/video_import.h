@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "common/importers/formats.h"
+#include "services/sensor/device/camera/runner_wire.h"
 
 namespace chorus::ctl {
 
@@ -15,6 +17,9 @@ struct VideoImport {
   std::vector<std::string> lenses;
   std::string model;
   double rate_hz = 30.0;  ///< Highest number of pictures per second.
+  /// Called with the masks of people, if the runner gives any; from one thread.
+  std::function<void(const SensorId& sensor, Timestamp captured, camera::PersonMask mask)> mask =
+      {};
 };
 
 /// Each input is one camera, named after its file; all videos begin at options.start.  Reports the

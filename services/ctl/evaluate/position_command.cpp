@@ -1,4 +1,5 @@
 // chorus position: puts the take of an inertial suit where cameras saw the person.
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -6,7 +7,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "common/base/file.h"
+#include "common/base/units.h"
 #include "common/exporters/bvh.h"
 #include "common/geometry/rotation.h"
 #include "common/positioning/take.h"
@@ -14,8 +15,7 @@
 #include "common/report/report_files.h"
 #include "common/suit/suit_file.h"
 #include "common/suit/walk.h"
-#include "fusion-server/wire/registration_file.h"
-#include "services/ctl/convert/video_import.h"
+#include "services/ctl/evaluate/position_inputs.h"
 #include "services/ctl/evaluate/position_report.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
@@ -26,98 +26,9 @@ namespace chorus::ctl {
 namespace {
 
 namespace fs = std::filesystem;
-using positioning::CameraTake;
 
-constexpr std::uintmax_t kMaxPlacesFile = 1u << 22;
 // Of a joint within the pose: three degrees over an arm's or a leg's bones [m].
 constexpr double kJointSigma = 0.03;
-
-struct PositionArguments {
-  std::vector<std::string> inputs;  ///< Videos or recordings, then the suit's file.
-  std::string places;
-  std::vector<std::string> lenses;
-  std::string model = "blazepose-full";
-  std::string method = "landmarks";
-  double stature = 0.0;
-  double offset_s = 0.0;
-  bool offset_stated = false;
-  double search_s = 2.0;
-  double rate_hz = 30.0;
-  std::string out;
-};
-
-bool is_suit(const fs::path& file) {
-  const std::string ending = file.extension().string();
-  return ending == ".bvh" || ending == ".BVH" || ending == ".mvnx" || ending == ".MVNX";
-}
-
-struct Inputs {
-  std::vector<fs::path> videos;
-  std::vector<fs::path> recordings;
-  fs::path suit;
-};
-
-Result<Inputs> sorted_inputs(const std::vector<std::string>& given) {
-  Inputs out;
-  for (const std::string& each : given) {
-    const fs::path file(each);
-    std::error_code failed;
-    if (!fs::exists(file, failed)) return fail(ErrorCode::NotFound, each, "there is no such file");
-    if (is_suit(file) && !out.suit.empty())
-      return fail(ErrorCode::InvalidArgument, each, "is a second take of a suit; give one");
-    if (is_suit(file)) {
-      out.suit = file;
-    } else {
-      (file.extension() == ".mcap" ? out.recordings : out.videos).push_back(file);
-    }
-  }
-  if (out.suit.empty())
-    return fail(ErrorCode::InvalidArgument, "input",
-                "a take of the suit is missing: a .bvh or .mvnx file");
-  if (out.videos.empty() && out.recordings.empty())
-    return fail(ErrorCode::InvalidArgument, "input",
-                "a video is missing, or a camera's recording (.mcap)");
-  return out;
-}
-
-/// What the cameras saw: videos are looked through, recordings are read.
-Result<std::vector<record::FrameRecording>> cameras_of(const Inputs& inputs,
-                                                       const PositionArguments& arguments) {
-  std::vector<record::FrameRecording> out;
-  if (!inputs.videos.empty()) {
-    if (arguments.lenses.empty())
-      return fail(ErrorCode::InvalidArgument, "--intrinsics",
-                  "is missing: the camera's lens, as `chorus calibrate camera` writes it");
-    auto set =
-        import_videos(inputs.videos, {}, {arguments.lenses, arguments.model, arguments.rate_hz});
-    if (!set) return pass(set);
-    out = std::move(set->recordings);
-  }
-  for (const fs::path& file : inputs.recordings) {
-    auto recording = record::read_frame_recording(file);
-    if (!recording) return pass(recording);
-    out.push_back(std::move(*recording));
-  }
-  return out;
-}
-
-Result<std::vector<CameraTake>> placed_cameras(std::vector<record::FrameRecording> recordings,
-                                               const std::string& places) {
-  const auto text = read_file(places, kMaxPlacesFile);
-  if (!text) return pass(text);
-  const auto registration = wire::read_registration(*text);
-  if (!registration) return pass(registration);
-  std::vector<CameraTake> out;
-  for (record::FrameRecording& recording : recordings) {
-    const auto known = registration->sensors.find(recording.sensor);
-    if (known == registration->sensors.end())
-      return fail(ErrorCode::NotFound, places,
-                  fmt::format("has no place for {}; `chorus calibrate place --sensor {}` writes it",
-                              recording.sensor.str(), recording.sensor.str()));
-    out.push_back({recording.sensor, known->second.world_from_sensor, std::move(recording.frames)});
-  }
-  return out;
-}
 
 Result<void> write_bvh(const positioning::TakeResult& result, double rate_hz,
                        const fs::path& file) {
@@ -186,36 +97,56 @@ Result<void> write_all(const PositionArguments& arguments, const PositionReport&
   return ok;
 }
 
+Result<positioning::TakeSettings> settings_of(const PositionArguments& arguments,
+                                              const suit::SuitTake& suit) {
+  positioning::TakeSettings settings;
+  settings.rate_hz = arguments.rate_hz;
+  settings.farthest_s = arguments.search_s;
+  if (arguments.offset_stated) settings.offset_s = arguments.offset_s;
+  const double stature = suit::stature_of(suit.poses.front());
+  if (stature > 0.0) settings.tracker.stature = stature;
+  settings.tracker.method = *positioning::method_named(arguments.method);
+  if (arguments.heading_stated) settings.tracker.heading = deg(arguments.heading_deg);
+  if (arguments.start.empty()) return settings;
+  std::vector<double> numbers;
+  for (const std::string& word : CLI::detail::split(arguments.start, ',')) {
+    double number = 0.0;
+    if (!CLI::detail::lexical_cast(word, number) || !(std::abs(number) < 1000.0)) break;
+    numbers.push_back(number);
+  }
+  if (numbers.size() != 2)
+    return fail(ErrorCode::InvalidArgument, "--start", "is x,z in metres, as in 0.5,-1.2");
+  settings.tracker.start = Eigen::Vector3d(numbers[0], 0.0, numbers[1]);
+  return settings;
+}
+
 Result<int> run_position(const PositionArguments& arguments) {
   const auto inputs = sorted_inputs(arguments.inputs);
   if (!inputs) return pass(inputs);
   const auto suit = suit::read_suit_file(inputs->suit, {.stature = arguments.stature});
   if (!suit) return pass(suit);
-  auto recordings = cameras_of(*inputs, arguments);
-  if (!recordings) return pass(recordings);
-  const auto cameras = placed_cameras(std::move(*recordings), arguments.places);
+  auto settings = settings_of(arguments, *suit);
+  if (!settings) return pass(settings);
+  const auto cameras = placed_cameras(*inputs, arguments, settings->tracker.stature);
   if (!cameras) return pass(cameras);
-  positioning::TakeSettings settings;
-  settings.rate_hz = arguments.rate_hz;
-  settings.farthest_s = arguments.search_s;
-  if (arguments.offset_stated) settings.offset_s = arguments.offset_s;
-  settings.start =
-      cameras->front().frames.empty() ? Timestamp{} : cameras->front().frames.front().captured;
-  const double stature = suit::stature_of(suit->poses.front());
-  if (stature > 0.0) settings.tracker.stature = stature;
+  settings->start = cameras->cameras.front().frames.empty()
+                        ? Timestamp{}
+                        : cameras->cameras.front().frames.front().captured;
   Progress progress(std::cerr, on_terminal(), "placing");
-  const auto result = positioning::place_take(*cameras, *suit, settings,
+  const auto result = positioning::place_take(cameras->cameras, *suit, *settings,
                                               [&](double share) { progress.show(share, {}); });
   progress.finish();
   if (!result) return pass(result);
   const PositionReport report{{{"suit", inputs->suit.filename().string()},
                                {"places", fs::path(arguments.places).filename().string()},
-                               {"stature", fmt::format("{:.2f} m", stature)}},
+                               {"stature", fmt::format("{:.2f} m", settings->tracker.stature)}},
                               *result,
-                              *cameras,
+                              cameras->cameras,
                               arguments.method,
-                              walked_places(*result, settings.tracker.stature)};
-  if (const auto ok = write_all(arguments, report, settings.start); !ok) return pass(ok);
+                              walked_places(*result, settings->tracker.stature),
+                              cameras->notes,
+                              settings->tracker.stature};
+  if (const auto ok = write_all(arguments, report, settings->start); !ok) return pass(ok);
   std::cout << position_text(report)
             << fmt::format("wrote corrected.bvh, position.mcap and report.html to {}\n",
                            arguments.out);
@@ -239,6 +170,30 @@ Run add_position(CLI::App& options) {
   options.add_option("--out", arguments->out, "Folder for the results")->required();
   options.add_option("--stature", arguments->stature, "The person's height [m]")
       ->check(number_range(0.5, 2.5));
+  const auto methods = positioning::method_names();
+  options
+      .add_option("--method", arguments->method,
+                  "both: landmarks and outline; silhouettes: Madaras et al.; suit: steps alone")
+      ->check(CLI::IsMember(std::vector<std::string>(methods.begin(), methods.end())))
+      ->capture_default_str();
+  options
+      .add_option(
+          "--background", arguments->background,
+          "What tells the outline: a network's mask, or what differs from the room's median "
+          "or mixtures; auto: the mask if there is one, else the median")
+      ->check(CLI::IsMember({"auto", "network", "median", "mixtures"}))
+      ->capture_default_str();
+  options.add_option(
+      "--empty-room", arguments->empty_room,
+      "A picture or video of the room without the person; default: the video itself");
+  options.add_option("--girth", arguments->girth, "Of the person, relative to a usual one")
+      ->check(number_range(0.5, 2.0))
+      ->capture_default_str();
+  options.add_option("--start", arguments->start,
+                     "Where the person is at first: x,z [m]; default: found (suit: the origin)");
+  CLI::Option* const heading =
+      options.add_option("--heading", arguments->heading_deg,
+                         "Of the suit's world in the cameras' [deg]; default: found");
   options.add_option("--model", arguments->model, "Of the runner that looks at the videos")
       ->capture_default_str();
   CLI::Option* const offset =
@@ -251,8 +206,9 @@ Run add_position(CLI::App& options) {
   options.add_option("--rate", arguments->rate_hz, "Of the result [Hz]")
       ->check(number_range(5.0, 120.0))
       ->capture_default_str();
-  return [arguments, offset] {
+  return [arguments, offset, heading] {
     arguments->offset_stated = offset->count() > 0;
+    arguments->heading_stated = heading->count() > 0;
     return run_position(*arguments);
   };
 }

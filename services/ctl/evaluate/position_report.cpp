@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include "common/base/units.h"
 
@@ -86,6 +89,30 @@ std::vector<Figure> place_figures(const PositionReport& take) {
            Judgement::NotJudged}};
 }
 
+/// The person's height that makes all cameras' depths right.  Two cameras or more judge together.
+std::optional<Figure> stature_figure(const PositionReport& take) {
+  double weights = 0.0;
+  double sum = 0.0;
+  for (const auto& [error, sigma] : take.result.depth) {
+    const double weight = 1.0 / std::max(1e-8, sigma * sigma);
+    weights += weight;
+    sum += weight * error;
+  }
+  if (!(weights > 0.0) || !(take.stature > 0.0)) return std::nullopt;
+  const double error = sum / weights;
+  const double sigma = 1.0 / std::sqrt(weights);
+  return Figure{"stature",
+                "height of the person, as the cameras see it",
+                100.0 * take.stature / (1.0 + error),
+                "cm",
+                fmt::format("give or take {:.1f} cm; {:.1f} cm was used",
+                            100.0 * take.stature * sigma, 100.0 * take.stature),
+                "a wrong focal length shows in it, too",
+                {},
+                "measure it, and state --stature",
+                judged(std::abs(error), std::max(0.02, 2.0 * sigma), 0.1)};
+}
+
 std::vector<Figure> found_figures(const PositionReport& take) {
   const positioning::ClockFit& clock = take.result.clock;
   std::vector<Figure> out;
@@ -108,7 +135,8 @@ std::vector<Figure> found_figures(const PositionReport& take) {
                  {},
                  {},
                  Judgement::NotJudged});
-  for (std::size_t i = 0; i < take.cameras.size(); ++i) {
+  if (const auto stature = stature_figure(take)) out.push_back(*stature);
+  for (std::size_t i = 0; i < take.result.depth.size(); ++i) {
     const auto& [error, sigma] = take.result.depth[i];
     out.push_back({"depth." + take.cameras[i].sensor.str(),
                    "depths of " + take.cameras[i].sensor.str() + " too long by", 100.0 * error, "%",
@@ -116,6 +144,16 @@ std::vector<Figure> found_figures(const PositionReport& take) {
                    "the person is smaller than stated, or the focal length larger", "within 3 %",
                    "state --stature", judged(std::abs(100.0 * error), 3.0, 6.0)});
   }
+  out.push_back({"ambiguous",
+                 "instants at which another place fitted as well",
+                 100.0 * static_cast<double>(take.result.ambiguous) /
+                     static_cast<double>(take.result.placed.size()),
+                 "%",
+                 {},
+                 "of the outline alone",
+                 {},
+                 {},
+                 Judgement::NotJudged});
   out.push_back({"strangers",
                  "pictures of somebody whose pose is not the suit's",
                  static_cast<double>(take.result.strangers),
@@ -140,6 +178,36 @@ report::Series path_of(const std::string& name, Mark mark,
   return out;
 }
 
+/// Two standard deviations of the place over the floor, as crosses along the axes of the error,
+/// once in half a second.
+report::Series bars_of(const PositionReport& take) {
+  constexpr double kEvery = 0.5;                                // [s]
+  constexpr double kSigmas = 2.0;                               // To each side.
+  const double gap = std::numeric_limits<double>::quiet_NaN();  // Lifts the pen.
+  report::Series out{"error, two standard deviations", Mark::Line};
+  double last = -kEvery;
+  for (const Placed& one : take.result.placed) {
+    if (seconds(one.time) - last < kEvery) continue;
+    last = seconds(one.time);
+    Eigen::Matrix2d floor;
+    floor << one.smooth.covariance(0, 0), one.smooth.covariance(0, 2), one.smooth.covariance(2, 0),
+        one.smooth.covariance(2, 2);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(floor);
+    const Eigen::Vector2d at(one.smooth.place.x(), one.smooth.place.z());
+    for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector2d half = kSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[axis])) *
+                                   axes.eigenvectors().col(axis);
+      for (const Eigen::Vector2d& end : {Eigen::Vector2d(at - half), Eigen::Vector2d(at + half)}) {
+        out.x.push_back(end.x());
+        out.y.push_back(end.y());
+      }
+      out.x.push_back(gap);
+      out.y.push_back(gap);
+    }
+  }
+  return out;
+}
+
 Plot path_plot(const PositionReport& take) {
   std::vector<Eigen::Vector3d> online;
   std::vector<Eigen::Vector3d> smooth;
@@ -157,7 +225,7 @@ Plot path_plot(const PositionReport& take) {
   plot.height = 520;
   plot.series = {path_of("suit alone", Mark::Dashes, take.walked),
                  path_of("online", Mark::Line, online), path_of("smoothed", Mark::Line, smooth),
-                 path_of("cameras", Mark::Points, cameras)};
+                 bars_of(take), path_of("cameras", Mark::Points, cameras)};
   return plot;
 }
 
@@ -186,6 +254,37 @@ Plot time_plot(const PositionReport& take) {
   return plot;
 }
 
+/// One sentence for each thing that this take cannot show, or shows badly.
+std::vector<std::string> distrusted_in(const PositionReport& take) {
+  std::vector<std::string> out;
+  if (take.cameras.size() == 1)
+    out.emplace_back(
+        "The distance from the camera: with a single camera it is about five times as uncertain as "
+        "the direction.");
+  out.emplace_back(
+      "The camera's place: when it is wrong, everything is moved alike, which cannot be seen "
+      "here.");
+  if (!take.result.clock.found)
+    out.emplace_back(
+        "The clock: no offset was found or stated, and 0 was used; limbs then lag behind the "
+        "place by as much as the clocks differ.");
+  if (take.method == "suit")
+    out.emplace_back("Everything but the first metres: steps add up, and what slides is not seen.");
+  if (take.method == "silhouettes")
+    out.emplace_back(
+        "The stated error: the method states none, and a search that has lost the person does not "
+        "notice it. Compare with --method both.");
+  if (hidden_share(take.result) > 0.0)
+    out.emplace_back(
+        "The shaded times: nobody was seen, and the place is that of the suit's steps.");
+  if (static_cast<double>(take.result.ambiguous) >
+      0.1 * static_cast<double>(take.result.placed.size()))
+    out.emplace_back(
+        "The outline: in more than a tenth of the pictures another place fitted as well.");
+  out.insert(out.end(), take.notes.begin(), take.notes.end());
+  return out;
+}
+
 }  // namespace
 
 report::Report position_report(const PositionReport& take) {
@@ -200,10 +299,9 @@ report::Report position_report(const PositionReport& take) {
   places.paragraphs = {"Shaded: no camera saw the person; the place is that of the suit's steps."};
   report::Section found{"found", "Found with it"};
   found.figures = found_figures(take);
-  found.paragraphs = {
-      "Distrust the distance from a single camera most: it is five times as uncertain as the "
-      "direction.  A wrong place of the camera moves everything alike and cannot be seen here."};
-  out.sections = {std::move(places), std::move(found)};
+  report::Section distrust{"distrust", "What to distrust"};
+  distrust.paragraphs = distrusted_in(take);
+  out.sections = {std::move(places), std::move(found), std::move(distrust)};
   out.judgement = worst_of(out.sections);
   out.verdict = fmt::format("{} of {} instants have a place, with a stated error of {:.0f} mm.",
                             take.result.placed.size(), take.result.instants,

@@ -16,6 +16,8 @@ struct PositionReport {
   std::string method;
   /// Where the suit's steps alone lead, from the first place on; as many as result.placed.
   std::vector<Eigen::Vector3d> walked;
+  std::vector<std::string> notes = {};  ///< What was looked at, and what could not be.
+  double stature = 0.0;                 ///< As stated or as the suit's bones are [m].
 };
 
 [[nodiscard]] report::Report position_report(const PositionReport& take);

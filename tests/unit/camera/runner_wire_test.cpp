@@ -121,5 +121,34 @@ TEST(RunnerWire, AnAnswerBelongsToItsImage) {
                                   kQuestion, hello()));
 }
 
+TEST(RunnerWire, MasksAreAskedForAndRead) {
+  Question question = kQuestion;
+  question.mask = true;
+  EXPECT_THAT(image_header(question), HasSubstr(R"(,"wants":["mask"]})"));
+  const auto able = read_runner_hello(
+      R"({"type": "hello", "name": "n", "layout": "coco_17", "gives": ["masks"]})");
+  ASSERT_TRUE(able);
+  EXPECT_TRUE(able->masks);
+  EXPECT_FALSE(read_runner_hello(R"({"type": "hello", "name": "n", "layout": "coco_17"})")->masks);
+  const auto mask = read_runner_mask(R"({"mask": {"width": 4, "height": 2, "runs": [1, 2, 5]}})");
+  ASSERT_TRUE(mask && *mask);
+  EXPECT_EQ((*mask)->size, (Size{4, 2}));
+  EXPECT_EQ((*mask)->cells, (std::vector<std::uint8_t>{0, 255, 255, 0, 0, 0, 0, 0}));
+  const auto none = read_runner_mask(R"({"bodies": []})");
+  ASSERT_TRUE(none);
+  EXPECT_FALSE(*none);
+}
+
+TEST(RunnerWire, AMaskThatIsNoneIsRefused) {
+  for (const char* mask :
+       {R"(3)", R"({})", R"({"width": 4, "height": 2})", R"({"width": 4, "height": 2, "runs": 8})",
+        R"({"width": 4, "height": 2, "runs": [1, 2]})",
+        R"({"width": 4, "height": 2, "runs": [1, 2, 6]})",
+        R"({"width": 4, "height": 2, "runs": [18446744073709551615, 9]})",
+        R"({"width": 4, "height": 2, "runs": [-1, 9]})", R"({"width": 0, "height": 2, "runs": []})",
+        R"({"width": 99999, "height": 99999, "runs": [9999800001]})"})
+    EXPECT_FALSE(read_runner_mask(std::string(R"({"mask": )") + mask + "}")) << mask;
+}
+
 }  // namespace
 }  // namespace chorus::camera

@@ -94,6 +94,40 @@ TEST(PlacedTake, WithoutPeopleOrPicturesIsRefused) {
               FailsWith(ErrorCode::InvalidArgument));
 }
 
+TEST(PlacedTake, OfAnotherHourIsRefused) {
+  Stage stage;
+  for (suit::SuitPose& pose : stage.suit.poses) pose.time += std::chrono::hours(1);
+  stage.settings.offset_s = 0.0;
+  const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().message.find("covers 0.0 s"), std::string::npos)
+      << result.error().message;
+}
+
+TEST(PlacedTake, OfSomebodyElseIsRefused) {
+  Stage stage;
+  stage.settings.offset_s = 0.0;
+  // The suit's wearer lies on the back while the camera sees somebody walk.
+  for (suit::SuitPose& pose : stage.suit.poses) {
+    for (Joint& joint : pose.joints.joints)
+      joint.position = Eigen::Vector3d(joint.position.x(), -joint.position.z(), joint.position.y());
+  }
+  const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().message.find("nobody moves as the suit says"), std::string::npos)
+      << result.error().message;
+}
+
+TEST(PlacedTake, OfPosesThatAreNotFiniteIsNotPlacedThere) {
+  Stage stage;
+  stage.settings.offset_s = 0.0;
+  for (std::size_t i = 40; i < 80; ++i)
+    stage.suit.poses[i].joints[JointId::KneeLeft].position.y() = std::nan("");
+  const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+  ASSERT_THAT(result, IsOk());
+  for (const Placed& one : result->placed) EXPECT_TRUE(one.smooth.place.allFinite());
+}
+
 TEST(PlacedTake, OfAPersonWhoStandsStillTellsNoClock) {
   Stage stage;
   motion::Motion still;

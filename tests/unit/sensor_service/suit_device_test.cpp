@@ -6,6 +6,7 @@
 
 #include "common/net/asio.h"
 #include "common/suit/mxtp_datagram.h"
+#include "services/sensor/device/suit/served_suit.h"
 #include "services/sensor/device/suit/suit_clock.h"
 #include "services/sensor/device/suit/suit_frames.h"
 #include "services/sensor/device/suit/suit_receiver.h"
@@ -33,6 +34,32 @@ TEST(SuitClock, BeginsAnewWithTheMeasurement) {
   (void)clock.captured(std::chrono::seconds(500), kStart);
   const Timestamp anew = clock.captured(Duration{0}, kStart + std::chrono::seconds(1));
   EXPECT_EQ(anew, kStart + std::chrono::seconds(1));
+}
+
+TEST(ServedSuit, TakesTheFloorsNormalForUp) {
+  // A camera that looks down by 20 degrees serves somebody who stands upright.
+  const Eigen::AngleAxisd tilt(0.35, Eigen::Vector3d::UnitX());
+  Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
+  turned.linear() = tilt.toRotationMatrix();
+  SensorFrame frame;
+  frame.captured = kStart;
+  frame.floor = FloorPlane{tilt * Eigen::Vector3d::UnitY(), 0.0};
+  const auto body = chorus::testing::standing_person();
+  frame.bodies.push_back({BodyId{1}, kStart, to_sensor(turned, body)});
+  const SuitInstant instant = instant_of(frame, frame.bodies.front());
+  const SuitPose truth = pose_of(body, Duration{0});
+  EXPECT_THAT(instant.pose.joints[JointId::Head].position,
+              chorus::testing::VectorNear(truth.joints[JointId::Head].position, 1e-9));
+  EXPECT_EQ(instant.captured, kStart);
+}
+
+TEST(ServedSuit, HasNoPoseInRays) {
+  SensorFrame frame;
+  frame.bodies.push_back(
+      {BodyId{1}, kStart,
+       to_sensor(Eigen::Isometry3d::Identity(), chorus::testing::standing_person())});
+  for (Joint& joint : frame.bodies.front().skeleton.joints) joint.measurement = Measurement::Ray;
+  EXPECT_FALSE(instant_of(frame, frame.bodies.front()).pose.joints[JointId::SpineBase].seen());
 }
 
 SuitInstant standing(double at_s) {

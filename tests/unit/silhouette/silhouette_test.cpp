@@ -2,6 +2,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/sensor/pixel_ray.h"
+#include "common/silhouette/floor_search.h"
 #include "common/silhouette/outline_fit.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
@@ -122,6 +123,60 @@ TEST(Evidence, NeedsABackgroundOfItsSize) {
   EXPECT_FALSE(background.evidence({}));
 }
 
+TEST(Evidence, FromMixturesLeavesShadowsOut) {
+  EvidenceSettings settings;
+  settings.model = BackgroundModel::Mixtures;
+  Background background(settings);
+  EXPECT_FALSE(background.evidence(picture_of(nullptr, 1)));
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) background.learn(picture_of(nullptr, seed));
+  const Scene scene;
+  cv::Mat picture = picture_of(&scene.truth, 50);
+  cv::Mat shaded = picture(cv::Rect(20, 380, 120, 80));
+  shaded *= 0.7;  // A shadow on the floor.
+  const auto evidence = background.evidence(picture);
+  ASSERT_TRUE(evidence);
+  EXPECT_FALSE(evidence->is_foreground({80, 420}));
+  const Eigen::Vector3d chest = scene.truth[JointId::SpineMid].position;
+  const auto pixel = pixel_of(camera_from_sensor_axes() * (kPlace.inverse() * chest), kCamera);
+  ASSERT_TRUE(pixel);
+  EXPECT_TRUE(evidence->is_foreground(*pixel));
+}
+
+TEST(Evidence, WithAThresholdOfTheSurroundingsStandsAChangeOfLightOnOneSide) {
+  EvidenceSettings settings;
+  settings.surroundings = 201;
+  Background near(settings);
+  Background far;
+  for (std::uint64_t seed = 1; seed <= 9; ++seed) {
+    near.learn(picture_of(nullptr, seed));
+    far.learn(picture_of(nullptr, seed));
+  }
+  cv::Mat picture = picture_of(nullptr, 20);
+  cv::Mat lit = picture(cv::Rect(0, 0, 200, 480));
+  lit += cv::Scalar(30);  // A lamp lights a third of the room.
+  EXPECT_LT(near.evidence(picture)->foreground(), 0.4 * far.evidence(picture)->foreground());
+}
+
+TEST(Evidence, OfAMaskIsThatMask) {
+  cv::Mat mask = cv::Mat::zeros(90, 160, CV_8U);
+  cv::rectangle(mask, {40, 20, 30, 50}, cv::Scalar(255), cv::FILLED);
+  const Evidence evidence = evidence_of_mask(mask, 0.25);
+  EXPECT_TRUE(evidence.is_foreground({4.0 * 55, 4.0 * 45}));
+  EXPECT_FALSE(evidence.is_foreground({4.0 * 20, 4.0 * 45}));
+  EXPECT_LT(evidence.distance({4.0 * 40, 4.0 * 45}), 6.0);
+  EXPECT_NEAR(evidence.foreground(), 1500.0 / (90 * 160), 1e-9);
+}
+
+TEST(Background, KeepsPicturesSpreadOverAllThatItSaw) {
+  // Dark for 100 pictures, light for 130: the median of all is light, that of the first 64 dark.
+  Background background({.scale = 1.0});
+  for (int i = 0; i < 230; ++i)
+    background.learn(cv::Mat(8, 8, CV_8U, cv::Scalar(i < 100 ? 50 : 200)));
+  cv::Mat light(8, 8, CV_8U, cv::Scalar(200));
+  EXPECT_EQ(background.evidence(light)->foreground(), 0.0);
+  EXPECT_EQ(background.learned(), 230u);
+}
+
 SearchView view_of(const Scene& scene, const Skeleton<WorldSpace>& body) {
   return {body, scene.shape, kPlace, kCamera, *scene.evidence};
 }
@@ -164,6 +219,20 @@ TEST(OutlineFit, RecoversFromHalfAMetre) {
   const auto fit = fit_outline(view_of(scene, body));
   ASSERT_TRUE(fit);
   EXPECT_LT((fit->shift + Eigen::Vector3d(0.45, 0, 0.2)).norm(), 0.1);
+}
+
+TEST(FloorSearch, FindsThePersonWithoutAStart) {
+  const Scene scene;
+  const auto body = scene.off_by({3.0, 0, -2.5});
+  const auto fit = find_on_floor(view_of(scene, body));
+  ASSERT_TRUE(fit);
+  EXPECT_LT((fit->shift + Eigen::Vector3d(3.0, 0, -2.5)).norm(), 0.12);
+}
+
+TEST(FloorSearch, WhereNobodyIsFindsNobody) {
+  Scene scene;
+  scene.evidence = scene.background.evidence(picture_of(nullptr, 77));
+  EXPECT_FALSE(find_on_floor(view_of(scene, scene.truth)));
 }
 
 TEST(OutlineFit, WhereNobodyIsAnswersNothing) {

@@ -26,6 +26,7 @@ struct Parts {
   std::vector<std::string> command;
   std::shared_ptr<const Clock> clock;
   std::shared_ptr<CameraState> state = std::make_shared<CameraState>();
+  PictureWatch watch = {};
 };
 
 /// Supplies the newest picture; its thread, once begun, runs as long as the object lives.
@@ -107,6 +108,7 @@ std::vector<std::string> Camera::concerns() const {
 
 Result<Looker> Camera::start_runner(const std::stop_token& stop) const {
   auto looker = Looker::start(parts_.settings, parts_.command, stop);
+  if (looker && parts_.watch) looker->want_masks();
   if (looker)
     parts_.state->runner_ready(looker->about().hello.name,
                                std::string(looker->about().hello.layout->name));
@@ -130,6 +132,8 @@ Result<Capture> Camera::ask(Looker& looker, const Shot& shot, const std::stop_to
   parts_.state->lens_fits(lens_for(parts_.settings, shot.picture.size).has_value());
   auto found = looker.look(shot.picture, shot.captured, ++sequence_, stop);
   if (!found) return pass(found);
+  if (parts_.watch)
+    parts_.watch({shot.picture, found->lens, shot.captured, !found->bodies.empty(), found->mask});
   SensorFrame frame{
       parts_.sensor, sequence_, shot.captured, parts_.clock->now(), std::move(found->bodies),
       found->floor};
@@ -198,7 +202,13 @@ Result<void> check_source(const CameraSettings& settings) {
 
 Result<std::unique_ptr<FrameSource>> make_camera(ConfigReader& section,
                                                  const sensor_service::DeviceContext& context) {
+  return make_watched_camera(section, context, {});
+}
+
+Result<std::unique_ptr<FrameSource>> make_watched_camera(
+    ConfigReader& section, const sensor_service::DeviceContext& context, PictureWatch watch) {
   Parts parts;
+  parts.watch = std::move(watch);
   parts.sensor = context.sensor;
   parts.settings = read_camera_settings(section);
   if (auto ok = check_source(parts.settings); !ok) return pass(ok);

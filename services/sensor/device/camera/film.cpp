@@ -42,39 +42,79 @@ SensorFrame frame_of(const Film& film, Timestamp captured, std::uint64_t sequenc
   return {film.sensor, sequence, captured, captured, std::move(found.bodies), found.floor};
 }
 
-bool wanted(const Film& film, const FilmFrames& out, Timestamp captured) {
-  // A picture is used once this share of a step has passed, because pictures are not evenly spaced.
-  constexpr double kNearly = 0.9;
-  return out.frames.empty() ||
-         seconds(captured - out.frames.back().captured) * film.settings.max_rate_hz >= kNearly;
-}
-
 }  // namespace
 
-Result<FilmFrames> look_through(const Film& film, const std::stop_token& stop) {
-  auto video = open_video(film.settings);
+struct FilmPictures::State {
+  State(std::unique_ptr<Video> opened, double rate, Timestamp begin)
+      : video(std::move(opened)),
+        timing(video->timing()),
+        clock(timing),
+        rate_hz(rate),
+        start(begin) {}
+
+  std::unique_ptr<Video> video;
+  FileTiming timing;
+  FilmClock clock;
+  double rate_hz;
+  Timestamp start;
+  std::optional<Timestamp> last{};
+
+  [[nodiscard]] bool wanted(Timestamp captured) const {
+    // A picture is used once this share of a step has passed, because pictures are not evenly
+    // spaced.
+    constexpr double kNearly = 0.9;
+    return !last || seconds(captured - *last) * rate_hz >= kNearly;
+  }
+};
+
+FilmPictures::FilmPictures(std::unique_ptr<State> state) : state_(std::move(state)) {}
+FilmPictures::FilmPictures(FilmPictures&&) noexcept = default;
+FilmPictures& FilmPictures::operator=(FilmPictures&&) noexcept = default;
+FilmPictures::~FilmPictures() = default;
+
+Result<FilmPictures> FilmPictures::open(const CameraSettings& settings, Timestamp start) {
+  auto video = open_video(settings);
   if (!video) return pass(video);
+  return FilmPictures(std::make_unique<State>(std::move(*video), settings.max_rate_hz, start));
+}
+
+Result<std::optional<FilmPicture>> FilmPictures::next() {
+  while (true) {
+    const auto moment = state_->video->next();
+    if (!moment) return pass(moment);
+    if (!*moment) return std::optional<FilmPicture>();
+    const Duration over = state_->clock.next((*moment)->time);
+    const Timestamp captured = state_->start + over;
+    if (!state_->wanted(captured)) continue;
+    auto picture = state_->video->picture();
+    if (!picture) continue;  // The picture is damaged.
+    state_->last = captured;
+    return std::optional(
+        FilmPicture{std::move(*picture), captured, share_of(state_->timing, over)});
+  }
+}
+
+Result<FilmFrames> look_through(const Film& film, const std::stop_token& stop) {
+  auto pictures = FilmPictures::open(film.settings, film.start);
+  if (!pictures) return pass(pictures);
   auto looker = Looker::start(film.settings, film.command, stop);
   if (!looker) return pass(looker);
-  const FileTiming timing = (*video)->timing();
-  FilmClock clock(timing);
+  if (film.mask) looker->want_masks();
   FilmFrames out{
       {}, looker->about().hello.name, std::string(looker->about().hello.layout->name), {}, 0};
   while (!stop.stop_requested() && out.frames.size() < kMaxFrames) {
-    const auto moment = (*video)->next();
-    if (!moment) return pass(moment);
-    if (!*moment) break;
-    const Duration over = clock.next((*moment)->time);
-    const Timestamp captured = film.start + over;
-    if (!wanted(film, out, captured)) continue;
-    const auto picture = (*video)->picture();
-    if (!picture) continue;  // The picture is damaged.
-    auto found = looker->look(*picture, captured, out.frames.size() + 1, stop);
+    const auto next = pictures->next();
+    if (!next) return pass(next);
+    if (!*next) break;
+    const FilmPicture& shown = **next;
+    const std::uint64_t sequence = out.frames.size() + 1;
+    auto found = looker->look(shown.picture, shown.captured, sequence, stop);
     if (!found) return pass(found);
     out.lens = found->lens;
+    if (film.mask && found->mask) film.mask(shown.captured, std::move(*found->mask));
     out.people = std::max(out.people, found->bodies.size());
-    out.frames.push_back(frame_of(film, captured, out.frames.size() + 1, std::move(*found)));
-    if (film.progress) film.progress(share_of(timing, over));
+    out.frames.push_back(frame_of(film, shown.captured, sequence, std::move(*found)));
+    if (film.progress) film.progress(shown.share);
   }
   if (!out.frames.empty()) return out;
   return fail(ErrorCode::InvalidArgument, film.settings.source,

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 
 #include "services/sensor/device/camera/looker.h"
 
@@ -15,6 +17,32 @@ struct Film {
   Timestamp start;  ///< Capture time of the first picture.
   /// Called after every picture used with the share of the file that is done, in [0, 1].
   std::function<void(double share)> progress = {};
+  /// Called with the mask of every picture used, if the runner gives any.
+  std::function<void(Timestamp captured, PersonMask mask)> mask = {};
+};
+
+struct FilmPicture {
+  Picture picture;
+  Timestamp captured;
+  double share = 0.0;  ///< Of the file that is done, in [0, 1].
+};
+
+/// The pictures of a file that are used, one after the other: at most max_rate_hz of them a second.
+class FilmPictures {
+ public:
+  /// `start`: capture time of the first picture.
+  [[nodiscard]] static Result<FilmPictures> open(const CameraSettings& settings, Timestamp start);
+  FilmPictures(FilmPictures&&) noexcept;
+  FilmPictures& operator=(FilmPictures&&) noexcept;
+  ~FilmPictures();
+
+  /// None at the end of the file.  Damaged pictures are left out.
+  [[nodiscard]] Result<std::optional<FilmPicture>> next();
+
+ private:
+  struct State;
+  explicit FilmPictures(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
 };
 
 struct FilmFrames {

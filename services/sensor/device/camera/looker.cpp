@@ -25,7 +25,7 @@ Result<Found> Looker::look(const Picture& picture, Timestamp captured, std::uint
                            const std::stop_token& stop) {
   const auto lens = lens_for(*settings_, picture.size);
   if (!lens) return pass(lens);
-  const Question question{sequence, captured, sent_size(picture.size, about_.max_side)};
+  const Question question{sequence, captured, sent_size(picture.size, about_.max_side), masks_};
   const std::string bytes = image_header(question) + rgb_bytes(picture, question.size);
   if (const auto ok = process_->send(bytes, kAnswerWithin, stop); !ok) return pass(ok);
   const auto line = process_->read_line(kAnswerWithin, stop);
@@ -35,11 +35,18 @@ Result<Found> Looker::look(const Picture& picture, Timestamp captured, std::uint
   hello.focal_sigma = lens->focal_sigma;
   auto frame = read_runner_answer(*line, question, hello);
   if (!frame) return pass(frame);
+  auto mask = masks_ ? read_runner_mask(*line)
+                     : Result<std::optional<PersonMask>>(std::optional<PersonMask>());
+  if (!mask) return pass(mask);
   PlacingErrors errors;
   errors.focal = lens->focal_sigma;
   if (settings_->depth_from_size) placer_.place(frame->bodies, frame->shapes, errors);
-  return Found{std::move(frame->bodies), *lens, question.size,
-               hello.floor ? hello.floor : settings_->floor, frame->outside_picture};
+  return Found{std::move(frame->bodies),
+               *lens,
+               question.size,
+               hello.floor ? hello.floor : settings_->floor,
+               frame->outside_picture,
+               std::move(*mask)};
 }
 
 }  // namespace chorus::camera

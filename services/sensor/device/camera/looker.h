@@ -19,6 +19,7 @@ struct Found {
   Size sent;                        ///< Size in which the runner got the picture.
   std::optional<FloorPlane> floor;  ///< From the runner or, if it gives none, as configured.
   std::optional<bool> outside_picture = {};  ///< All landmarks are; none if nobody is seen.
+  std::optional<PersonMask> mask = {};       ///< If it was wanted and the runner gives it.
 };
 
 /// Not thread-safe; keeps a reference to its settings.
@@ -29,6 +30,8 @@ class Looker {
                                             const std::vector<std::string>& command,
                                             const std::stop_token& stop);
 
+  /// From now on, masks are asked for, if the runner gives them.
+  void want_masks() { masks_ = about_.masks; }
   /// Sends one picture to the runner and returns its answer.
   [[nodiscard]] Result<Found> look(const Picture& picture, Timestamp captured,
                                    std::uint64_t sequence, const std::stop_token& stop);
@@ -43,6 +46,7 @@ class Looker {
   const CameraSettings* settings_;
   std::unique_ptr<RunnerProcess> process_;
   RunnerHello about_;
+  bool masks_ = false;
   BodyPlacer placer_;
 };
 

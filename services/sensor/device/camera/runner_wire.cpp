@@ -1,5 +1,7 @@
 #include "services/sensor/device/camera/runner_wire.h"
 
+#include <algorithm>
+#include <array>
 #include <variant>
 
 #include <fmt/format.h>
@@ -31,6 +33,28 @@ Result<int> read_max_side(std::string_view line) {
   });
 }
 
+bool gives_masks(std::string_view line) {
+  const auto message = parse_json(line, kLineLimits);
+  const nlohmann::json* gives = message ? bridge::find(*message, "gives") : nullptr;
+  return gives != nullptr && gives->is_array() &&
+         std::find(gives->begin(), gives->end(), nlohmann::json("masks")) != gives->end();
+}
+
+Result<Size> read_mask_size(const nlohmann::json& mask, const At& at) {
+  constexpr bridge::Bounds kCells{1.0, 1024.0};
+  std::array<int, 2> out{};
+  constexpr std::array kKeys{"width", "height"};
+  for (std::size_t i = 0; i < kKeys.size(); ++i) {
+    const nlohmann::json* value = bridge::find(mask, kKeys[i]);
+    const At place = at[kKeys[i]];
+    if (value == nullptr) return bridge::wrong(place, "a number of cells");
+    const auto number = bridge::read_number(*value, kCells, place);
+    if (!number) return pass(number);
+    out[i] = static_cast<int>(*number);
+  }
+  return Size{out[0], out[1]};
+}
+
 tl::unexpected<Error> not_said(const char* wanted) {
   return fail(ErrorCode::Malformed, "type",
               fmt::format("must be \"{}\" here (proto/runner.md)", wanted));
@@ -50,7 +74,7 @@ Result<RunnerHello> read_runner_hello(std::string_view line) {
   if (hello == nullptr) return not_said("hello");
   const auto side = read_max_side(line);
   if (!side) return pass(side);
-  RunnerHello out{std::move(*hello), *side};
+  RunnerHello out{std::move(*hello), *side, gives_masks(line)};
   out.hello.camera.reset();
   if (!out.hello.pixel_sigma) out.hello.pixel_sigma = kSigmaShare * *side;
   return out;
@@ -60,8 +84,9 @@ std::string image_header(const Question& question) {
   const auto& [width, height] = question.size;
   return fmt::format(
       "{{\"type\":\"image\",\"sequence\":{},\"captured\":\"{}\",\"width\":{},"
-      "\"height\":{},\"format\":\"rgb24\",\"bytes\":{}}}\n",
-      question.sequence, to_unix_ns(question.captured), width, height, 3L * width * height);
+      "\"height\":{},\"format\":\"rgb24\",\"bytes\":{}{}}}\n",
+      question.sequence, to_unix_ns(question.captured), width, height, 3L * width * height,
+      question.mask ? ",\"wants\":[\"mask\"]" : "");
 }
 
 Result<bridge::PushedFrame> read_runner_answer(std::string_view line, const Question& question,
@@ -86,6 +111,34 @@ Result<bridge::PushedFrame> read_runner_answer(std::string_view line, const Ques
                             question.sequence));
   }
   return std::move(*frame);
+}
+
+Result<std::optional<PersonMask>> read_runner_mask(std::string_view line) {
+  constexpr JsonLimits kMaskLimits{.bytes = 256 * 1024, .nesting = 8};
+  const auto message = parse_json(line, kMaskLimits);
+  if (!message) return pass(message);
+  const nlohmann::json* mask = message->is_object() ? bridge::find(*message, "mask") : nullptr;
+  if (mask == nullptr) return std::optional<PersonMask>();
+  const At top{};
+  const At at = top["mask"];
+  const nlohmann::json* runs = mask->is_object() ? bridge::find(*mask, "runs") : nullptr;
+  if (runs == nullptr || !runs->is_array())
+    return bridge::wrong(at, "an object with width, height and runs");
+  const auto size = read_mask_size(*mask, at);
+  if (!size) return pass(size);
+  const std::size_t total =
+      static_cast<std::size_t>(size->width) * static_cast<std::size_t>(size->height);
+  PersonMask out{*size, {}};
+  out.cells.reserve(total);
+  for (std::size_t i = 0; i < runs->size(); ++i) {
+    const auto length = bridge::read_whole((*runs)[i], at);
+    if (!length) return pass(length);
+    if (*length > total - out.cells.size())
+      return bridge::wrong(at, "runs of width x height cells");
+    out.cells.insert(out.cells.end(), *length, i % 2 == 0 ? 0 : 255);
+  }
+  if (out.cells.size() != total) return bridge::wrong(at, "runs of width x height cells");
+  return std::optional(std::move(out));
 }
 
 }  // namespace chorus::camera

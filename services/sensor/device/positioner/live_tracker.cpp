@@ -32,6 +32,7 @@ void LiveTracker::forget() {
   poses_.clear();
   pictured_.reset();
   tracked_.reset();
+  pictured_place_.reset();
 }
 
 void LiveTracker::advance(positioning::Tracker& tracker, const suit::SuitInstant& instant,
@@ -59,7 +60,10 @@ bool LiveTracker::picture(Timestamp captured, positioning::Look look) {
   for (auto one = poses_.begin(); one != after; ++one) {
     if (!pictured_ || one->captured > *pictured_) advance(at_picture_, *one, {});
   }
-  advance(at_picture_, between(*std::prev(after), *after, captured), {std::move(look)});
+  const suit::SuitInstant then = between(*std::prev(after), *after, captured);
+  advance(at_picture_, then, {std::move(look)});
+  pictured_place_ =
+      tracked_ ? std::optional(LivePlace{captured, then.pose, *tracked_}) : std::nullopt;
   pictured_ = captured;
   now_ = at_picture_;
   for (auto one = after; one != poses_.end(); ++one) {

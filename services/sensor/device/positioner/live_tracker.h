@@ -29,6 +29,8 @@ class LiveTracker {
   /// A picture older than the one before, or older than all poses that are remembered, is left out
   /// (false).
   bool picture(Timestamp captured, positioning::Look look);
+  /// The place at the last picture; none before a camera has seen the person.
+  [[nodiscard]] const std::optional<LivePlace>& pictured() const { return pictured_place_; }
   /// Begins anew: the suit's file starts again, or its stream jumps in time.
   void forget();
 
@@ -42,6 +44,7 @@ class LiveTracker {
   std::deque<suit::SuitInstant> poses_;  ///< The last two seconds.
   std::optional<Timestamp> pictured_{};  ///< When the last picture was taken.
   std::optional<positioning::Tracked> tracked_{};
+  std::optional<LivePlace> pictured_place_{};
 };
 
 }  // namespace chorus::positioner

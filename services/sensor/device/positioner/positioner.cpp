@@ -8,6 +8,7 @@
 #include "common/base/file.h"
 #include "services/sensor/device/camera/camera.h"
 #include "services/sensor/device/positioner/live_tracker.h"
+#include "services/sensor/device/positioner/picture_eye.h"
 #include "services/sensor/device/positioner/places_file.h"
 #include "services/sensor/device/positioner/positioner_settings.h"
 #include "services/sensor/device/suit/suit_source.h"
@@ -22,10 +23,17 @@ constexpr double kUsualStature = 1.75;
 constexpr std::uintmax_t kMostPlaceBytes = 1 << 22;
 constexpr double kNearly = 0.9;
 
+double stature_in(const PositionerSettings& settings) {
+  return settings.suit.stature > 0.0 ? settings.suit.stature : kUsualStature;
+}
+
 struct PlacedCamera {
   Eigen::Isometry3d world_from_sensor;
   std::unique_ptr<http::Router> router;  ///< Its own, not served: paths of several would clash.
   std::unique_ptr<FrameSource> source;
+  std::unique_ptr<PictureEye> eye;  ///< Null where the method does not look at pictures itself.
+  /// Of the picture whose landmarks come next; used on the camera's thread only.
+  std::shared_ptr<const positioning::PictureSight> sight;
 };
 
 struct PositionerParts {
@@ -33,7 +41,7 @@ struct PositionerParts {
   PositionerSettings settings;
   std::shared_ptr<const Clock> clock;
   std::unique_ptr<suit::SuitSource> worn;
-  std::vector<PlacedCamera> cameras;
+  std::vector<std::unique_ptr<PlacedCamera>> cameras;
 };
 
 class Positioner final : public FrameSource {
@@ -65,8 +73,8 @@ class Positioner final : public FrameSource {
 positioning::TrackerSettings Positioner::tracking(const PositionerParts& parts) {
   positioning::TrackerSettings settings;
   settings.cameras = parts.cameras.size();
-  settings.stature =
-      parts.settings.suit.stature > 0.0 ? parts.settings.suit.stature : kUsualStature;
+  settings.stature = stature_in(parts.settings);
+  settings.method = parts.settings.method;
   return settings;
 }
 
@@ -84,16 +92,16 @@ DeviceDescription Positioner::describe() const {
 
 std::vector<std::string> Positioner::concerns() const {
   std::vector<std::string> all = parts_.worn->concerns();
-  for (const PlacedCamera& camera : parts_.cameras) {
-    for (std::string& one : camera.source->concerns()) all.push_back(std::move(one));
+  for (const auto& camera : parts_.cameras) {
+    for (std::string& one : camera->source->concerns()) all.push_back(std::move(one));
   }
   return all;
 }
 
 std::string Positioner::trouble() const {
   if (const std::string why = parts_.worn->trouble(); !why.empty()) return why;
-  for (const PlacedCamera& camera : parts_.cameras) {
-    if (const std::string why = camera.source->trouble(); !why.empty()) return why;
+  for (const auto& camera : parts_.cameras) {
+    if (const std::string why = camera->source->trouble(); !why.empty()) return why;
   }
   const std::lock_guard lock(mutex_);
   if (!camera_failed_.empty()) return camera_failed_;
@@ -102,11 +110,19 @@ std::string Positioner::trouble() const {
 
 /// Called on a camera's thread.
 void Positioner::look(std::size_t camera, Capture capture) {
-  positioning::Look look{camera, parts_.cameras[camera].world_from_sensor, {}, {}};
+  PlacedCamera& own = *parts_.cameras[camera];
+  positioning::Look look{camera, own.world_from_sensor, {}, std::exchange(own.sight, {})};
   for (const BodyFrame& body : capture.frame.bodies) look.people.push_back(body.skeleton);
   const std::lock_guard lock(mutex_);
   tracker_.picture(capture.frame.captured, std::move(look));
-  if (camera == 0) picture_ = std::move(capture.color);
+  if (camera != 0) return;
+  const auto& place = tracker_.pictured();
+  if (own.eye && place) {
+    const positioning::Position& at = place->tracked.position;
+    picture_ = own.eye->drawn(placed(place->pose, at.heading, at.place));
+  } else {
+    picture_ = std::move(capture.color);
+  }
 }
 
 SensorFrame Positioner::frame_of(const LivePlace& place) {
@@ -153,7 +169,7 @@ Result<void> Positioner::run(std::stop_token stop, const Sink& sink) {
   std::vector<std::jthread> threads;
   for (std::size_t i = 0; i < parts_.cameras.size(); ++i) {
     threads.emplace_back([this, i](const std::stop_token& own) {
-      const auto done = parts_.cameras[i].source->run(
+      const auto done = parts_.cameras[i]->source->run(
           own, [this, i](Capture capture) { look(i, std::move(capture)); });
       const std::lock_guard lock(mutex_);
       if (!done) camera_failed_ = to_string(done.error());
@@ -163,20 +179,30 @@ Result<void> Positioner::run(std::stop_token stop, const Sink& sink) {
       stop, [&](const suit::SuitInstant& instant, bool anew) { step(instant, anew, sink); });
 }
 
-Result<PlacedCamera> make_placed(const PositionerCamera& camera,
-                                 const std::map<std::string, Eigen::Isometry3d>& places,
-                                 const sensor_service::DeviceContext& context) {
+Result<std::unique_ptr<PlacedCamera>> make_placed(
+    const PositionerCamera& camera, const std::map<std::string, Eigen::Isometry3d>& places,
+    const PositionerSettings& settings, const sensor_service::DeviceContext& context) {
   const auto place = places.find(camera.name);
   if (place == places.end())
     return fail(ErrorCode::NotFound, "device.positioner.places",
                 "has no place for the camera " + camera.name);
-  PlacedCamera out{place->second, std::make_unique<http::Router>(), nullptr};
+  auto out = std::make_unique<PlacedCamera>();
+  out->world_from_sensor = place->second;
+  out->router = std::make_unique<http::Router>();
   auto section = ConfigReader::parse(camera.section.empty() ? "{}" : camera.section,
                                      "device.positioner.cameras." + camera.name);
   if (!section) return pass(section);
-  auto source = camera::make_camera(*section, {context.sensor, context.time, *out.router});
+  camera::PictureWatch watch;
+  if (uses_pictures(settings.method)) {
+    out->eye = make_eye({place->second, stature_in(settings), settings.girth, settings.background});
+    watch = [one = out.get()](const camera::LookedAt& looked) {
+      if (one->eye) one->sight = one->eye->see(looked);
+    };
+  }
+  auto source = camera::make_watched_camera(*section, {context.sensor, context.time, *out->router},
+                                            std::move(watch));
   if (!source) return pass(source);
-  out.source = std::move(*source);
+  out->source = std::move(*source);
   return out;
 }
 
@@ -200,7 +226,7 @@ Result<std::unique_ptr<FrameSource>> make_positioner(ConfigReader& section,
   if (!worn) return pass(worn);
   parts.worn = std::move(*worn);
   for (const PositionerCamera& camera : parts.settings.cameras) {
-    auto one = make_placed(camera, *places, context);
+    auto one = make_placed(camera, *places, parts.settings, context);
     if (!one) return pass(one);
     parts.cameras.push_back(std::move(*one));
   }

@@ -10,6 +10,13 @@ PositionerSettings read_positioner_settings(ConfigReader& section) {
   section.read("places", settings.places);
   section.read("clock_offset_s", settings.clock_offset_s, -60.0, 60.0);
   section.read("max_rate_hz", settings.max_rate_hz, 1.0, 240.0);
+  std::size_t method = 0;
+  section.read_choice("method", method, {"both", "landmarks", "outline", "silhouettes", "suit"});
+  settings.method = *positioning::method_named(positioning::method_names()[method]);
+  std::size_t background = 0;
+  section.read_choice("background", background, {"auto", "network", "mixtures"});
+  settings.background = static_cast<EyeBackground>(background);
+  section.read("girth", settings.girth, 0.5, 2.0);
   ConfigReader worn = section.child("worn");
   settings.suit = suit::read_suit_settings(worn);
   for (ConfigReader& camera : section.items("cameras")) {

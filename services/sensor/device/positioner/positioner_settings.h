@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "common/base/config_reader.h"
+#include "common/positioning/method.h"
+#include "services/sensor/device/positioner/picture_eye.h"
 #include "services/sensor/device/suit/suit_settings.h"
 
 namespace chorus::positioner {
@@ -22,6 +24,9 @@ struct PositionerSettings {
   /// Added to the suit's time to get the cameras' [s].
   double clock_offset_s = 0.0;
   double max_rate_hz = 60.0;
+  positioning::Method method = positioning::Method::Both;
+  EyeBackground background = EyeBackground::Auto;
+  double girth = 1.0;  ///< Of the person, relative to a usual one.
 };
 
 /// Reads the section; the reader's finish() reports mistakes.

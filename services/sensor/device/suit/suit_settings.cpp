@@ -1,10 +1,18 @@
 #include "services/sensor/device/suit/suit_settings.h"
 
+#include "common/client/follow_config.h"
+
 namespace chorus::suit {
 
 SuitSettings read_suit_settings(ConfigReader& section) {
   SuitSettings settings;
   section.read("file", settings.file);
+  if (section.has("service")) {
+    ConfigReader service = section.child("service");
+    settings.service = client::read_followed(service, client::read_trust(section.child("service")));
+    if (!settings.file.empty())
+      section.complain("service", "cannot be used together with device.suit.file");
+  }
   section.read("loop", settings.loop);
   section.read("label", settings.label);
   section.read("address", settings.address);

@@ -1,10 +1,12 @@
 // The configuration section device.suit.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/base/config_reader.h"
 #include "common/base/duration.h"
+#include "common/client/followers.h"
 
 namespace chorus::suit {
 
@@ -12,7 +14,9 @@ enum class Transport { Udp, Tcp };
 
 struct SuitSettings {
   std::string file = {};  ///< A .mvnx or .bvh file; empty: the network stream.
-  bool loop = true;       ///< A file starts again at its end.
+  /// Another Chorus service that serves the suit; none: file or stream.
+  std::optional<client::FollowedService> service = {};
+  bool loop = true;  ///< A file starts again at its end.
   std::string label = {};
   std::string address = "127.0.0.1";  ///< Where the stream is received; numeric.
   int port = 9763;

@@ -11,6 +11,7 @@
 #include "common/base/rate_report.h"
 #include "common/suit/mxtp_decoder.h"
 #include "common/suit/suit_file.h"
+#include "services/sensor/device/suit/served_suit.h"
 #include "services/sensor/device/suit/suit_clock.h"
 #include "services/sensor/device/suit/suit_receiver.h"
 
@@ -136,6 +137,7 @@ Result<void> FiledSuit::run(const std::stop_token& stop, const Take& take) {
 }  // namespace
 
 Result<std::unique_ptr<SuitSource>> open_suit(const SuitSettings& settings, ClockPointer clock) {
+  if (settings.service) return serve_suit(settings, std::move(clock));
   if (settings.file.empty()) return std::make_unique<StreamedSuit>(settings, std::move(clock));
   auto take = read_suit_file(settings.file, {.stature = settings.stature});
   if (!take) return pass(take);
