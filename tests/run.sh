@@ -145,4 +145,12 @@ cmake --build build/dev -j "$jobs" --target headers_alone
 
 step "tests"
 # Many tests wait for their child processes: so run two more than there are cores. Those with a COST start first, else they end alone.
-exec ctest --test-dir build/dev --output-on-failure -j "$(( $(nproc) + 2 ))" "$@"
+rc=0
+summary=$(mktemp)
+ctest --test-dir build/dev --output-on-failure -j "$(( $(nproc) + 2 ))" "$@" | tee "$summary" || rc=$?
+step "skipped, and what they wait for"
+python3 -B tests/skipped.py build/dev
+step "summary"
+sed -n '/tests passed,/,$p' "$summary"
+rm -f "$summary"
+exit "$rc"
