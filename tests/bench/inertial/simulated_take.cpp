@@ -6,6 +6,7 @@
 #include "common/evaluation/limb_frame.h"
 #include "common/geometry/rotation.h"
 #include "common/synthetic/coloured_noise.h"
+#include "common/synthetic/exercise.h"
 
 namespace chorus::bench {
 namespace {
@@ -44,7 +45,7 @@ synthetic::SimulatedSuit suit_worn_in(const SimulatedTakePlan& plan, Timestamp s
   script.body_scale = plan.body_scale;
   synthetic::SimulatedSuit suit;
   suit.scene.epoch = start;
-  suit.scene.people = synthetic::make_people(script, 1);
+  suit.scene.people = {synthetic::exercising(synthetic::make_people(script, 1).front())};
   suit.limbs = synthetic::limbs_of_suit(plan.sensors);
   suit.seed = plan.seed;
   suit.errors.skin = 1.0;

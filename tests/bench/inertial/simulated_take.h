@@ -33,8 +33,8 @@ struct SimulatedTakePlan {
 inline constexpr double kTrackerSigma = deg(5.0);
 inline constexpr double kTrackerJointSigma = 0.03;
 
-/// People walk, turn and reach for things, by seed.  The suit has noise of 2 degrees, skin as on
-/// real people, and magnetometers.
+/// People walk, turn or reach for things, by seed, and exercise meanwhile.  The suit has noise of 2
+/// degrees, skin as on real people, and magnetometers.
 [[nodiscard]] std::vector<SimulatedLimb> simulated_take(const SimulatedTakePlan& plan);
 
 }  // namespace chorus::bench
