@@ -16,6 +16,12 @@ struct PositionerCase {
 constexpr std::array kPositionerCases{
     PositionerCase{"eight-views-vicon", &eight_views_alone, true},
     PositionerCase{"two-of-eight", &eight_views_pairs, false},
+    PositionerCase{"walk", &rendered_walk, true},
+    PositionerCase{"slide", &rendered_slide, false},
+    PositionerCase{"occlusion", &rendered_occlusion, false},
+    PositionerCase{"light", &rendered_light, false},
+    PositionerCase{"two-cameras", &rendered_two_cameras, false},
+    PositionerCase{"four-views", &four_views_pixels, false},
 };
 
 }  // namespace
