@@ -14,6 +14,10 @@ namespace {
 
 using enum JointId;
 
+// Of skin against the clothes, of 255.  In grey pictures skin of 130 before a wall of 128 is not
+// there; such a scene would measure the camouflage.
+constexpr int kSkin = 165;
+
 /// A limb: radii at its ends, the bulge of its muscle, how much broader than deep, and its shade
 /// against the clothes'.
 struct Limb {
@@ -26,7 +30,7 @@ struct Limb {
   int shade;
 };
 constexpr std::array kLimbs{Limb{SpineBase, SpineShoulder, 0.115, 0.105, 0.006, 1.55, 0},
-                            Limb{SpineShoulder, Head, 0.065, 0.060, 0.0, 1.0, 90},
+                            Limb{SpineShoulder, Head, 0.065, 0.060, 0.0, 1.0, kSkin},
                             Limb{HipLeft, KneeLeft, 0.095, 0.066, 0.010, 1.0, 18},
                             Limb{HipRight, KneeRight, 0.095, 0.066, 0.010, 1.0, 18},
                             Limb{KneeLeft, AnkleLeft, 0.062, 0.050, 0.012, 1.0, 22},
@@ -35,8 +39,8 @@ constexpr std::array kLimbs{Limb{SpineBase, SpineShoulder, 0.115, 0.105, 0.006, 
                             Limb{ShoulderRight, ElbowRight, 0.060, 0.052, 0.006, 1.0, -8},
                             Limb{ElbowLeft, WristLeft, 0.050, 0.036, 0.004, 1.0, -5},
                             Limb{ElbowRight, WristRight, 0.050, 0.036, 0.004, 1.0, -5},
-                            Limb{WristLeft, HandTipLeft, 0.038, 0.022, 0.008, 1.4, 100},
-                            Limb{WristRight, HandTipRight, 0.038, 0.022, 0.008, 1.4, 100},
+                            Limb{WristLeft, HandTipLeft, 0.038, 0.022, 0.008, 1.4, kSkin},
+                            Limb{WristRight, HandTipRight, 0.038, 0.022, 0.008, 1.4, kSkin},
                             Limb{AnkleLeft, FootLeft, 0.050, 0.042, 0.004, 1.2, -20},
                             Limb{AnkleRight, FootRight, 0.050, 0.042, 0.004, 1.2, -20}};
 constexpr int kStations = 9;
@@ -133,7 +137,7 @@ void paint_head(const ScenePerson& person, Painter& painter) {
                                                            std::cos(up) * std::sin(around)));
     }
   }
-  painter.fill(points, person.shade + 90);
+  painter.fill(points, person.shade + kSkin);
 }
 
 void paint_shadow(const ScenePicture& scene, const ScenePerson& person, cv::Mat& out) {
