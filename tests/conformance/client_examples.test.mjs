@@ -7,7 +7,7 @@ import { pathToFileURL } from 'node:url';
 
 import { QueryEngine } from '@comunica/query-sparql-link-traversal';
 
-import { launch } from '../viewer/browser.mjs';
+import { PATIENCE_MS, launch } from '../viewer/browser.mjs';
 
 const fusion = process.env.CHORUS_FUSION_URL;
 assert.ok(fusion, 'CHORUS_FUSION_URL names a running fusion server');
@@ -17,10 +17,11 @@ test('the web page shows who is tracked, live, opened as a file', async () => {
   const browser = await launch();
   try {
     const page = await browser.newPage();
+    page.setDefaultTimeout(PATIENCE_MS);
     const complaints = [];
     page.on('pageerror', (error) => complaints.push(String(error)));
     await page.goto(`${pathToFileURL(`${examples}/live_page.html`)}?service=${fusion}`);
-    await page.waitForFunction(() => window.framesShown > 30, null, { timeout: 20000 });
+    await page.waitForFunction(() => window.framesShown > 30);
     assert.match(await page.textContent('#state'), /^1 tracked at \d{4}-/);
     const drawn = await page.evaluate(() => {
       const floor = document.getElementById('floor');

@@ -17,9 +17,9 @@ sys.path.insert(0, str(ROOT / "tests/support"))
 from ports import free_ports  # noqa: E402
 
 SENSORS = 6
-TRACKS_WITHIN_S = 60
+TRACKS_WITHIN_S = 120  # on a loaded machine
 STOPS_WITHIN_S = 15
-COMMAND_TIMEOUT_S = 150
+COMMAND_TIMEOUT_S = 300
 
 
 def tracks_somebody(base):

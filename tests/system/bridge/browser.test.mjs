@@ -4,7 +4,7 @@ import { spawn } from 'node:child_process';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { test } from 'node:test';
-import { launch } from '../../viewer/browser.mjs';
+import { PATIENCE_MS, launch } from '../../viewer/browser.mjs';
 
 const BIN = process.env.CHORUS_BIN;
 const TOKEN = "it's a (secret) / 100%";
@@ -69,6 +69,7 @@ test('a page of an allowed origin pushes rays with its token', async (t) => {
   const browser = await launch();
   t.after(() => browser.close());
   const page = await browser.newPage();
+  page.setDefaultTimeout(PATIENCE_MS);
   await page.goto(origin);
   await pushFrom(page, sensor.replace('http', 'ws') + 'push', TOKEN);
   const state = await until('frames are taken', async () => {
@@ -95,6 +96,7 @@ test('a page that may not push gets no further', async (t) => {
   t.after(() => browser.close());
   for (const [url, token] of [[sensor, 'wrong'], [sensor, ''], [closed, 'the-right-token']]) {
     const page = await browser.newPage();
+    page.setDefaultTimeout(PATIENCE_MS);
     await page.goto(origin);
     await pushFrom(page, url.replace('http', 'ws') + 'push', token);
     await new Promise((resolve) => setTimeout(resolve, 1500));

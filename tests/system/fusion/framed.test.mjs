@@ -5,7 +5,7 @@ import { createServer } from 'node:http';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
-import { launch, openViewer } from '../../viewer/browser.mjs';
+import { PATIENCE_MS, launch, openViewer } from '../../viewer/browser.mjs';
 
 const BIN = process.env.CHORUS_BIN;
 const VIEWER = fileURLToPath(new URL('../../../services/viewer', import.meta.url));
@@ -50,6 +50,7 @@ async function framing(url) {
 async function seenInAFrame(url, selector) {
   const foreign = await framing(url);
   const page = await browser.newPage();
+  page.setDefaultTimeout(PATIENCE_MS);
   const said = [];
   page.on('console', (message) => said.push(message.text()));
   await page.goto(foreign.url, { waitUntil: 'load' }); // the frame's own load included
@@ -71,6 +72,7 @@ test('a foreign page shows none of ours in a frame', async () => {
     assert.equal(count, 0, own);
     assert.match(said, /frame-ancestors/, own);
     const direct = await browser.newPage();
+    direct.setDefaultTimeout(PATIENCE_MS);
     await direct.goto(own);
     assert.ok(await direct.locator(found).count() > 0, `${own} by itself`);
     await direct.close();

@@ -18,7 +18,7 @@ BIN = pathlib.Path(os.environ.get("CHORUS_BIN", ROOT / "build/dev/bin"))
 sys.path.insert(0, str(ROOT / "tests/support"))
 from ports import free_port  # noqa: E402
 
-PATIENCE = 40.0  # seconds; generous for loaded machines, nothing should take that long
+PATIENCE = 90.0  # seconds; generous for loaded machines, nothing should take that long
 
 
 def get(url, accept="application/json", headers=None, timeout=10.0):
