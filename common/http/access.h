@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/http/request_head.h"
+#include "common/http/role.h"
 
 namespace chorus::http {
 
@@ -20,13 +21,6 @@ struct Peer {
   /// True if the peer is one of ServerConfig::trusted_proxies: it forwards the requests of others.
   bool proxy = false;
   std::string account = {};  ///< The account under which limits count the peer (net::account_of).
-};
-
-/// What a token allows; each role includes the roles before it.
-enum class Role {
-  Read,     ///< Reading everything except pictures and recordings.
-  Images,   ///< In addition, reading pictures and recordings (Router::shows_people).
-  Control,  ///< In addition, writing methods.
 };
 
 struct Token {

@@ -9,6 +9,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include "common/base/duration.h"
 #include "common/http/conversation_context.h"
 #include "common/http/download.h"
+#include "common/http/live_reader.h"
 #include "common/http/orders.h"
 #include "common/http/request_buffer.h"
 #include "common/http/responder.h"
@@ -129,7 +131,7 @@ class Conversation {
   std::string first_lines_;
   std::string body_;
 
-  DocumentPtr streamed_;  ///< Last document sent as an event.
+  std::optional<LiveReader> reader_;  ///< Of the stream.
   std::shared_ptr<const std::string> event_;
   bool event_under_way_ = false;
   bool event_pending_ = false;

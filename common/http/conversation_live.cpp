@@ -1,5 +1,6 @@
 // Waiting for the next version: long polls, and server-sent events (WHATWG HTML 9.2), which send
 // the newest document as often as the reader can take it.
+#include <algorithm>
 #include <utility>
 
 #include "common/http/conversation.h"
@@ -62,10 +63,7 @@ void Conversation::watch() {
 void Conversation::begin_stream() {
   count(context_.counters.event_streams_open);
   orders_.small_queue = orders_.wait = true;
-  const auto current = reaction_.entry->live->current();
-  // A reader that reconnects and already has the newest version waits for the next one.
-  if (current && !head_.last_event_id.empty() && head_.last_event_id == current->options().version)
-    streamed_ = current;
+  reader_.emplace(*reaction_.entry, std::move(reaction_.wish));
   watch();
   send(std::move(reaction_.answer));
 }
@@ -80,10 +78,10 @@ void Conversation::push_event() {
     return;
   }
   const Coding coding = coding_for(head_.accept_encoding);
-  const DocumentPtr newest = reaction_.entry->live->current();
-  event_ = newest && newest != streamed_ ? newest->event(reaction_.event_type, coding) : nullptr;
-  if (newest) streamed_ = newest;
-  if (!event_ && now_ < deadline_) return;
+  const bool due = now_ >= deadline_;
+  event_ = reader_->event(reaction_.event_type, coding, now_);
+  if (const auto held = reader_->held_until()) deadline_ = std::min(deadline_, *held);
+  if (!event_ && !due) return;
   if (!event_) event_ = heartbeat(coding);
   event_under_way_ = true;
   write(*event_);
@@ -92,7 +90,7 @@ void Conversation::push_event() {
 void Conversation::on_settled() {
   event_under_way_ = false;
   expire_in(kHeartbeat);
-  if (std::exchange(event_pending_, false)) push_event();
+  if (std::exchange(event_pending_, false) || reader_->has_more()) push_event();
 }
 
 }  // namespace chorus::http

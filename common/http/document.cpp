@@ -117,7 +117,7 @@ struct Document::Impl {
     Once coded_once;
     std::shared_ptr<const std::string> coded;  ///< The event as a gzip_piece.
   };
-  std::array<Event, kEventTypes.size()> events;  ///< In the order of kEventTypes.
+  std::unique_ptr<Event[]> events;  ///< By variant.
 
   /// The lines that a 200 and a 304 share.
   [[nodiscard]] std::string shared_lines(const Rendered& out, std::string_view own) const {
@@ -194,17 +194,23 @@ struct Document::Impl {
     return &rendered[coded];
   }
 
-  void make_event(std::size_t type) {
-    const auto variant = std::find_if(variants.begin(), variants.end(), [&](const Variant& one) {
-      return one.profile.empty() && without_parameters(one.media_type) == kEventTypes[type];
-    });
-    if (variant == variants.end()) return;
-    const auto chosen = rendered_at(static_cast<std::size_t>(variant - variants.begin()));
+  /// The variant that events of this type and profile show; none: there is no such variant.
+  [[nodiscard]] std::optional<std::size_t> index_of(std::string_view media_type,
+                                                    std::string_view profile) const {
+    if (std::ranges::find(kEventTypes, media_type) == kEventTypes.end()) return std::nullopt;
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      if (variants[i].profile == profile && offers[i] == media_type) return i;
+    }
+    return std::nullopt;
+  }
+
+  void make_event(std::size_t index) {
+    const auto chosen = rendered_at(index);
     if (!chosen) return;
     std::string text = "id: " + options.version + "\n";
     const std::string_view body = (*chosen)->body();
-    kEventTypes[type] == kJson ? append_as_one_line(text, body) : append_line_by_line(text, body);
-    events[type].text = std::make_shared<const std::string>(text + "\n");
+    offers[index] == kJson ? append_as_one_line(text, body) : append_line_by_line(text, body);
+    events[index].text = std::make_shared<const std::string>(text + "\n");
   }
 };
 
@@ -215,6 +221,7 @@ Document::Document(std::vector<Variant> variants, DocumentOptions options)
   const std::size_t count = impl_->variants.size();
   impl_->rendered.resize(2 * count);
   impl_->once = std::make_unique<Once[]>(2 * count);
+  impl_->events = std::make_unique<Impl::Event[]>(count);
   for (const Variant& variant : impl_->variants)
     impl_->offers.push_back(without_parameters(variant.media_type));
 }
@@ -246,12 +253,11 @@ Result<const Rendered*> Document::choose(std::string_view accept, std::string_vi
 }
 
 std::shared_ptr<const std::string> Document::event(std::string_view media_type,
-                                                   Coding coding) const {
-  const auto* const type = std::find(kEventTypes.begin(), kEventTypes.end(), media_type);
-  if (type == kEventTypes.end()) return nullptr;
-  const auto index = static_cast<std::size_t>(type - kEventTypes.begin());
-  Impl::Event& event = impl_->events[index];
-  event.once.run([&] { impl_->make_event(index); });
+                                                   std::string_view profile, Coding coding) const {
+  const auto index = impl_->index_of(media_type, profile);
+  if (!index) return nullptr;
+  Impl::Event& event = impl_->events[*index];
+  event.once.run([&] { impl_->make_event(*index); });
   if (coding == Coding::Identity || event.text == nullptr) return event.text;
   event.coded_once.run(
       [&] { event.coded = std::make_shared<const std::string>(gzip_piece(*event.text)); });

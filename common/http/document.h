@@ -78,10 +78,11 @@ class Document {
                                                std::string_view profile = {},
                                                Coding coding = Coding::Identity) const;
 
-  /// The default representation in JSON or Turtle as one server-sent event (id = version), with
-  /// Coding::Gzip as a gzip_piece; null when the document has no variant of that type or cannot
-  /// render it.  Each event is made at most once.
+  /// The representation of a profile in JSON or Turtle as one server-sent event (id = version),
+  /// with Coding::Gzip as a gzip_piece; null when the document has no variant of that type or
+  /// cannot render it.  Each event is made at most once.
   [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type,
+                                                         std::string_view profile = {},
                                                          Coding coding = Coding::Identity) const;
 
   /// The media types of a profile, best first, without parameters.

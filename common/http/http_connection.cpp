@@ -120,8 +120,9 @@ void HttpConnection::settle() {
 /// Hands the socket, and the bytes read from it, to a connection that speaks WebSocket.
 void HttpConnection::upgrade() {
   const Reaction& chosen = conversation_.reaction();
-  WebSocketOpening opening{std::move(stream_), conversation_.handshake(), peer_address(),
-                           chosen.entry,       chosen.dialogue,           chosen.protocol};
+  WebSocketOpening opening{
+      std::move(stream_), conversation_.handshake(), peer_address(), chosen.entry,
+      chosen.wish,        chosen.dialogue,           chosen.protocol};
   open_websocket(core_, std::move(opening), this);
 }
 

@@ -51,12 +51,26 @@ std::string_view coded_stream_begin() {
   return begin;
 }
 
+/// Which form of a document is asked for: ?form=NAME or ?profile=NAME; they mean the same.
 Result<std::string> profile_of(const RequestHead& head) {
   if (head.query.empty()) return std::string();
   auto query = decode_query(head.query);
   if (!query) return pass(query);
-  const auto profile = query->find("profile");
-  return profile == query->end() ? std::string() : profile->second;
+  const auto form = query->contains("form") ? query->find("form") : query->find("profile");
+  return form == query->end() ? std::string() : form->second;
+}
+
+/// What the reader of a stream asks for; NotFound if the document has no such form in JSON or
+/// Turtle, in which streams send it.
+Result<LiveWish> wish_of(const RequestHead& head, const Document& document) {
+  auto wish = live_wish_of(head);
+  if (!wish || wish->form.empty()) return wish;
+  const auto types = document.media_types(wish->form);
+  if (std::ranges::find(types, "application/json") != types.end() ||
+      std::ranges::find(types, "text/turtle") != types.end())
+    return wish;
+  return fail(ErrorCode::NotFound, "form",
+              "this resource has no form \"" + wish->form + "\" that can be streamed");
 }
 
 /// True for a request like GET /frame?at=TIME, if the route has a getter for that key.
@@ -262,9 +276,12 @@ Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entr
     reaction.wait = std::min(*wait, limits_.max_wait);
     return reaction;
   }
+  auto wish = wish_of(head, *document);
+  if (!wish) return Reaction::of(fault(wish.error(), head, route_lines(entry)));
   Reaction reaction;
   reaction.kind = is_head(head) ? Reaction::Kind::Answer : Reaction::Kind::Stream;
   reaction.entry = &entry;
+  reaction.wish = std::move(*wish);
   reaction.event_type = event_type_of(head.accept);
   reaction.answer.route = route_lines(entry);
   const bool coded = coding_for(head.accept_encoding) == Coding::Gzip;
@@ -282,9 +299,13 @@ Reaction Responder::upgrade(const RequestHead& head, const Router::Entry& entry)
                "pages of this origin may not open a WebSocket here; see http.allowed_origin"},
               head, route_lines(entry)));
   }
+  const DocumentPtr document = entry.live ? entry.live->current() : nullptr;
+  auto wish = document ? wish_of(head, *document) : live_wish_of(head);
+  if (!wish) return Reaction::of(fault(wish.error(), head, route_lines(entry)));
   Reaction reaction;
   reaction.kind = Reaction::Kind::Upgrade;
   reaction.entry = &entry;
+  reaction.wish = std::move(*wish);
   return reaction;
 }
 

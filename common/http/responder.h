@@ -13,6 +13,7 @@
 #include "common/base/rate_report.h"
 #include "common/http/access.h"
 #include "common/http/answer.h"
+#include "common/http/live_reader.h"
 #include "common/http/request_head.h"
 #include "common/http/route_table.h"
 #include "common/http/server.h"
@@ -36,6 +37,7 @@ struct Reaction {
   PathParams params = {};
   std::chrono::seconds wait{0};
   std::string_view event_type = {};  ///< For Stream: the media type of the events' data.
+  LiveWish wish = {};                ///< For Stream, and for Upgrade without a dialogue.
   std::shared_ptr<Dialogue> dialogue = {};
   std::string protocol = {};  ///< For Upgrade: the chosen subprotocol; empty if there is none.
 

@@ -105,7 +105,7 @@ Reaction Responder::converse(const RequestHead& head, const Router::Entry& entry
   const std::string_view route = route_lines(entry);
   if (!may_open(head, allowed_origin_)) return upgrade(head, entry);
   const Asking asking(head, entry);
-  if (auto refused = turn_down(asking.head, peer, Role::Control, route))
+  if (auto refused = turn_down(asking.head, peer, entry.dialogue->role, route))
     return Reaction::of(std::move(*refused));
   auto begun =
       guarded<std::unique_ptr<Dialogue>>(head, [&] { return entry.dialogue->open(peer.account); });

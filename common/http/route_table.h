@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/http/logged_events.h"
 #include "common/http/router.h"
 #include "common/http/static_files.h"
 
@@ -21,6 +22,7 @@ struct Router::Entry {
 
   Getter getter;
   std::shared_ptr<LiveDocument> live;
+  std::shared_ptr<const LoggedEvents> log;  ///< With `live`: what its streams send.
   /// With `live`: requests whose query has this key are answered by `by_query`.
   std::string query_key;
   Getter by_query;  ///< Answers the requests whose query has `query_key`.

@@ -108,6 +108,12 @@ void Router::live(std::string pattern, std::shared_ptr<LiveDocument> document) {
   entry.live = std::move(document);
 }
 
+void Router::logged(const std::string& pattern, std::shared_ptr<const LoggedEvents> log) {
+  Entry& entry = entry_of(pattern);
+  assert(entry.live && log);
+  entry.log = std::move(log);
+}
+
 void Router::by_query(const std::string& pattern, std::string key, Getter getter) {
   Entry& entry = entry_of(pattern);
   assert(entry.live && !entry.by_query && !key.empty());

@@ -13,6 +13,7 @@
 #include "common/http/dialogue.h"
 #include "common/http/document.h"
 #include "common/http/live_document.h"
+#include "common/http/logged_events.h"
 #include "common/http/static_files.h"
 
 namespace chorus::http {
@@ -64,12 +65,15 @@ class Router {
   void get(std::string pattern, Getter getter);
   /// GET/HEAD of a live document, with long polling by Prefer: wait and with event streams.
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
+  /// Streams of a path that was given to live() send these messages instead of the document; it is
+  /// to be published after each message.
+  void logged(const std::string& pattern, std::shared_ptr<const LoggedEvents> log);
   /// On a path that was given to live(): GET/HEAD with ?key=... are answered by this getter
   /// instead.
   void by_query(const std::string& pattern, std::string key, Getter getter);
   /// A writing method; refuse_access() in access.h says which requests may use it.
   void action(Method method, std::string pattern, Action action);
-  /// WebSockets whose clients send messages too.  Opening one counts as writing: Role::Control.
+  /// WebSockets whose clients send messages too.  Opening one needs DialogueRoute::role.
   void dialogue(const std::string& pattern, DialogueRoute route);
   /// GET/HEAD of the files in `folder` and below, never outside it; media types by extension.  The
   /// prefix ends in '/'.

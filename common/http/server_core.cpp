@@ -65,8 +65,9 @@ void ServerCore::sweep() {
 
 void ServerCore::subscribe() {
   for (const auto& entry : responder.router().entries()) {
-    if (!entry->live) continue;
-    entry->live->subscribe([core = weak_from_this(), index = entry->index] {
+    const auto live = entry->dialogue ? entry->dialogue->wake : entry->live;
+    if (!live) continue;
+    live->subscribe([core = weak_from_this(), index = entry->index] {
       if (const auto alive = core.lock()) alive->post_wake(index);
     });
   }
@@ -79,6 +80,7 @@ void ServerCore::post_wake(std::size_t entry) {
 
 void ServerCore::wake(std::size_t entry) {
   wake_posted[entry].store(false);
+  now = std::chrono::steady_clock::now();
   std::vector<std::shared_ptr<Connection>> woken;
   woken.swap(waiting[entry]);
   for (const auto& connection : woken) connection->wake();

@@ -59,7 +59,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   std::optional<net::AddressAllowance> allowance;  ///< Of requests, for each address.
   RateReport failed_handshakes{"TLS handshake failed"};
 
-  SteadyTime now;  ///< The time of the last sweep.
+  SteadyTime now;  ///< The time of the last sweep or wake.
   bool stopping = false;
   SteadyTime stop_deadline{};
   std::unordered_map<const Connection*, std::shared_ptr<Connection>> connections;

@@ -13,7 +13,6 @@ constexpr std::size_t kMaxSaid = 4096;  ///< Limit of one message from a client.
 /// When a WebSocket has been closed or is broken, Beast waits for the client to hang up.  At this
 /// interval we check whether the WebSocket is still open, and hang up ourselves if it is not.
 constexpr std::chrono::milliseconds kOverCheck{250};
-constexpr std::string_view kMediaType = "application/json";
 
 class WebSocketConnection final : public Connection {
  public:
@@ -21,7 +20,8 @@ class WebSocketConnection final : public Connection {
       : Connection(std::move(opening.peer_address)),
         core_(core),
         stream_(std::move(opening.stream), {core.config.limits, kMaxSaid}),
-        entry_(opening.entry) {}
+        entry_(opening.entry),
+        reader_(*opening.entry, std::move(opening.wish)) {}
 
   void open(std::string received);
   void wake() override;
@@ -45,7 +45,8 @@ class WebSocketConnection final : public Connection {
   WebSocketStream stream_;
   const Router::Entry* entry_;
   State state_ = State::Opening;
-  DocumentPtr shown_;  ///< The last version sent, or being sent.
+  LiveReader reader_;
+  std::shared_ptr<const std::string_view> message_;  ///< Being sent.
   bool writing_ = false;
   std::size_t sent_ = 0;  ///< Size of the message with `shown_` [bytes].
   bool pending_ = false;
@@ -78,6 +79,7 @@ void WebSocketConnection::listen() {
 void WebSocketConnection::expire() {
   if (state_ != State::Open || writing_ || !stream_.is_open()) return close();
   look_again();
+  if (reader_.held_until()) push();  // what the rate held back, if nothing newer has come
 }
 
 void WebSocketConnection::wake() {
@@ -93,16 +95,12 @@ void WebSocketConnection::push() {
     return;
   }
   pending_ = false;
-  DocumentPtr next = entry_->live->current();
-  if (next == nullptr || next == shown_) return;
-  const auto chosen = next->choose(kMediaType);
-  if (!chosen) return;  // This version cannot be had in JSON: nothing is sent.
-  shown_ = std::move(next);
+  message_ = reader_.message(core_.now);
+  if (!message_) return;
   writing_ = true;
   deadline_ = core_.now + core_.config.limits.write_timeout;
-  const std::string_view body = (*chosen)->body();
-  sent_ = body.size();
-  stream_.write(body, [me = self()](net::error_code failed) { me->on_pushed(failed); });
+  sent_ = message_->size();
+  stream_.write(*message_, [me = self()](net::error_code failed) { me->on_pushed(failed); });
 }
 
 void WebSocketConnection::on_pushed(net::error_code failed) {
@@ -122,7 +120,7 @@ void WebSocketConnection::on_pushed(net::error_code failed) {
 void WebSocketConnection::pushed() {
   writing_ = false;
   look_again();
-  if (pending_) push();
+  if (pending_ || reader_.has_more()) push();
 }
 
 void WebSocketConnection::stop() {

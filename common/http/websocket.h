@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/http/connection.h"
+#include "common/http/live_reader.h"
 #include "common/http/router.h"
 #include "common/net/stream.h"
 
@@ -21,6 +22,7 @@ struct WebSocketOpening {
   std::string received;  ///< The request, as handshake_of() gives it.
   std::string peer_address;
   const Router::Entry* entry = nullptr;
+  LiveWish wish = {};
   std::shared_ptr<Dialogue> dialogue = {};  ///< Null for a client that only reads a live document.
   std::string protocol = {};                ///< Has the meaning of Reaction::protocol.
 };

@@ -1,5 +1,6 @@
 #include <deque>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include "common/http/server_core.h"
 #include "common/http/websocket.h"
 #include "common/http/websocket_stream.h"
+#include "common/net/small_queue.h"
 
 namespace chorus::http {
 namespace {
@@ -27,10 +29,11 @@ class DialogueConnection final : public Connection {
                 {core.config.limits, opening.entry->dialogue->max_message_bytes,
                  std::move(opening.protocol)}),
         dialogue_(std::move(opening.dialogue)),
+        entry_(*opening.entry),
         most_(opening.entry->dialogue->max_message_bytes) {}
 
   void open(std::string received);
-  void wake() override {}
+  void wake() override;
   void expire() override;
   void stop() override { say_goodbye(Goodbye::GoingAway); }
   void close() override;
@@ -43,7 +46,9 @@ class DialogueConnection final : public Connection {
   void end(const Error& why, Goodbye code);
   template <class Speaking>
   void react(const Speaking& speaking);
+  void keep(std::vector<std::string>& messages, bool binary);
   void send_next();
+  void on_sent();
   void say_goodbye(Goodbye code);
   [[nodiscard]] std::shared_ptr<DialogueConnection> self() {
     return std::static_pointer_cast<DialogueConnection>(shared_from_this());
@@ -52,9 +57,15 @@ class DialogueConnection final : public Connection {
   ServerCore& core_;
   WebSocketStream stream_;
   std::shared_ptr<Dialogue> dialogue_;
+  const Router::Entry& entry_;
   std::size_t most_;  ///< Bytes of a message.
   State state_ = State::Opening;
-  std::deque<std::string> unsent_;  ///< The first is being sent.
+  struct Unsent {
+    std::string bytes;
+    bool binary = false;
+  };
+  std::deque<Unsent> unsent_;  ///< The first is being sent.
+  bool woken_ = false;         ///< Woken while something was being sent.
   std::size_t unsent_bytes_ = 0;
   bool over_ = false;  ///< The dialogue ends when everything in unsent_ has been sent,
   Goodbye ending_ = Goodbye::Policy;  ///< for this reason.
@@ -71,6 +82,10 @@ void DialogueConnection::open(std::string received) {
     me->state_ = State::Open;
     me->deadline_ = me->core_.now + kLook;
     count(me->core_.counters.websockets_open);
+    if (me->entry_.dialogue->wake) {
+      net::keep_queue_small(me->stream_.socket());
+      me->core_.wait_for(me->entry_.index, me);
+    }
     me->listen();
   });
 }
@@ -115,35 +130,65 @@ void DialogueConnection::react(const Speaking& speaking) {
   }
   over_ = over_ || reply.over;
   const bool idle = unsent_.empty();
-  for (std::string& message : reply.messages) {
-    unsent_bytes_ += message.size();
-    unsent_.push_back(std::move(message));
-  }
-  if (unsent_bytes_ > kMaxUnread) return close();
+  keep(reply.messages, false);
+  keep(reply.binary, true);
+  if (unsent_bytes_ > entry_.dialogue->max_unread) return close();
   if (idle) send_next();
+}
+
+void DialogueConnection::keep(std::vector<std::string>& messages, bool binary) {
+  for (std::string& message : messages) {
+    unsent_bytes_ += message.size();
+    unsent_.push_back({std::move(message), binary});
+  }
+}
+
+/// What is new is asked for only when the client has taken all before it: it may miss something,
+/// but what it gets is new.
+void DialogueConnection::wake() {
+  if (state_ != State::Open) return;
+  core_.wait_for(entry_.index, shared_from_this());
+  woken_ = !unsent_.empty();
+  if (!woken_ && !over_) react([this] { return dialogue_->look(); });
 }
 
 void DialogueConnection::send_next() {
   if (unsent_.empty()) {
-    if (over_) say_goodbye(ending_);
+    if (over_) return say_goodbye(ending_);
+    if (std::exchange(woken_, false)) react([this] { return dialogue_->look(); });
     return;
   }
   sending_until_ = core_.now + core_.config.limits.write_timeout;
-  stream_.write(unsent_.front(), [me = self()](net::error_code failed) {
+  const Unsent& next = unsent_.front();
+  stream_.write(
+      next.bytes,
+      [me = self()](net::error_code failed) {
+        if (me->state_ != State::Open) return;
+        failed ? me->close() : me->on_sent();
+      },
+      next.binary);
+}
+
+/// With wake(), the kernel's queue must be small, too, before something new is asked for.
+void DialogueConnection::on_sent() {
+  const auto go_on = [me = self()](net::error_code broken) {
     if (me->state_ != State::Open) return;
-    if (failed) return me->close();
-    count(me->core_.counters.bytes_sent, me->unsent_.front().size());
-    me->unsent_bytes_ -= me->unsent_.front().size();
+    if (broken) return me->close();
+    count(me->core_.counters.bytes_sent, me->unsent_.front().bytes.size());
+    me->unsent_bytes_ -= me->unsent_.front().bytes.size();
     me->unsent_.pop_front();
     me->send_next();
-  });
+  };
+  if (!entry_.dialogue->wake || net::is_queue_small(stream_.socket())) return go_on({});
+  stream_.socket().async_wait(net::Socket::wait_write, go_on);
 }
 
 void DialogueConnection::expire() {
   const bool stuck = !unsent_.empty() && core_.now > sending_until_;
   if (state_ != State::Open || stuck || !stream_.is_open()) return close();
   deadline_ = core_.now + kLook;
-  if (!over_) react([this] { return dialogue_->look(); });
+  const bool busy = entry_.dialogue->wake && !unsent_.empty();
+  if (!over_ && !busy) react([this] { return dialogue_->look(); });
 }
 
 /// Ends the dialogue with a close frame, and cuts the client off if it does not answer in time.  If
@@ -152,6 +197,7 @@ void DialogueConnection::say_goodbye(Goodbye code) {
   if (state_ != State::Open || !unsent_.empty() || !stream_.say_goodbye(code)) return close();
   state_ = State::Closing;
   uncount(core_.counters.websockets_open);
+  core_.stop_waiting(entry_.index, this);
   dialogue_.reset();
   deadline_ = core_.now + kGoodbye;
 }
@@ -161,6 +207,7 @@ void DialogueConnection::close() {
   const State before = std::exchange(state_, State::Closed);
   const auto keep = shared_from_this();  // forget() may drop the last reference.
   if (before == State::Open) uncount(core_.counters.websockets_open);
+  core_.stop_waiting(entry_.index, this);
   dialogue_.reset();
   stream_.close();
   core_.forget(this);

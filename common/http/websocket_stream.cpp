@@ -103,10 +103,11 @@ std::string_view WebSocketStream::message() const {
 
 bool WebSocketStream::is_text() const { return beast_->stream.got_text(); }
 
-void WebSocketStream::write(std::string_view text, Done done) {
+void WebSocketStream::write(std::string_view bytes, Done done, bool binary) {
   beast_->writing = true;
+  beast_->stream.binary(binary);
   beast_->stream.async_write(
-      asio::buffer(text.data(), text.size()),
+      asio::buffer(bytes.data(), bytes.size()),
       [writing = &beast_->writing, done = std::move(done)](net::error_code failed, std::size_t) {
         *writing = false;  // `done` keeps the stream alive
         done(failed);

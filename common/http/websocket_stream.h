@@ -53,8 +53,8 @@ class WebSocketStream {
   [[nodiscard]] std::string_view message() const;
   [[nodiscard]] bool is_text() const;
 
-  /// Sends one text message; `text` must stay valid until `done`.
-  void write(std::string_view text, Done done);
+  /// Sends one message; `bytes` must stay valid until `done`.
+  void write(std::string_view bytes, Done done, bool binary = false);
   /// Sends a close frame; nothing may be written after it.  Does nothing and returns false while a
   /// write is under way or when the frame does not fit: then close the socket.
   [[nodiscard]] bool say_goodbye(Goodbye code);

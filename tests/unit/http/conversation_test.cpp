@@ -231,6 +231,32 @@ TEST_F(ConversationTest, AStreamCarriesEveryVersionAndSkipsForASlowReader) {
   EXPECT_EQ(heard(), "id: 3\ndata: 3\n\nid: 5\ndata: 5\n\n");
 }
 
+TEST_F(ConversationTest, AStreamOfASlowRateSendsTheNewestWhenItIsTime) {
+  begin();
+  say("GET /frame?max_rate=1 HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n");
+  EXPECT_THAT(heard(), HasSubstr("id: 1\ndata: 1\n\n"));
+  for (const int version : {2, 3}) {
+    publish(version);
+    wake();
+  }
+  EXPECT_EQ(heard(), "");
+  pass(1s);
+  EXPECT_EQ(heard(), "id: 3\ndata: 3\n\n");
+  pass(14s);
+  EXPECT_EQ(heard(), "") << "the heartbeat counts from there";
+  pass(1s);
+  EXPECT_EQ(heard(), ":\n\n");
+}
+
+TEST_F(ConversationTest, AStreamOfAnUnknownFormOrRateIsRefused) {
+  begin();
+  for (const char* query : {"max_rate=0", "form=prose"}) {
+    say(std::string("GET /frame?") + query +
+        " HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n");
+    EXPECT_THAT(heard(), HasSubstr("HTTP/1.1 4")) << query;
+  }
+}
+
 TEST_F(ConversationTest, AStreamThatHasNothingToSayShowsThatItIsThere) {
   begin();
   say(kStream);
