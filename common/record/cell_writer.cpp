@@ -18,21 +18,6 @@ struct SchemaRow {
   std::string_view text;
 };
 
-std::string_view schema_text(std::string_view name) {
-  const std::array kSchemas{SchemaRow{kFrameSchemaName, proto::frame_schema()},
-                            SchemaRow{kFloorSchemaName, kFloorSchema},
-                            SchemaRow{kClockSchemaName, kClockSchema},
-                            SchemaRow{kRegistrationSchemaName, kRegistrationSchema},
-                            SchemaRow{kOrientationsSchemaName, kOrientationsSchema},
-                            SchemaRow{kCalibrationSchemaName, kCalibrationSchema},
-                            SchemaRow{kSceneSchemaName, scene_schema()},
-                            SchemaRow{kTransformsSchemaName, transforms_schema()}};
-  for (const SchemaRow& row : kSchemas) {
-    if (row.name == name) return row.text;
-  }
-  return {};
-}
-
 /// Compares the applied shift, and whether the clock offset is known; its estimate and uncertainty
 /// change all the time.
 bool same(const ClockModel& a, const ClockModel& b) {
@@ -50,6 +35,21 @@ std::string clock_json(const SensorId& sensor, const ClockModel& clock) {
 }
 
 }  // namespace
+
+std::string_view schema_text(std::string_view name) {
+  const std::array kSchemas{SchemaRow{kFrameSchemaName, proto::frame_schema()},
+                            SchemaRow{kFloorSchemaName, kFloorSchema},
+                            SchemaRow{kClockSchemaName, kClockSchema},
+                            SchemaRow{kRegistrationSchemaName, kRegistrationSchema},
+                            SchemaRow{kOrientationsSchemaName, kOrientationsSchema},
+                            SchemaRow{kCalibrationSchemaName, kCalibrationSchema},
+                            SchemaRow{kSceneSchemaName, scene_schema()},
+                            SchemaRow{kTransformsSchemaName, transforms_schema()}};
+  for (const SchemaRow& row : kSchemas) {
+    if (row.name == name) return row.text;
+  }
+  return {};
+}
 
 Result<CellWriter> CellWriter::create(const std::filesystem::path& path, const CellHead& head) {
   auto writer = RecordingWriter::create(path);

@@ -120,4 +120,7 @@ inline constexpr std::string_view kRegistrationSchema = R"({
   }
 })";
 
+/// The text of the schema of this name, of those above and in skeleton_scene.h; empty: none has it.
+[[nodiscard]] std::string_view schema_text(std::string_view name);
+
 }  // namespace chorus::record

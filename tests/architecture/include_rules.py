@@ -22,10 +22,10 @@ ROWS = [
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],
     ["fusion-server/registration"],
     ["fusion-server/pipeline", "fusion-server/learn"],
-    ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "services/sensor", "services/ergonomics",
-     "services/evaluation"],
+    ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "fusion-server/journal", "services/sensor",
+     "services/ergonomics", "services/evaluation"],
     ["fusion-server/vrpn", "fusion-server/dtrack", "fusion-server/natnet", "fusion-server/trackd",
-     "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest"],
+     "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest", "fusion-server/foxglove"],
     ["fusion-server/outputs"],
     ["fusion-server/server"],
     ["services/ctl"],
@@ -38,7 +38,7 @@ VALUE_HEADERS = {"fusion-server/sink.h"}
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
-NO_SOCKET = {"fusion-server/core", "fusion-server/learn", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
+NO_SOCKET = {"fusion-server/core", "fusion-server/journal", "fusion-server/learn", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
 # These rooms implement protocols other than HTTP: they may use sockets, but no HTTP.
 NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
 
