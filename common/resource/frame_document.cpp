@@ -13,6 +13,7 @@ namespace chorus::resource {
 namespace {
 
 constexpr std::string_view kArvida = "arvida";
+constexpr std::string_view kPose = "pose";
 constexpr std::string_view kKept = "frames/";
 
 }  // namespace
@@ -34,6 +35,8 @@ http::DocumentPtr frame_document(FramePtr frame, const Place& place,
                         [frame, place, format] { return write_arvida(*frame, place, format); },
                         std::string(kArvida)});
   }
+  variants.push_back({std::string(media_type(Format::Json)), [frame] { return write_pose(*frame); },
+                      std::string(kPose)});
   return std::make_shared<const http::Document>(linked(std::move(variants), Kind::Source),
                                                 std::move(options));
 }

@@ -12,7 +12,8 @@ namespace chorus::resource {
 using FramePtr = std::shared_ptr<const FrameResource>;
 
 /// The document of `/frame` (place "frame"), of one of `/frames/{seq}` (place "frames/42") or of a
-/// relayed frame, in Turtle, JSON-LD, JSON and N-Triples; profile "arvida" in Turtle and N-Triples.
+/// relayed frame, in Turtle, JSON-LD, JSON and N-Triples; profile "arvida" in Turtle and N-Triples;
+/// form "pose" in JSON.
 [[nodiscard]] http::DocumentPtr frame_document(FramePtr frame, const Place& place,
                                                http::DocumentOptions options);
 

@@ -85,6 +85,10 @@ inline constexpr double kLongestCarry = 3600.0;
 [[nodiscard]] std::string write_arvida(const FrameResource& frame, const Place& place = {},
                                        Format format = Format::Turtle);
 
+/// Writes the lean form in JSON (?form=pose): of each body id, slot, certainty of sides and how
+/// long it has been out of sight; of each joint its place, to the millimetre, and its state.
+[[nodiscard]] std::string write_pose(const FrameResource& frame);
+
 /// Writes one body of the frame, `/skeletons/{id}`: its joints, with the frame's source, space and
 /// sequence.
 [[nodiscard]] std::string write_skeleton(const FrameResource& frame, const BodyResource& body,

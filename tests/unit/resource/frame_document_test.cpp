@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "common/body/bones.h"
 #include "common/rdf/turtle_reader.h"
 #include "tests/support/graph/isomorphism.h"
 #include "tests/unit/resource/frames.h"
@@ -38,6 +40,49 @@ TEST(FrameDocument, OffersEveryFormatAndTheArvidaProfile) {
   EXPECT_FALSE(body_of(document, "application/n-triples", "arvida").empty());
   EXPECT_FALSE(document->choose("application/json", "arvida"));
   EXPECT_FALSE(document->choose("", "unknown"));
+}
+
+TEST(FrameDocument, TheLeanFormHasPlaceAndStateOfEveryJointUnderTheSameKeys) {
+  const auto frame = std::make_shared<const FrameResource>(random_frame(3, {4, true}));
+  const auto document = frame_document(frame, {"frame"}, latest_options(*frame));
+  const auto full = nlohmann::json::parse(body_of(document, "application/json"));
+  const auto lean = nlohmann::json::parse(body_of(document, "application/json", "pose"));
+  for (const char* key : {"sequence", "captured", "capturedNanoseconds", "source", "space"})
+    EXPECT_EQ(lean.at(key), full.at(key)) << key;
+  ASSERT_EQ(lean.at("bodies").size(), full.at("bodies").size());
+  for (std::size_t i = 0; i < lean.at("bodies").size(); ++i) {
+    const auto& a = lean.at("bodies")[i];
+    const auto& b = full.at("bodies")[i];
+    EXPECT_EQ(a.at("bodyId"), b.at("bodyId"));
+    EXPECT_EQ(a.value("slot", -1), b.value("slot", -1));
+    ASSERT_EQ(a.at("joints").size(), kJointCount);
+    for (const auto& [name, joint] : b.at("joints").items()) {
+      const auto& own = a.at("joints").at(name);
+      EXPECT_EQ(own.at("state"), joint.at("state"));
+      EXPECT_EQ(own.contains("x"), joint.contains("x"));
+      if (joint.contains("x")) EXPECT_NEAR(own.at("y"), joint.at("y"), 0.00056) << name;
+      EXPECT_LE(own.size(), 4u) << "nothing else";
+    }
+  }
+  EXPECT_FALSE(document->choose("text/turtle", "pose")) << "in JSON only";
+  EXPECT_NE(document->event("application/json", "pose"), nullptr);
+}
+
+TEST(FrameDocument, TheLeanFormOfNobodyAndOfRays) {
+  FrameResource frame;
+  EXPECT_EQ(nlohmann::json::parse(write_pose(frame)).at("bodies").size(), 0u);
+  frame.bodies.resize(2);
+  frame.bodies[1].id = ~std::uint64_t{0};
+  Joint& head = frame.bodies[1].joints[index_of(JointId::Head)];
+  head.state = JointState::Tracked;
+  head.measurement = Measurement::Ray;
+  head.position = {0.0, 0.0, 1.0};
+  frame.bodies[1].joints[0].state = JointState::Tracked;
+  frame.bodies[1].joints[0].position.x() = std::numeric_limits<double>::quiet_NaN();
+  const auto lean = nlohmann::json::parse(write_pose(frame));
+  EXPECT_EQ(lean.at("bodies")[1].at("bodyId"), "18446744073709551615");
+  EXPECT_EQ(lean.at("bodies")[1].at("joints").at("Head").at("rayZ"), 1.0);
+  EXPECT_EQ(lean.at("bodies")[1].at("joints").at("SpineBase").at("state"), "NotTracked");
 }
 
 TEST(FrameDocument, TheLatestFrameNamesItsImmutableTwin) {
