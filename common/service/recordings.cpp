@@ -138,8 +138,16 @@ void Recordings::settle() {
   frames_ended_ += report.frames;
   dropped_ended_ += report.dropped;
   if (report.state == RecordingState::Failed) ++failed_;
-  ended_[report.name] = std::move(report);
+  last_ = report.name;
+  ended_[last_] = std::move(report);
   running_ = {};
+}
+
+std::optional<RecordingReport> Recordings::newest() const {
+  const std::scoped_lock lock(mutex_);
+  if (running_.recorder) return running_.recorder->report();
+  const auto last = ended_.find(last_);
+  return last == ended_.end() ? std::nullopt : std::optional(last->second);
 }
 
 record::RecorderOptions Recordings::options_for(const RecordingRequest& request) const {

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -52,6 +53,9 @@ class Recordings {
   /// The recorder that gets this stream's items; null while the stream is not being recorded.
   [[nodiscard]] std::shared_ptr<record::Recorder> recorder(Stream stream) const;
 
+  /// The newest recording of this run, whether it runs or has ended; none: nothing was recorded.
+  [[nodiscard]] std::optional<record::RecordingReport> newest() const;
+
   [[nodiscard]] Result<record::RecordingReport> start(const RecordingRequest& request);
   /// Ends a recording without waiting (state `stopping`); does nothing if it has already ended.
   /// NotFound when none has this name.
@@ -87,6 +91,7 @@ class Recordings {
   std::mutex starting_;  ///< Lets one start run at a time; threads that offer frames never take it.
   mutable std::mutex mutex_;  ///< Guards the members below; never held during disk access.
   Running running_;
+  std::string last_;  ///< Name of the newest one that has ended.
   std::map<std::string, record::RecordingReport> ended_;
   std::uint64_t frames_ended_ = 0;  ///< Frames of this process's ended recordings.
   std::uint64_t dropped_ended_ = 0;

@@ -136,6 +136,12 @@ void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config) 
   });
 }
 
+void forget(PersonId person, Tracks& tracks) {
+  const auto is_this = [&](const auto& each) { return each.id == person; };
+  std::erase_if(tracks.people, is_this);
+  std::erase_if(tracks.missing, is_this);
+}
+
 void recognise(std::vector<Candidate>& candidates, Tracks& tracks,
                const AssociationConfig& config) {
   for (Candidate& each : candidates) {

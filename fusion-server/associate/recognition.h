@@ -19,6 +19,9 @@ void miss(const Track& track, Tracks& tracks);
 /// Forgets people who have been missing for too long.
 void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config);
 
+/// Forgets one person, whether they are here or missing; their id is never given again.
+void forget(PersonId person, Tracks& tracks);
+
 /// Decides everything that can be decided now.  A candidate who turns out to be a missing person
 /// takes over that person's id; a track that had the id until then is removed.
 void recognise(std::vector<Candidate>& candidates, Tracks& tracks, const AssociationConfig& config);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "fusion-server/associate/recognition.h"
 #include "fusion-server/core/world.h"
 
 namespace chorus::core {
@@ -264,6 +265,14 @@ void FusionCore::take_over(Registration before) {
   smoother_ = {};
   note_places(before);
   if (!before.sensors.empty()) before_ = std::move(before);
+}
+
+void FusionCore::forget(PersonId person) {
+  associate::forget(person, memory_.tracks);
+  memory_.sides.people.erase(person);
+  memory_.seating.leave(person);
+  hindsight_.forget();  // earlier answers are not given again with this person
+  smoother_ = {};
 }
 
 /// Forgets what is remembered about people, because it is in coordinates of the old world.

@@ -57,6 +57,9 @@ class FusionCore {
   }
   /// Cancels the session and forgets the registration.
   void forget();
+  /// Forgets a person: the id, the build by which they would be recognised, the slot.  If they are
+  /// in view, they are somebody new.
+  void forget(PersonId person);
   /// As Registrar::move_origin.
   [[nodiscard]] Result<void> move_origin(const Origin& origin);
   /// As Registrar::undo.

@@ -13,6 +13,12 @@ void Seating::seat(std::vector<FusedBody>& bodies, Timestamp instant, Duration k
   for (FusedBody& body : bodies) body.slot = slot_of(body.id, instant);
 }
 
+void Seating::leave(PersonId person) {
+  for (auto& seat : seats_) {
+    if (seat && seat->person == person) seat.reset();
+  }
+}
+
 void Seating::release_absent(const std::vector<FusedBody>& here, Timestamp instant, Duration keep) {
   for (auto& seat : seats_) {
     if (!seat) continue;

@@ -33,6 +33,9 @@ class Seating {
   void seat(std::vector<FusedBody>& bodies, Timestamp instant, Duration keep,
             const SeatingConfig& config = {});
 
+  /// Frees the slot of a person who does not come back under this id.
+  void leave(PersonId person);
+
  private:
   struct Seat {
     PersonId person;

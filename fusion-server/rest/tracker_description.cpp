@@ -29,6 +29,8 @@ service::Self self_of(const std::string& title, bool with_viewer) {
                          {"floor-plane", "floorPlane", "where the floor is"},
                          {"sensors/", "sensorList", "state, age and clock of every sensor"},
                          {"registration", "registration", "where the sensors stand"},
+                         {"people/", "personList", "who is there, and what they are called"},
+                         {"events", "eventList", "what happened in the last day"},
                          {"outputs/", "", "which other protocols are served, and to how many"}});
   return self;
 }

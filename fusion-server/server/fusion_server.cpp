@@ -15,6 +15,7 @@
 #include "common/resource/link_lines.h"
 #include "common/service/common_resources.h"
 #include "common/service/http_config.h"
+#include "fusion-server/foxglove/viewer_dialogue.h"
 #include "fusion-server/outputs/output_bank.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/inertial_resources.h"
@@ -24,7 +25,9 @@
 #include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/rest/tracker_description.h"
 #include "fusion-server/server/fusion_concerns.h"
+#include "fusion-server/server/health.h"
 #include "fusion-server/server/initial_registration.h"
+#include "fusion-server/server/lookout.h"
 #include "fusion-server/server/pipeline_loop.h"
 #include "fusion-server/server/recording_tap.h"
 #include "fusion-server/server/state_folder.h"
@@ -58,27 +61,6 @@ std::uint64_t first_person(const RegistrationStore& store) {
   if (next) return *next;
   log::error("ids of people begin anew", {{"reason", to_string(next.error())}});
   return 1;
-}
-
-service::Health health_of(const Status& status) {
-  std::size_t live = 0;
-  for (const SensorStatus& sensor : status.sensors) live += sensor.state == "live" ? 1 : 0;
-  if (live == 0) return {false, "none of the sensors delivers frames; see /sensors/"};
-  if (status.progress.unpolled.size() == status.registration.sensors.size()) {
-    return {false, "the sensors are not registered yet; walk through the room, see /registration"};
-  }
-  const StorageStatus& storage = status.progress.storage;
-  if (!storage.trouble.empty()) return {true, "the registration is not stored: " + storage.trouble};
-  return {true, storage.damage};
-}
-
-/// Adds the outputs that could not be opened by a reload.
-service::Health with_outputs(service::Health health, const std::vector<OutputStatus>& states) {
-  for (const OutputStatus& one : states) {
-    if (one.error.empty() || !health.ready) continue;
-    health.reason += (health.reason.empty() ? "" : "; ") + one.name + " is not open: " + one.error;
-  }
-  return health;
 }
 
 /// Logs for each unusable folder what is wrong with it; the server runs without that folder.
@@ -128,13 +110,6 @@ void report_start(const FusionSettings& settings, std::uint16_t port) {
   }
 }
 
-using RawArrival = client::Arrived<resource::FrameResource>;
-
-record::RawFrame raw_frame(const RawArrival& arrived, const SensorFrame& placed) {
-  return {placed.sensor, arrived.document, placed.received, placed.floor,
-          clock_model(arrived.clock)};
-}
-
 }  // namespace
 
 struct FusionServer::Impl {
@@ -150,6 +125,7 @@ struct FusionServer::Impl {
   void follow(const LiveSettings& live);
   void follow_inertial(const std::vector<client::FollowedService>& sources);
   void take_status(const Status& next);
+  LookoutOptions lookout_options();
   [[nodiscard]] Status status_now() const {
     const std::scoped_lock lock(mutex);
     return status;
@@ -174,10 +150,24 @@ struct FusionServer::Impl {
   std::optional<rest::RegistrationResources> registration;
   std::optional<service::Recordings> recordings;
   std::optional<RecordingTap> tap;
+  std::optional<Lookout> lookout;
+  foxglove::Desk desk;
   std::unique_ptr<http::Server> http;
   std::unique_ptr<PipelineLoop> loop;
   std::unique_ptr<client::Followers> followers;
 };
+
+LookoutOptions FusionServer::Impl::lookout_options() {
+  LookoutOptions options;
+  options.serving = serving;
+  options.clock = clock;
+  options.remember = config.live.pipeline.association.remember;
+  options.recording = config.at_start.recording;
+  options.forget = [this](PersonId person) { loop->ask(ForgetPerson{person}); };
+  options.outputs = [this] { return outputs->states(); };
+  options.newest_recording = [this] { return recordings->newest(); };
+  return options;
+}
 
 std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   auto router = std::make_shared<http::Router>();
@@ -208,6 +198,9 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   registration.emplace(serving, std::move(control));
   recordings.emplace(recordings_options(config.at_start, serving, clock));
   tap.emplace(*recordings, clock);
+  lookout.emplace(lookout_options());
+  lookout->add_routes(*router);
+  foxglove::add_route(*router, desk, config.at_start.title, serving.run);
   recordings->add_routes(*router);
   frames->add_routes(*router);
   sensors->add_routes(*router);
@@ -240,6 +233,8 @@ void FusionServer::Impl::take_status(const Status& next) {
   if (followers) inertial->publish(followers->reports(client::kOrientations), clock->now());
   registration->publish(next.registration, next.progress);
   tap->places(next.registration);
+  lookout->look(next);
+  desk.places(next.registration, clock->now());
   const std::scoped_lock lock(mutex);
   status = next;
 }
@@ -262,6 +257,8 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   options.sinks.push_back(&*frame_sink);
   options.sinks.push_back(&*tap);
   options.sinks.push_back(&*outputs);
+  options.sinks.push_back(lookout->people());
+  options.sinks.push_back(&desk);
   options.on_status = [this](const Status& next) { take_status(next); };
   options.on_amended = [this](const Snapshot& snapshot) { frame_sink->amend(snapshot); };
   options.poll_reports = [this] {
@@ -273,10 +270,11 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
 void FusionServer::Impl::follow(const LiveSettings& live) {
   follow_inertial(live.inertial);
   const auto& all = live.sensors;
-  followers->follow<resource::FrameResource>(client::kFrames, all, [this](RawArrival arrived) {
+  followers->follow<resource::FrameResource>(client::kFrames, all, [this](FrameArrival arrived) {
     SensorFrame frame = client::place_in_time(arrived);
     tap->raw(raw_frame(arrived, frame));
     sensors->floor(frame.sensor, frame.floor);
+    desk.raw(frame.sensor, arrived.document, frame.received);
     sensors->relay(frame.sensor, std::move(arrived.document));
     loop->give(std::move(frame));
   });
@@ -352,6 +350,7 @@ void FusionServer::take(const LiveSettings& live) {
   if (const auto opened = s.outputs->apply(live.outputs); !opened)
     log::error("an output could not be opened", {{"reason", to_string(opened.error())}});
   s.loop->ask(core_config(s.config));
+  s.lookout->remember_for(live.pipeline.association.remember);
   s.follow(live);
   s.http->set_tokens(live.tokens);
   if (live.identity) s.http->set_identity(*live.identity);

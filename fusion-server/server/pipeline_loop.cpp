@@ -142,6 +142,9 @@ void PipelineLoop::obey(Command command) {
     undo(*back);
   } else if (const auto* choice = std::get_if<Decide>(&command)) {
     decide(*choice);
+  } else if (const auto* left = std::get_if<ForgetPerson>(&command)) {
+    core_.forget(left->person);
+    log::info("person forgotten", {{"person", left->person.value}});
   } else {
     auto& config = std::get<core::CoreConfig>(command);
     gathering_ = gathering_of(config);

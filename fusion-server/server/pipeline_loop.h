@@ -52,8 +52,11 @@ struct Decide {
   bool accept = false;
   std::uint64_t ticket = 0;
 };
-using Command =
-    std::variant<StartSession, CancelSession, Forget, MoveOrigin, Undo, Decide, core::CoreConfig>;
+struct ForgetPerson {
+  PersonId person;
+};
+using Command = std::variant<StartSession, CancelSession, Forget, MoveOrigin, Undo, Decide,
+                             ForgetPerson, core::CoreConfig>;
 
 struct LoopOptions {
   core::CoreConfig core;

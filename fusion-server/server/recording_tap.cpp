@@ -18,6 +18,11 @@ record::ClockModel clock_model(const std::optional<ClockEstimate>& estimate) {
   return clock;
 }
 
+record::RawFrame raw_frame(const FrameArrival& arrived, const SensorFrame& placed) {
+  return {placed.sensor, arrived.document, placed.received, placed.floor,
+          clock_model(arrived.clock)};
+}
+
 void RecordingTap::publish(std::shared_ptr<const Snapshot> snapshot) {
   const auto recorder = recordings_.recorder(Recordings::Stream::Fused);
   if (!recorder) return;

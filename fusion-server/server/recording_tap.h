@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/client/frames.h"
 #include "common/service/recordings.h"
 #include "common/time/clock.h"
 #include "common/time/clock_estimate.h"
@@ -18,6 +19,11 @@ namespace chorus::server {
 
 /// How a host's times were converted to ours, as a recording states it.
 [[nodiscard]] record::ClockModel clock_model(const std::optional<ClockEstimate>& estimate);
+
+using FrameArrival = client::Arrived<resource::FrameResource>;
+
+/// A frame as it arrived, for a recording; `placed` is the same with its place in our time.
+[[nodiscard]] record::RawFrame raw_frame(const FrameArrival& arrived, const SensorFrame& placed);
 
 class RecordingTap final : public Sink {
  public:

@@ -78,7 +78,7 @@ class Contract(Rig):
     def test_a_sensor_keeps_it(self):
         sensor = self.sensor(0, images="true")
         self.check(sensor, {path: path for path in GETS if "{" not in path and path not in
-                            ("/sensors/", "/inertial/", "/outputs/", "/registration", "/viewer/")})
+                            ("/sensors/", "/inertial/", "/people/", "/events", "/outputs/", "/registration", "/viewer/")})
         self.check_thing(sensor, {"frame", "skeletons", "floorPlane", "colorImage", "depthImage", "health"}, {"startRecording"}, {"frame"})
 
 
