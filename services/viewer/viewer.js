@@ -1,5 +1,6 @@
 // The cockpit: the room as the fusion server knows it, and everything that an operator does to it.
-// Uses only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration, /recordings/.
+// Uses only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration, /people/, /events,
+// /recordings/.
 import { jointLines } from './certainty.js';
 import { Cockpit, drawerOfKey, wantedDrawer } from './panels/cockpit.js';
 import { html, render } from './panels/html.js';
@@ -24,7 +25,7 @@ const room = new Room(document.getElementById('scene'));
 
 /// All facts that the panels show.
 const known = {
-  frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '',
+  frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '', people: null, events: null,
   state: { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' }, shownFrame: null, shownRate: NaN, age: NaN,
   drawer: null, dialog: null, asking: null,
   switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false },
@@ -138,6 +139,10 @@ follow(resource('registration'), 1000, (registration) => {
   followSession(registration).catch(failed);
 }, failed);
 
+// Who is called what, and what happened.
+follow(resource('people/'), 1000, ({ people }) => change({ people }), failed);
+follow(resource('events'), 1000, ({ events }) => change({ events }), failed);
+
 // What is amiss with the service itself although it runs: its configuration, its outputs, its disk.
 follow(resource('healthz'), 5000, ({ warning }) => change({ warning: warning ?? '' }), failed);
 
@@ -194,7 +199,7 @@ function forget() {
     showRaw(view, { bodies: [] });
   }
   const unknown = Object.keys(known.sensors ?? {}).map((id) => [id, { state: 'unknown' }]);
-  change({ frame: null, sensors: Object.fromEntries(unknown), registration: null, told: null });
+  change({ frame: null, sensors: Object.fromEntries(unknown), registration: null, told: null, people: null });
 }
 
 // ---- drawing -------------------------------------------------------------------------------------------------

@@ -79,16 +79,18 @@ export async function startFakeFusion(files, world = usualWorld()) {
     '/registration': () => world.registration,
     '/healthz': () => world.health ?? { status: 'ok' },
     '/registration/sessions/7': () => world.session ?? {},
+    '/people/': () => ({ people: world.known ?? {} }),
+    '/events': () => ({ events: world.events ?? [] }),
     '/recordings/': () => ({ recordings: world.recordings ?? [] }),
   };
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
-    if (request.method === 'POST' || request.method === 'DELETE') {
+    if (['POST', 'PATCH', 'DELETE'].includes(request.method)) {
       let text = '';
       for await (const part of request) text += part;
       world.bodies = [...(world.bodies ?? []), text];
       const allowed = !world.token || request.headers.authorization === `Bearer ${world.token}`;
-      const asked = request.method === 'POST' ? pathname : `DELETE ${pathname}`;
+      const asked = request.method === 'POST' ? pathname : `${request.method} ${pathname}`;
       world.posted = [...(world.posted ?? []), `${asked} ${allowed ? 200 : 401}`];
       if (allowed) world.after?.(asked, text);
       if (allowed) delete world.registration.proposal;

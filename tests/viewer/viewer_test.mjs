@@ -214,7 +214,7 @@ test('uncertainty is shown when asked for: ellipsoids, people, and a joint with 
   await page.waitForFunction(() => window.chorusViewer.ellipsoids === 24, null, SOON);
   assert.notEqual(await colorsOnCanvas(page), before);
   await page.waitForFunction(() => document.querySelector('#people li'), null, SOON);
-  assert.deepEqual(await page.locator('#people li').allTextContents(), ['person 1: seen, left and right 98 % certain']);
+  assert.deepEqual(await page.locator('#people li').allTextContents(), ['person 1: seen, left and right 98 % certain✎']);
   await pointAtHead(page);
   await page.mouse.down();
   await page.mouse.up();
@@ -341,4 +341,37 @@ test('says what is missing when the libraries are not installed', async () => {
   assert.match(await text(page, '#next'), /npm ci/);
   await page.close();
   await rm(folder, { recursive: true });
+});
+
+test('people get names that everybody sees, and what happened stays until it is seen', async () => {
+  const world = usualWorld();
+  world.known = { 1: { personId: '1', state: 'seen', sensors: ['s1'] } };
+  world.events = [
+    { eventId: '5', time: '2026-11-27T10:00:00Z', kind: 'person-came', severity: 'calm', message: 'Person 1 came.' },
+    { eventId: '6', time: '2026-11-27T10:00:01Z', kind: 'sensor-lost', severity: 'warning', message: 's2 delivers nothing: <b>refused</b>.', advice: 'Look after its host.' },
+  ];
+  world.after = (asked, sent) => { if (asked === 'PATCH /people/1') world.known[1].name = JSON.parse(sent).name; };
+  const server = await startFusion(FILES, world);
+  const { page, complaints } = await openViewer(browser, server.url);
+  await page.getByRole('button', { name: 'name person 1' }).click();
+  await page.getByLabel('name', { exact: true }).fill('<i>Anna</i>');
+  await page.getByRole('button', { name: 'Save' }).click();
+  await page.getByText('<i>Anna</i>').waitFor();
+  assert.equal(world.bodies.at(-1), '{"name":"<i>Anna</i>"}');
+  assert.equal(await page.locator('#people .name').textContent(), '<i>Anna</i>', 'text, never markup');
+  world.known[1].name = 'Bea'; // another operator
+  await page.getByText('Bea').waitFor();
+  const rows = page.locator('#events li');
+  await rows.nth(1).waitFor();
+  assert.match(await rows.nth(0).textContent(), /s2 delivers nothing: <b>refused<\/b>\.\s*Look after its host\./, 'what was not seen is first');
+  assert.equal(await text(page, '#unseen'), '1 unseen');
+  await page.getByRole('button', { name: /^seen: s2/ }).click();
+  await page.waitForFunction(() => !document.getElementById('unseen'), null, SOON);
+  assert.match(await rows.nth(1).textContent(), /Person 1 came/);
+  await page.reload();
+  await page.locator('#events li').nth(1).waitFor();
+  assert.equal(await page.locator('#unseen').count(), 0, 'seen is seen, on a new page too');
+  assert.deepEqual(complaints, []);
+  await picture(page, 'people');
+  await page.close();
 });

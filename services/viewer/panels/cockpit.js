@@ -1,6 +1,7 @@
 // The whole page beside the scene: top, sensors, people, and one drawer at a time.
 import { html } from './html.js';
 import { Keys, Phone, Token } from './dialogs.js';
+import { Events } from './events.js';
 import { Look } from './look.js';
 import { People, Tracker } from './people.js';
 import { Record } from './record.js';
@@ -41,9 +42,10 @@ export function Cockpit({ known, act }) {
       <aside id="left" aria-label="sensors">
         <${Sensors} sensors=${known.sensors} registration=${known.registration} colorOf=${act.colorOf} onLook=${(id) => act.onView('sensor', id)} />
       </aside>
-      <aside id="right" aria-label="people">
-        <${People} frame=${known.shownFrame} onLook=${(id) => act.onView('person', id)} />
+      <aside id="right" aria-label="people and events">
+        <${People} frame=${known.shownFrame} known=${known.people} resource=${act.resource} onLook=${(id) => act.onView('person', id)} />
         <${Tracker} frame=${known.shownFrame} rate=${known.shownRate} age=${known.age} />
+        <${Events} events=${known.events} />
       </aside>
       <section id="drawer" aria-label="operate">
         <div role="tablist" aria-label="drawers">${DRAWERS.map(([key, label, letter]) => html`
