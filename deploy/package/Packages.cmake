@@ -36,6 +36,7 @@ set(docs ${CMAKE_INSTALL_DATADIR}/doc)
 install(PROGRAMS $<TARGET_FILE:chorus-host> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus COMPONENT common)
 install(FILES deploy/package/copyright DESTINATION ${docs}/chorus-common COMPONENT common)
 install(DIRECTORY docs/guide DESTINATION ${docs}/chorus-common COMPONENT common FILES_MATCHING PATTERN *.md)
+install(FILES clients/chorus.py clients/Chorus.cs DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus/clients COMPONENT common)
 install(FILES NOTICE DESTINATION ${docs}/chorus-common COMPONENT common)
 
 # The programs themselves print their manual pages and completions.

@@ -111,7 +111,8 @@ class Installed(Root):
         self.install("chorus-fusion")
         for path in ("/usr/bin/chorus", "/usr/bin/chorus-fusion", "/lib/systemd/system/chorus-fusion.service", "/etc/default/chorus-fusion",
                      "/usr/share/chorus/viewer/index.html", "/usr/share/chorus/viewer/node_modules/three/build/three.module.min.js",
-                     "/usr/share/chorus/viewer/panels/cockpit.js", "/usr/share/chorus/viewer/node_modules/preact/dist/preact.mjs",
+                     "/usr/share/chorus/viewer/panels/cockpit.js", "/usr/share/chorus/clients/chorus.py", "/usr/share/chorus/clients/Chorus.cs",
+                     "/usr/share/chorus/viewer/node_modules/preact/dist/preact.mjs",
                      "/usr/share/chorus/viewer/node_modules/htm/dist/htm.mjs",
                      "/usr/share/chorus/viewer/node_modules/qrcode-generator/dist/qrcode.mjs",
                      "/usr/share/doc/chorus-fusion/examples/fusion.json", "/usr/share/man/man8/chorus-fusion.8",
