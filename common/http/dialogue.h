@@ -18,8 +18,8 @@ namespace chorus::http {
 /// What to send to the client, in order, and whether the dialogue ends afterwards.
 struct Reply {
   std::vector<std::string> messages = {};
-  std::vector<std::string> binary = {};  ///< Sent after `messages`, by a WebSocket only.
   bool over = false;
+  std::vector<std::string> binary = {};  ///< Sent after `messages`, by a WebSocket only.
 };
 
 /// A dialogue can send messages only in what hear() and look() return.

@@ -55,7 +55,7 @@ http::Reply ViewerDialogue::look() {
   return reply;
 }
 
-http::Reply ViewerDialogue::end(const Error& why) { return {{warning(why.message)}, {}, true}; }
+http::Reply ViewerDialogue::end(const Error& why) { return {{warning(why.message)}, true}; }
 
 void add_route(http::Router& router, const Desk& desk, const std::string& name,
                const std::string& session) {
