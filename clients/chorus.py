@@ -160,7 +160,7 @@ class Tracker:
 
     def download(self, name, path):
         """Stores a recording of one file at `path` (MCAP)."""
-        with self._open("GET", f"recordings/{name}.mcap") as answer, open(path, "wb") as file:
+        with self._open("GET", f"recordings/{name}.mcap", accept="*/*") as answer, open(path, "wb") as file:
             while piece := answer.read(1 << 20):
                 file.write(piece)
 
@@ -169,11 +169,11 @@ class Tracker:
     def _headers(self, more=None):
         return {"Accept": "application/json", **({"Authorization": f"Bearer {self.token}"} if self.token else {}), **(more or {})}
 
-    def _open(self, method, path, body=None):
+    def _open(self, method, path, body=None, accept="application/json"):
         data = None if body is None else json.dumps(body).encode()
         if data is None and method == "POST":
             data = b""
-        headers = self._headers({"Content-Type": "application/json"} if body is not None else None)
+        headers = self._headers({"Accept": accept, **({"Content-Type": "application/json"} if body is not None else {})})
         request = urllib.request.Request(urllib.parse.urljoin(self.url, path.lstrip("/")), data=data, headers=headers, method=method)
         try:
             return urllib.request.urlopen(request, timeout=self.timeout)

@@ -29,6 +29,7 @@ struct Writing {
 };
 constexpr std::array kWriting{Writing{"post", "POST", Method::Post},
                               Writing{"put", "PUT", Method::Put},
+                              Writing{"patch", "PATCH", Method::Patch},
                               Writing{"delete", "DELETE", Method::Delete}};
 
 const json& contract() {

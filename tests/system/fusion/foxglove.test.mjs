@@ -6,10 +6,12 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 
-import { FoxgloveClient } from '@foxglove/ws-protocol';
+import foxglove from '@foxglove/ws-protocol'; // CommonJS
 import { McapIndexedReader, TempBuffer } from '@mcap/core';
 import { decompress } from 'fzstd';
 import WebSocket from 'ws';
+
+const { FoxgloveClient } = foxglove;
 
 const BIN = process.env.CHORUS_BIN;
 const PATIENCE_MS = 40000;
@@ -104,7 +106,7 @@ test('it is told of every channel, and gets what it subscribes to', async () => 
 test('channels and schemas are those of recordings', async () => {
   const started = await json('/recordings/', { method: 'POST', body: JSON.stringify({ name: 'r', seconds: 1 }) });
   assert.ok(started);
-  await soon('the recording is complete', async () => (await json('/recordings/r')).state === 'complete');
+  await soon('the recording is complete', async () => (await json('/recordings/r')).state === 'finished');
   const file = readdirSync(join(folder, 'r')).find((name) => name.endsWith('.mcap'));
   const reader = await McapIndexedReader.Initialize({ readable: new TempBuffer(readFileSync(join(folder, 'r', file))),
     decompressHandlers: { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) } });

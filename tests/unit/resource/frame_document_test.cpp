@@ -60,7 +60,9 @@ TEST(FrameDocument, TheLeanFormHasPlaceAndStateOfEveryJointUnderTheSameKeys) {
       const auto& own = a.at("joints").at(name);
       EXPECT_EQ(own.at("state"), joint.at("state"));
       EXPECT_EQ(own.contains("x"), joint.contains("x"));
-      if (joint.contains("x")) EXPECT_NEAR(own.at("y"), joint.at("y"), 0.00056) << name;
+      if (joint.contains("x")) {
+        EXPECT_NEAR(own.at("y"), joint.at("y"), 0.00056) << name;
+      }
       EXPECT_LE(own.size(), 4u) << "nothing else";
     }
   }
