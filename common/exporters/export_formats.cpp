@@ -6,6 +6,7 @@
 #include "common/exporters/c3d.h"
 #include "common/exporters/csv.h"
 #include "common/exporters/gltf.h"
+#include "common/exporters/joint_angles.h"
 #include "common/exporters/number_text.h"
 #include "common/exporters/sto.h"
 #include "common/exporters/trc.h"
@@ -51,10 +52,12 @@ Result<Exported> skeletal(const Take& take, ExportFormat format, const ExportOpt
   return out;
 }
 
-Result<Exported> orientation_tables(const Take& take) {
+/// A table for each person, where `table_of` can make one.
+Result<Exported> tables_of(const Take& take,
+                           Result<std::string> (*table_of)(const PersonTrack&, double)) {
   Exported out;
   for (const PersonTrack& track : take.persons) {
-    auto table = sto_of(track, take.rate_hz);
+    auto table = table_of(track, take.rate_hz);
     if (!table && take.persons.size() == 1) return pass(table);
     if (!table) {
       out.remarks.push_back("left out: " + to_string(table.error()));
@@ -65,7 +68,8 @@ Result<Exported> orientation_tables(const Take& take) {
     out.files.push_back({suffix, std::move(*table)});
   }
   if (!out.files.empty()) return out;
-  return fail(ErrorCode::Unsupported, "fused frames", "show no limb's orientation");
+  return fail(ErrorCode::Unsupported, "fused frames",
+              "show nobody of whom such a table can be made");
 }
 
 }  // namespace
@@ -80,7 +84,11 @@ Result<Exported> exported(const Take& take, ExportFormat format, const ExportOpt
     case ExportFormat::Csv:
       return Exported{{{"", csv_of(take)}}, {}};
     case ExportFormat::Sto:
-      return orientation_tables(take);
+      return tables_of(take, &sto_of);
+    case ExportFormat::Mot:
+      return tables_of(take, &mot_of);
+    case ExportFormat::AnglesCsv:
+      return Exported{{{"", angles_csv_of(take)}}, {}};
     case ExportFormat::C3d:
       break;
   }

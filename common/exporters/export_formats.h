@@ -10,7 +10,7 @@
 
 namespace chorus::exporters {
 
-enum class ExportFormat { Bvh, C3d, Trc, Csv, Gltf, Sto };
+enum class ExportFormat { Bvh, C3d, Trc, Csv, Gltf, Sto, AnglesCsv, Mot };
 
 struct ExportRow {
   ExportFormat format;
@@ -18,13 +18,15 @@ struct ExportRow {
   std::string_view writes;  ///< One line for --help.
 };
 
-inline constexpr std::array<ExportRow, 6> kExportFormats{{
+inline constexpr std::array<ExportRow, 8> kExportFormats{{
     {ExportFormat::Bvh, "bvh", "hierarchy and rotations, one file a person"},
     {ExportFormat::C3d, "c3d", "points, float, millimetres, missing joints marked"},
     {ExportFormat::Trc, "trc", "points as a table, as OpenSim reads it"},
     {ExportFormat::Csv, "csv", "one row a joint, with states, orientations and deviations"},
     {ExportFormat::Gltf, "gltf", "animated skinned skeletons, binary (.glb)"},
     {ExportFormat::Sto, "sto", "orientations of limbs as a table, as OpenSense reads it"},
+    {ExportFormat::AnglesCsv, "angles-csv", "ISB joint angles with deviations, one row a frame"},
+    {ExportFormat::Mot, "mot", "joint angles as coordinates of OpenSim's models"},
 }};
 
 struct ExportOptions {

@@ -16,7 +16,7 @@ ROWS = [
     ["common/motion", "common/resource", "common/ergonomics"],
     ["common/record", "common/client", "common/evaluation", "common/suit", "common/silhouette"],
     ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration", "common/hand",
-     "common/characteristics", "common/assessment", "common/quality", "common/positioning"],
+     "common/characteristics", "common/assessment", "common/quality", "common/comparison", "common/positioning"],
     ["fusion-server/flow"],
     ["fusion-server/status", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],

@@ -107,6 +107,14 @@ constexpr std::array kRecordingCommands{
             "Exit code 0: usable, perhaps with care; 1: not usable as it is, and why is printed.  "
             "What each figure means: docs/guide/report.md.",
             &add_report},
+    Command{"compare", "Compares two recordings of one motion, joint by joint",
+            "Examples:\n"
+            "  chorus compare fused.mcap again.mcap --same-clock --same-world    two fusions\n"
+            "  chorus compare fused.mcap vicon.c3d --any-lag --other-world --out compare.html\n"
+            "Exit code 0: no difference that chance does not explain; 1: different, or the two "
+            "cannot be\n"
+            "compared, and why is printed.  More: docs/guide/report.md.",
+            &add_compare},
     Command{"score", "Scores postures by REBA, RULA, OWAS and others, and says how sure it is",
             "Examples:\n"
             "  chorus score fused.mcap                                 a summary\n"

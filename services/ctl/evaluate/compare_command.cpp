@@ -1,0 +1,141 @@
+// chorus compare A B: two recordings of one motion, joint by joint.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "common/comparison/comparison_report.h"
+#include "common/importers/motion_file.h"
+#include "common/report/report_files.h"
+#include "services/ctl/convert/fused_samples.h"
+#include "services/ctl/line/command.h"
+#include "services/ctl/line/console.h"
+#include "services/ctl/line/number_range.h"
+
+namespace chorus::ctl {
+namespace {
+
+constexpr std::pair<std::string_view, importers::MotionFormat> kMotionFiles[]{
+    {".c3d", importers::MotionFormat::C3d},
+    {".trc", importers::MotionFormat::Trc},
+    {".bvh", importers::MotionFormat::Bvh},
+    {".mvnx", importers::MotionFormat::Mvnx}};
+
+struct CompareArguments {
+  std::string a;
+  std::string b;
+  std::vector<std::string> out;
+  double seconds = 30.0;
+  double block = 2.0;
+  bool same_clock = false;
+  bool any_lag = false;
+  bool same_world = false;
+  bool other_world = false;
+};
+
+struct ComparedSource {
+  comparison::People people;
+  std::vector<std::string> notes;
+};
+
+std::optional<importers::MotionFormat> motion_format(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [name, format] : kMotionFiles)
+    if (name == ending) return format;
+  return std::nullopt;
+}
+
+Result<ComparedSource> read_motion(const std::string& file, importers::MotionFormat format) {
+  const auto motion = importers::read_motion_file(file, format);
+  if (!motion) return pass(motion);
+  ComparedSource out;
+  const auto& frames = motion->recording.frames;
+  for (const importers::TruthFrame& each : motion->truth) {
+    if (each.index >= frames.size()) continue;
+    const double time = seconds(frames[each.index].captured.time_since_epoch());
+    out.people[each.person].push_back({time, each.skeleton});
+  }
+  for (const auto& [name, text] : motion->recording.notes)
+    if (name.starts_with("damage")) out.notes.push_back(file + ": " + text);
+  return out;
+}
+
+Result<ComparedSource> read_compared(const std::string& source, const CompareArguments& arguments) {
+  if (const auto format = motion_format(source)) return read_motion(source, *format);
+  auto frames = read_fused_frames(
+      source, std::chrono::milliseconds(static_cast<int>(1e3 * arguments.seconds)));
+  if (!frames) return pass(frames);
+  ComparedSource out;
+  out.notes = std::move(frames->notes);
+  for (exporters::FusedSample& sample : frames->samples)
+    out.people[sample.person.value].push_back(
+        {seconds(sample.instant.time_since_epoch()), sample.skeleton});
+  for (auto& [id, track] : out.people)
+    std::ranges::stable_sort(track, {}, &comparison::Moment::time);
+  return out;
+}
+
+Result<int> run_compare(const CompareArguments& arguments) {
+  auto a = read_compared(arguments.a, arguments);
+  if (!a) return pass(a);
+  auto b = read_compared(arguments.b, arguments);
+  if (!b) return pass(b);
+  comparison::CompareOptions options;
+  options.same_clock = arguments.same_clock;
+  options.same_world = arguments.same_world;
+  options.other_world = arguments.other_world;
+  options.block = arguments.block;
+  if (arguments.any_lag) options.clock_range = std::nullopt;
+  const auto compared = comparison::compare(a->people, b->people, options);
+  if (!compared) return pass(compared);
+  comparison::Compared what{arguments.a, arguments.b, a->notes};
+  what.notes.insert(what.notes.end(), b->notes.begin(), b->notes.end());
+  const report::Report report = comparison::report_of(*compared, what);
+  for (const std::string& file : arguments.out) {
+    const auto written = report::write_report(report, file);
+    if (!written) return pass(written);
+    std::cerr << "wrote " << file << '\n';
+  }
+  std::cout << printable(report.verdict) << '\n';
+  for (const std::string& difference : compared->differences)
+    std::cout << printable("- " + difference) << '\n';
+  return compared->differences.empty() ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+Run add_compare(CLI::App& options) {
+  auto arguments = std::make_shared<CompareArguments>();
+  constexpr const char* kSources =
+      "fused frames (.mcap, a folder, NDJSON, a fusion server's address), or C3D, TRC, BVH, MVNX";
+  options.add_option("a", arguments->a, kSources)->required();
+  options.add_option("b", arguments->b, "the same, compared with a")->required();
+  options.add_option("--out", arguments->out,
+                     "write the report: .html, .json or .csv; repeat for several");
+  auto* same_clock =
+      options.add_flag("--same-clock", arguments->same_clock,
+                       "both have one clock: no lag is looked for (two fusions of one recording)");
+  options
+      .add_flag("--any-lag", arguments->any_lag,
+                "the clocks have nothing in common, as with files that state no UTC; the lag is no "
+                "difference then")
+      ->excludes(same_clock);
+  auto* same_world = options.add_flag("--same-world", arguments->same_world,
+                                      "both have one world: no transform is fitted");
+  options
+      .add_flag("--other-world", arguments->other_world,
+                "the worlds have nothing in common; the transform is no difference then")
+      ->excludes(same_world);
+  options.add_option("--block", arguments->block, "length of the blocks of the intervals [s]")
+      ->check(number_range(0.2, 60.0));
+  options.add_option("--seconds", arguments->seconds, "how long to listen to a server")
+      ->check(number_range(1.0, 3600.0));
+  return [arguments] { return run_compare(*arguments); };
+}
+
+}  // namespace chorus::ctl
