@@ -218,7 +218,7 @@ std::optional<JointDifference> compare_joint(const std::vector<Both>& frames, st
   out.limit_high = height + 1.96 * std::sqrt(scatter);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.offset[axis] = mean_of(axes[axis], options.block, level(options));
-    out.differs = out.differs || out.offset[axis].differs();
+    out.differs = out.differs || out.offset[axis].differs(options.least);
   }
   const std::size_t rank = std::min(out.frames - 1, static_cast<std::size_t>(0.95 * n));
   std::ranges::nth_element(distance.values,
@@ -294,11 +294,11 @@ void show_distances(const std::vector<Both>& frames, Comparison& out) {
 }
 
 void say_worlds(Comparison& out) {
-  if (out.yaw.differs())
+  if (out.yaw.differs(out.least_turn))
     out.differences.push_back(
         fmt::format("B is turned by {:.2f} deg about the vertical", to_deg(out.yaw.mean)));
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (out.offset[axis].differs())
+    if (out.offset[axis].differs(out.least))
       out.differences.push_back(fmt::format("the trunk is {:.1f} mm off along {}",
                                             to_mm(out.offset[axis].mean), "xyz"[axis]));
   }
@@ -343,6 +343,8 @@ Result<Comparison> compare(const People& a, const People& b, const CompareOption
   out.lag = fit.lag;
   out.lag_sigma = fit.lag_sigma;
   out.a_from_b = fit.a_from_b;
+  out.least = options.least;
+  out.least_turn = options.least_turn;
   compare_worlds(frames, options, out);
   match_others(a, b, options, out);
   if (out.pairs.empty())

@@ -30,11 +30,12 @@ Figure figure(std::string key, std::string name, double value, std::string unit)
   return out;
 }
 
-Figure estimated(std::string key, std::string name, const Estimate& estimate, double scale) {
+Figure estimated(std::string key, std::string name, const Estimate& estimate, double scale,
+                 double least) {
   Figure out{std::move(key), std::move(name)};
   out.value = scale * estimate.mean;
   out.text = interval(estimate, scale, 2);
-  out.judgement = estimate.differs() ? Judgement::Doubtful : Judgement::Good;
+  out.judgement = estimate.differs(least) ? Judgement::Doubtful : Judgement::Good;
   return out;
 }
 
@@ -50,13 +51,15 @@ Section alignment_section(const Comparison& comparison) {
   else
     lag.text = "given: one clock";
   section.figures.push_back(lag);
-  Figure yaw = estimated("yaw", "turn about the vertical", comparison.yaw, to_deg(1.0));
+  Figure yaw = estimated("yaw", "turn about the vertical", comparison.yaw, to_deg(1.0),
+                         comparison.least_turn);
   yaw.unit = "deg";
   yaw.meaning = "of B's bodies against A's, before the transform";
   section.figures.push_back(yaw);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
-    Figure offset = estimated("offset_" + name, "trunk, " + name, comparison.offset[axis], 1e3);
+    Figure offset = estimated("offset_" + name, "trunk, " + name, comparison.offset[axis], 1e3,
+                              comparison.least);
     offset.unit = "mm";
     offset.meaning = "A's trunk minus B's, before the transform";
     section.figures.push_back(offset);

@@ -17,8 +17,8 @@ using posture::kIsbJoints;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWhole = 2.0 * std::numbers::pi;
-constexpr int kAngleDigits = 3;  // decimals of a degree
-constexpr int kPlaceDigits = 5;  // decimals of a metre
+constexpr int kDegreeDigits = 3;  // decimals of a degree
+constexpr int kPlaceDigits = 5;   // decimals of a metre
 
 /// Moves the angle by whole turns until it is nearest to the one before.
 double continued(double angle, double before) {
@@ -74,7 +74,7 @@ std::string column_name(std::string_view rotation) {
 
 void append_field(std::string& text, double radians) {
   text += ',';
-  if (std::isfinite(radians)) append_fixed(text, to_deg(radians), kAngleDigits);
+  if (std::isfinite(radians)) append_fixed(text, to_deg(radians), kDegreeDigits);
 }
 
 /// Axes of the pelvis as in isb.h, X forward, Y up, Z right; none without both hips.
@@ -174,7 +174,7 @@ std::string mot_text(const Columns& columns, std::span<const std::size_t> kept, 
       if (is_metres(c))
         append_fixed(text, columns[c][i], kPlaceDigits);
       else
-        append_fixed(text, to_deg(columns[c][i]), kAngleDigits);
+        append_fixed(text, to_deg(columns[c][i]), kDegreeDigits);
     }
     text += '\n';
   }

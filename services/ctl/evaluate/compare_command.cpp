@@ -29,7 +29,8 @@ struct CompareArguments {
   std::string b;
   std::vector<std::string> out;
   double seconds = 30.0;
-  double block = 2.0;
+  double block = 5.0;
+  double least_mm = 1.0;
   bool same_clock = false;
   bool any_lag = false;
   bool same_world = false;
@@ -90,6 +91,7 @@ Result<int> run_compare(const CompareArguments& arguments) {
   options.same_world = arguments.same_world;
   options.other_world = arguments.other_world;
   options.block = arguments.block;
+  options.least = 1e-3 * arguments.least_mm;
   if (arguments.any_lag) options.clock_range = std::nullopt;
   const auto compared = comparison::compare(a->people, b->people, options);
   if (!compared) return pass(compared);
@@ -133,6 +135,8 @@ Run add_compare(CLI::App& options) {
       ->excludes(same_world);
   options.add_option("--block", arguments->block, "length of the blocks of the intervals [s]")
       ->check(number_range(0.2, 60.0));
+  options.add_option("--least", arguments->least_mm, "smallest difference that counts [mm]")
+      ->check(number_range(0.0, 1000.0));
   options.add_option("--seconds", arguments->seconds, "how long to listen to a server")
       ->check(number_range(1.0, 3600.0));
   return [arguments] { return run_compare(*arguments); };
