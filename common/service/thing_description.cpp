@@ -27,10 +27,9 @@ struct Writing {
   const char* name;
   Method method;
 };
-constexpr std::array kWriting{Writing{"post", "POST", Method::Post},
-                              Writing{"put", "PUT", Method::Put},
-                              Writing{"patch", "PATCH", Method::Patch},
-                              Writing{"delete", "DELETE", Method::Delete}};
+constexpr std::array kWriting{
+    Writing{"post", "POST", Method::Post}, Writing{"put", "PUT", Method::Put},
+    Writing{"patch", "PATCH", Method::Patch}, Writing{"delete", "DELETE", Method::Delete}};
 
 const json& contract() {
   static const json parsed = json::parse(proto::openapi_json());
