@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/assessment/sheet_drawing.h"
+#include "common/assessment/sheet_words.h"
 #include "common/base/units.h"
 #include "common/report/html.h"
 
@@ -17,48 +18,6 @@ using ergonomics::Method;
 using ergonomics::MethodSummary;
 using ergonomics::Side;
 using ergonomics::Text;
-
-/// Words of the sheet.
-struct Words {
-  Text title{"Posture assessment", "Haltungsbewertung"};
-  Text screening{"A screening from measured postures, not a certified assessment.",
-                 "Ein Screening aus gemessenen Haltungen, keine zertifizierte Bewertung."};
-  Text person{"Person", "Person"};
-  Text source{"Recording", "Aufnahme"};
-  Text duration{"Duration", "Dauer"};
-  Text stance_own{"Angles count from the person's own upright stance.",
-                  "Winkel zählen ab der eigenen aufrechten Haltung der Person."};
-  Text stance_none{
-      "No upright stance was seen: angles are absolute, and scores less sure than stated.",
-      "Keine aufrechte Haltung gesehen: Winkel sind absolut, Werte unsicherer als angegeben."};
-  Text field{"Field", "Feld"};
-  Text value{"Value", "Wert"};
-  Text origin{"Obtained", "Herkunft"};
-  Text correction{"Corrected by hand", "Von Hand korrigiert"};
-  Text measured{"measured", "gemessen"};
-  Text asked{"asked", "gefragt"};
-  Text unknown{"unknown", "unbekannt"};
-  Text form{"The worst held posture, as on the form",
-            "Die ungünstigste gehaltene Haltung, wie im Formular"};
-  Text at{"at", "bei"};
-  Text side{"side", "Seite"};
-  Text left{"left", "links"};
-  Text right{"right", "rechts"};
-  Text result{"Result", "Ergebnis"};
-  Text set{"true score with 90 %", "wahrer Wert mit 90 %"};
-  Text times{"Time in each level", "Zeit je Stufe"};
-  Text share{"Share (90 % interval)", "Anteil (90-%-Intervall)"};
-  Text per_minute{"Seconds per minute", "Sekunden pro Minute"};
-  Text timeline{"Score over time; shaded: the 90 % set; grey: no score",
-                "Wert über der Zeit; schattiert: 90-%-Menge; grau: kein Wert"};
-  Text worst{"The three worst held postures", "Die drei ungünstigsten gehaltenen Haltungen"};
-  Text unseen{"Not scored", "Nicht bewertet"};
-  Text nothing{"nothing", "nichts"};
-  Text keep{"Keep the corrected sheet", "Korrigiertes Blatt sichern"};
-  Text source_of{"Source", "Quelle"};
-  Text by{"Assessed by", "Bewertet von"};
-};
-const Words kWords;
 
 constexpr std::string_view kStyle = R"(
 :root{color-scheme:light dark}body{font:14px/1.4 system-ui,sans-serif;margin:1.5em auto;max-width:52em;padding:0 1em;color:CanvasText;background:Canvas}
@@ -117,7 +76,7 @@ std::string Sheet::head() const {
   return fmt::format(
       "<!doctype html><html lang=\"{}\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body>",
-      german_ ? "de" : "en", say(kWords.title), kStyle);
+      german_ ? "de" : "en", say(word("title")), kStyle);
 }
 
 /// "3 (80 %), 4 (20 %)": the codes of an input among the drawn bodies.
@@ -152,7 +111,7 @@ std::string Sheet::fields(const Method& method, const ergonomics::Observation& s
     // An answer may stand for a measure, as that of a straight wrist.
     const bool own =
         known && input.origin == ergonomics::Origin::Measured && measured[i] == codes[i];
-    const Text& origin = !known ? kWords.unknown : own ? kWords.measured : kWords.asked;
+    const Text origin = !known ? word("unknown") : own ? word("measured") : word("asked");
     const std::string_view style = !known ? "unknown" : own ? "measured" : "asked";
     const std::string value =
         known ? std::to_string(codes[i]) : fmt::format("{}-{}", input.lowest, input.highest);
@@ -162,7 +121,7 @@ std::string Sheet::fields(const Method& method, const ergonomics::Observation& s
         "aria-label=\"{5}: {1}\" value=\"\"></td></tr>",
         style, say(input.name), value, say(origin),
         doubt.empty() ? "" : fmt::format(" <span class=\"small\">{}</span>", doubt),
-        say(kWords.correction));
+        say(word("correction")));
   }
   return rows;
 }
@@ -178,15 +137,15 @@ std::string Sheet::form(const SheetPerson& person, std::size_t index) const {
   const Side side =
       method.sided && score.sides[1].high > score.sides[0].high ? Side::Right : Side::Left;
   const auto asked = about_.task.asked_at(moment.at);
-  std::string html =
-      fmt::format("<h3>{} ({} {} s{})</h3>", say(kWords.form), say(kWords.at), number(moment.at, 1),
-                  method.sided ? fmt::format(", {} {}", say(kWords.side),
-                                             say(side == Side::Left ? kWords.left : kWords.right))
-                               : "");
+  std::string html = fmt::format(
+      "<h3>{} ({} {} s{})</h3>", say(word("form")), say(word("at")), number(moment.at, 1),
+      method.sided ? fmt::format(", {} {}", say(word("side")),
+                                 say(side == Side::Left ? word("left") : word("right")))
+                   : "");
   html +=
       fmt::format("<table><tr><th>{}</th><th class=\"number\">{}</th><th>{}</th><th>{}</th></tr>{}",
-                  say(kWords.field), say(kWords.value), say(kWords.origin), say(kWords.correction),
-                  fields(method, seen, side, asked));
+                  say(word("field")), say(word("value")), say(word("origin")),
+                  say(word("correction")), fields(method, seen, side, asked));
   Codes codes = codes_of(method, seen.seen, side, asked);
   const bool whole = std::ranges::none_of(method.inputs, [&](const auto& input) {
     return codes[static_cast<std::size_t>(&input - method.inputs.data())] == 0;
@@ -196,12 +155,12 @@ std::string Sheet::form(const SheetPerson& person, std::size_t index) const {
       html += fmt::format(
           "<tr><th>{0}</th><td class=\"number\">{1}</td><td></td><td><input "
           "aria-label=\"{2}: {0}\" value=\"\"></td></tr>",
-          say(step.name), step.value, say(kWords.correction));
+          say(step.name), step.value, say(word("correction")));
   }
   const auto& level = method.levels[level_of(method, moment.score.high)];
   html += fmt::format("</table><p class=\"result\">{}: {} - {}</p><p>{}: {} {} {}</p>",
-                      say(kWords.result), report::escaped(range_text(method, codes, german_)),
-                      say(level.text), say(kWords.set), moment.set.from, german_ ? "bis" : "to",
+                      say(word("result")), report::escaped(range_text(method, codes, german_)),
+                      say(level.text), say(word("set")), moment.set.from, german_ ? "bis" : "to",
                       moment.set.to);
   return html;
 }
@@ -210,27 +169,27 @@ std::string Sheet::times(const MethodSummary& summary) const {
   std::string html = fmt::format(
       "<h3>{}</h3><table><tr><th></th><th class=\"number\">{}</th><th class=\"number\">{}"
       "</th><th>{}</th></tr>",
-      say(kWords.times), say(kWords.share), say(kWords.per_minute), say(kWords.correction));
+      say(word("times")), say(word("share")), say(word("per_minute")), say(word("correction")));
   for (std::size_t l = 0; l < summary.levels.size(); ++l) {
     const auto& zone = summary.levels[l];
     html += fmt::format(
         "<tr><td class=\"measured\">{0}</td><td class=\"number\">{1} % ({2}-{3} %)</td><td "
         "class=\"number\">{4}</td><td><input aria-label=\"{5}: {0}\" value=\"\"></td></tr>",
         say(summary.method->levels[l].text), number(100 * zone.share, 0), number(100 * zone.low, 0),
-        number(100 * zone.high, 0), number(60 * zone.share, 1), say(kWords.correction));
+        number(100 * zone.high, 0), number(60 * zone.share, 1), say(word("correction")));
   }
   return html + "</table>";
 }
 
 std::string Sheet::worst(const SheetPerson& person, const MethodSummary& summary) const {
   if (summary.worst.empty()) return {};
-  std::string html = fmt::format("<h3>{}</h3><div class=\"figures\">", say(kWords.worst));
+  std::string html = fmt::format("<h3>{}</h3><div class=\"figures\">", say(word("worst")));
   for (std::size_t w = 0; w < summary.worst.size(); ++w) {
     const auto& moment = summary.worst[w];
     const auto& body = person.bodies[moment.index].body;
     html += fmt::format("<figure>{}{}<figcaption>{}. {} {} s: {} ({} {} {})</figcaption></figure>",
                         stick_figure(body, View::Front), stick_figure(body, View::Left), w + 1,
-                        say(kWords.at), number(moment.at, 1), moment.score.high, moment.set.from,
+                        say(word("at")), number(moment.at, 1), moment.score.high, moment.set.from,
                         german_ ? "bis" : "to", moment.set.to);
   }
   return html + "</div>";
@@ -249,8 +208,8 @@ std::string Sheet::unseen(const MethodSummary& summary) const {
       list += fmt::format("{}{} % {}", list.empty() ? "" : ", ",
                           number(100 * summary.unscored[r], 1), say(kReasons[r]));
   }
-  return fmt::format("<p>{}: {}.</p>", say(kWords.unseen),
-                     list.empty() ? say(kWords.nothing) : list);
+  return fmt::format("<p>{}: {}.</p>", say(word("unseen")),
+                     list.empty() ? say(word("nothing")) : list);
 }
 
 std::string Sheet::page(const SheetPerson& person, std::size_t index) const {
@@ -263,24 +222,24 @@ std::string Sheet::page(const SheetPerson& person, std::size_t index) const {
       "<tr><th>{}</th><td>{} s</td><th>{}</th><td><input aria-label=\"{}\" "
       "value=\"\"></td></tr></table>",
       say(method.title), about_.task.title.empty() ? "" : ": ", report::escaped(about_.task.title),
-      say(kWords.screening), say(kWords.source), report::escaped(about_.source), say(kWords.person),
-      person.person.id, say(kWords.duration), number(scored.seconds, 1), say(kWords.by),
-      say(kWords.by));
+      say(word("screening")), say(word("source")), report::escaped(about_.source),
+      say(word("person")), person.person.id, say(word("duration")), number(scored.seconds, 1),
+      say(word("by")), say(word("by")));
   html += fmt::format("<p class=\"small\">{}</p>",
-                      say(scored.has_stance ? kWords.stance_own : kWords.stance_none));
+                      say(scored.has_stance ? word("stance_own") : word("stance_none")));
   html += form(person, index);
   html += times(summary);
   if (method.ordered) {
-    html += fmt::format("<h3>{}</h3>{}", say(kWords.timeline),
+    html += fmt::format("<h3>{}</h3>{}", say(word("timeline")),
                         score_timeline(scored, index,
-                                       german_ ? std::string(kWords.timeline.de)
-                                               : std::string(kWords.timeline.en)));
+                                       german_ ? std::string(word("timeline").de)
+                                               : std::string(word("timeline").en)));
   }
   html += worst(person, summary);
   html += unseen(summary);
   return html +
          fmt::format("<p class=\"small\">{}: {}</p><button class=\"keep\">{}</button></section>",
-                     say(kWords.source_of), report::escaped(method.source), say(kWords.keep));
+                     say(word("source_of")), report::escaped(method.source), say(word("keep")));
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ const Layout kAzureKinect{"azure_kinect_32",
                           kNames,
                           kRecipes,
                           0.75,
-                          0.25};
+                          0.25,
+                          {27, 28, 30, 29, 31}};
 
 }  // namespace chorus::layout

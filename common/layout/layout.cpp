@@ -95,7 +95,34 @@ std::array<Joint, kJointCount> joints_of(const Layout& layout,
     joints[i] = joint_of(recipe, landmarks);
     if (stand_in) joints[i].state = std::min(joints[i].state, JointState::Inferred);
   }
+  if (const auto turn = head_turn(layout, landmarks))
+    joints[index_of(JointId::Head)].orientation = *turn;
   return joints;
+}
+
+std::optional<Eigen::Quaterniond> head_turn(const Layout& layout,
+                                            std::span<const Landmark> landmarks) {
+  const HeadMarks& marks = layout.head;
+  if (!marks.known()) return std::nullopt;
+  for (const std::uint8_t mark :
+       {marks.nose, marks.left_eye, marks.right_eye, marks.left_ear, marks.right_ear}) {
+    const Landmark& landmark = landmark_at(landmarks, mark);
+    if (landmark.state == JointState::NotTracked || landmark.measurement != Measurement::Point ||
+        !landmark.position.allFinite())
+      return std::nullopt;
+  }
+  const auto at = [&](std::uint8_t mark) { return landmark_at(landmarks, mark).position; };
+  const Eigen::Vector3d across = at(marks.left_ear) - at(marks.right_ear);
+  const Eigen::Vector3d face = (at(marks.nose) + at(marks.left_eye) + at(marks.right_eye)) / 3.0 -
+                               0.5 * (at(marks.left_ear) + at(marks.right_ear));
+  const Eigen::Vector3d up = face.cross(across);
+  // Less than a tenth of a head's ears by its face: all on a line.
+  if (!(across.norm() > 0.01) || !(up.norm() > 1e-3)) return std::nullopt;
+  Eigen::Matrix3d turn;
+  turn.col(0) = across.normalized();
+  turn.col(1) = up.normalized();
+  turn.col(2) = turn.col(0).cross(turn.col(1));
+  return Eigen::Quaterniond(turn);
 }
 
 }  // namespace chorus::layout

@@ -27,6 +27,17 @@ struct Recipe {
   std::array<Share, 4> shares;  ///< Weights sum to one; unused shares have weight zero.
 };
 
+/// The landmarks that tell how the head is turned; all zero: the layout lacks some.
+struct HeadMarks {
+  std::uint8_t nose = 0;
+  std::uint8_t left_eye = 0;
+  std::uint8_t right_eye = 0;
+  std::uint8_t left_ear = 0;
+  std::uint8_t right_ear = 0;
+
+  [[nodiscard]] constexpr bool known() const { return left_ear != right_ear; }
+};
+
 struct Layout {
   std::string_view name;                        ///< "mediapipe_33"
   std::string_view tracker;                     ///< The tracker's human-readable name.
@@ -38,6 +49,7 @@ struct Layout {
   std::span<const Recipe> recipes;
   double tracked_from = 0.0;   ///< Lowest confidence (0 to 1) of a Tracked landmark.
   double inferred_from = 0.0;  ///< Lowest confidence of an Inferred landmark.
+  HeadMarks head = {};
 };
 
 /// All layouts.
@@ -64,8 +76,15 @@ struct Landmark {
 /// landmarks' errors are independent, and is known if all their covariances are.  For rays, the
 /// directions are averaged; with landmarks at different depths the result is only nearly the ray to
 /// their centre (off by 3 mm for hips at 3 m).  Landmarks have no orientation, so the joints have
-/// none.
+/// none, except Head where the layout has marks and all are seen as points (head_turn()).
 [[nodiscard]] std::array<Joint, kJointCount> joints_of(const Layout& layout,
                                                        std::span<const Landmark> landmarks);
+
+/// The orientation of the head (+y to the crown, +z to the face, +x to its left) from points: x
+/// from ear to ear, z from the middle of the ears to the middle of nose and eyes, which lies level
+/// with the ears in a head held upright (the eyes above, the nose below the Frankfurt plane).  None
+/// if a mark is not seen as a point, or all lie on a line.
+[[nodiscard]] std::optional<Eigen::Quaterniond> head_turn(const Layout& layout,
+                                                          std::span<const Landmark> landmarks);
 
 }  // namespace chorus::layout

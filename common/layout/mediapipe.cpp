@@ -36,6 +36,7 @@ const Layout kMediapipe{"mediapipe_33",
                         kNames,
                         kRecipes,
                         0.6,
-                        0.0};
+                        0.0,
+                        {0, 2, 5, 7, 8}};
 
 }  // namespace chorus::layout

@@ -47,7 +47,9 @@ constexpr std::array kRecipes38{
 }  // namespace
 
 /// Here and below, confidence is keypoint_confidence / 100.
-const Layout kZed34{"zed_34", "ZED SDK, BODY_34", kSource, kNames34, kRecipes34, 0.5, 0.1};
-const Layout kZed38{"zed_38", "ZED SDK, BODY_38", kSource, kNames38, kRecipes38, 0.5, 0.1};
+const Layout kZed34{"zed_34", "ZED SDK, BODY_34",  kSource, kNames34, kRecipes34, 0.5,
+                    0.1,      {27, 28, 30, 29, 31}};
+const Layout kZed38{"zed_38", "ZED SDK, BODY_38", kSource, kNames38, kRecipes38, 0.5,
+                    0.1,      {5, 6, 7, 8, 9}};
 
 }  // namespace chorus::layout

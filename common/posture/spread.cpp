@@ -33,6 +33,20 @@ std::array<Deviates, kDraws> fixed_deviates() {
   return all;
 }
 
+/// Rotation vectors, in pairs of opposite sign.
+std::array<Eigen::Vector3d, kDraws> fixed_head_turns() {
+  std::array<Eigen::Vector3d, kDraws> all;
+  std::mt19937_64 random(33);
+  const auto uniform = [&] { return (static_cast<double>(random() >> 11U) + 0.5) * 0x1p-53; };
+  for (std::size_t k = 0; k < kDraws; k += 2) {
+    for (int axis = 0; axis < 3; ++axis)
+      all[k][axis] = kHeadTurn * std::sqrt(-2.0 * std::log(uniform())) *
+                     std::cos(2.0 * std::numbers::pi * uniform());
+    all[k + 1] = -all[k];
+  }
+  return all;
+}
+
 /// The square root of each joint's covariance; zero where it is not known.
 struct Roots {
   std::array<Eigen::Matrix3d, kJointCount> of;
@@ -114,6 +128,7 @@ Spread spread_of(const Skeleton<WorldSpace>& body) {
 
 DrawnMeasures drawn_measures(const Skeleton<WorldSpace>& body) {
   static const std::array<Deviates, kDraws> kDeviates = fixed_deviates();
+  static const std::array<Eigen::Vector3d, kDraws> kHeadTurns = fixed_head_turns();
   const Roots roots = roots_of(body);
   const auto head = head_of(body);
   const Located joints = points_of(body);
@@ -124,7 +139,9 @@ DrawnMeasures drawn_measures(const Skeleton<WorldSpace>& body) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       if (moved[j]) *moved[j] += roots.of[j] * kDeviates[k][j];
     }
-    drawn.draws[k] = posture_of(moved, head).measures;
+    const auto turned =
+        head ? std::optional<Eigen::Quaterniond>(exp_map(kHeadTurns[k]) * *head) : std::nullopt;
+    drawn.draws[k] = posture_of(moved, turned).measures;
   }
   return drawn;
 }

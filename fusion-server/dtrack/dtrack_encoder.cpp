@@ -113,6 +113,29 @@ std::size_t add_bodies(std::string& out, const outlet::Axes& axes,
   return count;
 }
 
+std::size_t people_ids(const outlet::TrackerFrame& frame) {
+  return std::min(kJointCount * frame.slots, kMaxDtrackBodies);
+}
+
+/// Things in hands; what does not fit into a datagram is left out.
+std::size_t add_props(std::string& out, const outlet::Axes& axes,
+                      const outlet::TrackerFrame& frame) {
+  constexpr std::size_t kRest = 256;  // fr, ts, ts2, 6dcal, 6d and 3d, without the bodies
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frame.props.size(); ++i) {
+    const outlet::TrackerJoint& pose = frame.props[i].pose;
+    if (!pose.tracked) continue;
+    std::string body = " [";
+    add(body, people_ids(frame) + i);
+    body += kSeen;
+    add_pose(body, axes, pose.position, pose.orientation);
+    if (out.size() + body.size() + kRest > kMaxBytes) break;
+    out += body;
+    ++count;
+  }
+  return count;
+}
+
 /// The text " [slot joints][joint 1.000][..][..] ..."; "" when the body's rig is unknown.
 std::string human_model(const outlet::Axes& axes, const outlet::TrackerBody& body) {
   const outlet::Humanoid rig = outlet::humanoid_of(body);
@@ -160,10 +183,11 @@ std::string encode(const outlet::TrackerFrame& frame, const Content& content) {
   std::string bodies;
   std::size_t count = 0;
   for (const outlet::TrackerBody& body : frame.bodies) count += add_bodies(bodies, axes, body);
+  count += add_props(bodies, axes, frame);
   std::string out;
   add_line(out, "fr", frame.sequence & 0xFFFF'FFFFU, "");
   add_times(out, frame.instant, content.latency);
-  add_line(out, "6dcal", std::min(kJointCount * frame.slots, kMaxDtrackBodies), "");
+  add_line(out, "6dcal", people_ids(frame) + frame.props.size(), "");
   add_line(out, "6d", count, bodies);
   add_line(out, "3d", 0, "");
   if (content.human_model) add_human_models(out, axes, frame);

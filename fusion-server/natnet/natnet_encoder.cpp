@@ -49,11 +49,15 @@ MotiveBone shown(const outlet::TrackerBody& body, JointId id) {
 }
 
 void add_rigid_bodies(Bytes& out, const outlet::TrackerFrame& frame) {
-  append(out, static_cast<std::uint32_t>(kJointCount * frame.bodies.size()));
+  append(out, static_cast<std::uint32_t>(kJointCount * frame.bodies.size() + frame.props.size()));
   for (const outlet::TrackerBody& body : frame.bodies) {
     for (std::size_t i = 0; i < kJointCount; ++i) {
       add_pose(out, rigid_body_id(body.slot, i), shown(body, static_cast<JointId>(i)));
     }
+  }
+  for (std::size_t i = 0; i < frame.props.size(); ++i) {
+    const outlet::TrackerJoint& pose = frame.props[i].pose;
+    add_pose(out, rigid_body_id(frame.slots, i), {pose.position, pose.orientation, pose.tracked});
   }
 }
 
@@ -134,16 +138,21 @@ Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models, cons
   return message_of(Message::Frame, out);
 }
 
-Bytes encode_models(std::size_t slots, const Models& models,
-                    const std::vector<BoneOffsets>& bones) {
+Bytes encode_models(std::size_t slots, const Models& models, const std::vector<BoneOffsets>& bones,
+                    const std::vector<std::string>& props) {
   const std::size_t each = (models.rigid_bodies ? kJointCount : 0) + (models.skeletons ? 1 : 0);
   Bytes out;
-  append(out, static_cast<std::uint32_t>(each * slots));
+  const std::size_t things = models.rigid_bodies ? props.size() : 0;
+  append(out, static_cast<std::uint32_t>(each * slots + things));
   for (std::size_t slot = 0; slot < slots; ++slot) {
     if (models.rigid_bodies) describe_rigid_bodies(out, slot);
     if (models.skeletons) {
       describe_skeleton(out, slot, slot < bones.size() ? bones[slot] : adult_offsets());
     }
+  }
+  for (std::size_t i = 0; i < things; ++i) {
+    append(out, kRigidBody);
+    add_description(out, props[i], rigid_body_id(slots, i), {{}, kNoParent, {}});
   }
   return message_of(Message::Models, out);
 }

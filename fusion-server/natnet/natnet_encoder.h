@@ -5,6 +5,7 @@
 // list of models never changes; only a skeleton's bone lengths change, once they are measured.
 //   rigid body  id = 25 * slot + joint + 1, "Body0_Head"; a joint that is not tracked has bit 0 of
 //               its params clear and is placed at the next tracked joint towards the pelvis
+//               ids of things in hands follow those of all slots, under their own names
 //   skeleton    id = slot + 1, "Body0"; its bones are "Body0_Hip" .. with ids 1 .. 21, in frames
 //               skeleton << 16 | bone; left out while it is unknown which way the body faces
 // Frame: i32 number; marker sets 0; other markers 0; rigid bodies {i32 id, f32 x y z, f32 qx qy qz
@@ -16,6 +17,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "fusion-server/natnet/bone_lengths.h"
@@ -44,8 +46,9 @@ struct Times {
                                  const Times& times, bool models_changed = false);
 
 /// The whole message with the model definitions, for all slots.  `bones` is by slot; a missing slot
-/// gets an adult's.
+/// gets an adult's.  `props`: the names of things in hands.
 [[nodiscard]] Bytes encode_models(std::size_t slots, const Models& models,
-                                  const std::vector<BoneOffsets>& bones = {});
+                                  const std::vector<BoneOffsets>& bones = {},
+                                  const std::vector<std::string>& props = {});
 
 }  // namespace chorus::natnet

@@ -32,6 +32,7 @@ class NatNetOutlet final : public outlet::Outlet {
         server_(std::move(server)),
         clock_(context.clock),
         start_(clock_->now()),
+        props_(context.props),
         lengths_(context.slots),
         bones_(context.slots, adult_offsets()) {}
 
@@ -58,7 +59,7 @@ class NatNetOutlet final : public outlet::Outlet {
       changed = true;
     }
     if (!changed) return;
-    server_->describe(encode_models(bones_.size(), models_, bones_));
+    server_->describe(encode_models(bones_.size(), models_, bones_, props_));
     tell_change_ = kTellChange;
   }
 
@@ -66,6 +67,7 @@ class NatNetOutlet final : public outlet::Outlet {
   std::unique_ptr<Server> server_;
   std::shared_ptr<const Clock> clock_;
   Timestamp start_;
+  std::vector<std::string> props_;
   std::vector<BoneLengths> lengths_;  ///< Measurements by slot.
   std::vector<BoneOffsets> bones_;    ///< By slot, as last described.
   int tell_change_ = 0;               ///< Number of frames that have yet to announce a change.
@@ -114,7 +116,7 @@ Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
   options.desk.info.data_port = static_cast<std::uint16_t>(settings.data_port);
   options.desk.info.multicast = settings.transmission == Transmission::Multicast;
   options.desk.info.group = group_of(settings.group).value_or(options.desk.info.group);
-  options.desk.models = encode_models(context.slots, settings.models);
+  options.desk.models = encode_models(context.slots, settings.models, {}, context.props);
   options.desk.max_clients = static_cast<std::size_t>(settings.max_clients);
   options.desk.max_clients_per_address = static_cast<std::size_t>(settings.max_clients_per_address);
   options.desk.client_timeout = settings.client_timeout;

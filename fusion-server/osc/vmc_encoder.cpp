@@ -69,6 +69,9 @@ std::vector<std::vector<char>> encode(const outlet::TrackerBody* body, const Con
     out.add(pose("/VMC/Ext/Root/Pos", "root", outlet::BonePose{}));
     add_bones(out, rig);
     if (content.trackers) add_trackers(out, rig);
+    for (const outlet::TrackerProp* prop : content.props)
+      out.add(pose("/VMC/Ext/Tra/Pos", prop->name,
+                   {prop->pose.position, prop->pose.orientation, true}));
   }
   return out.all();
 }

@@ -8,7 +8,8 @@
 //   /VMC/Ext/Bone/Pos  s bone, f px py pz qx qy qz qw: relative to its parent, with rotations from
 //                      the T-pose; Hips has its position in the world.  Multiplied along the chain
 //                      they give the joints' positions again.
-//   /VMC/Ext/Tra/Pos   s serial, the same: poses in the world, if enabled
+//   /VMC/Ext/Tra/Pos   s serial, the same: poses in the world; of the body, if enabled, and of the
+//                      things that the person holds, by their names
 // A bone whose joints are not tracked is omitted (the receiver keeps its pose).  Bones: humanoid.h.
 #pragma once
 
@@ -19,8 +20,9 @@
 namespace chorus::vmc {
 
 struct Content {
-  double seconds = 0.0;   ///< Time since the performer started.
-  bool trackers = false;  ///< Adds /VMC/Ext/Tra/Pos.
+  double seconds = 0.0;                                ///< Time since the performer started.
+  bool trackers = false;                               ///< Adds /VMC/Ext/Tra/Pos.
+  std::vector<const outlet::TrackerProp*> props = {};  ///< What the person holds.
 };
 
 /// The datagrams of one frame. Without a body (nullptr), or if its pelvis or facing is unknown,

@@ -15,13 +15,15 @@ namespace {
 outlet::DatagramStream vmc_stream_of(const outlet::PersonTargets& person, bool trackers) {
   const auto slot = static_cast<std::size_t>(person.slot);
   std::optional<Timestamp> first;
-  return {
-      person.targets,
-      [slot, trackers, first](const outlet::TrackerFrame& frame) mutable {
-        if (!first) first = frame.instant;
-        return encode(outlet::in_slot(frame, slot), {seconds(frame.instant - *first), trackers});
-      },
-      encode_end()};
+  return {person.targets,
+          [slot, trackers, first](const outlet::TrackerFrame& frame) mutable {
+            if (!first) first = frame.instant;
+            Content content{seconds(frame.instant - *first), trackers, {}};
+            for (const outlet::TrackerProp& prop : frame.props)
+              if (prop.pose.tracked && prop.slot == slot) content.props.push_back(&prop);
+            return encode(outlet::in_slot(frame, slot), content);
+          },
+          encode_end()};
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ SinkCounters OutletSink::counters() const {
 }
 
 void OutletSink::run() {
-  TrackerState state(timing_.slots);
+  TrackerState state(timing_.slots, timing_.board);
   while (!waiting_.closed()) {
     for (const auto& snapshot : waiting_.take(kPatience)) {
       try {

@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "common/base/handover.h"
 #include "common/base/rate_report.h"
@@ -29,6 +31,7 @@ class Outlet {
 struct OutletContext {
   std::size_t slots = 6;  ///< Maximum number of people.
   std::shared_ptr<const Clock> clock;
+  std::vector<std::string> props = {};  ///< Names of the things in hands, which are announced.
 };
 
 enum class Latency {
@@ -40,6 +43,7 @@ struct OutletTiming {
   Latency latency = Latency::Exact;
   std::size_t slots = 6;  ///< Maximum number of people.
   std::shared_ptr<const Clock> clock;
+  std::shared_ptr<const workplace::PropBoard> board = {};  ///< Who holds what.
 };
 
 /// Passes frames to the outlet on a thread of its own.  When two frames wait for the outlet and

@@ -47,13 +47,14 @@ void set_velocity(TrackerJoint& now, const TrackerJoint& before, double dt, bool
   now.angular_velocity = kNewest * angular + (1.0 - kNewest) * before.angular_velocity;
 }
 
+void move_on(TrackerJoint& joint, double dt) {
+  joint.position += dt * joint.velocity;
+  joint.orientation = (exp_map(dt * joint.angular_velocity) * joint.orientation).normalized();
+}
+
 /// Moves the joints on; `fused` is the same body.
 void move_on(TrackerBody& body, const FusedBody* fused, Duration ahead) {
-  const double dt = seconds(ahead);
-  for (TrackerJoint& joint : body.joints) {
-    joint.position += dt * joint.velocity;
-    joint.orientation = (exp_map(dt * joint.angular_velocity) * joint.orientation).normalized();
-  }
+  for (TrackerJoint& joint : body.joints) move_on(joint, seconds(ahead));
   if (fused == nullptr || !fused->motion) return;
   const FusedBody later = fusion::predicted(*fused, ahead);
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -72,6 +73,38 @@ const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot) {
   const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
                                   [&](const TrackerBody& body) { return body.slot == slot; });
   return found == frame.bodies.end() ? nullptr : &*found;
+}
+
+TrackerState::TrackerState(std::size_t slots, std::shared_ptr<const workplace::PropBoard> board)
+    : slots_(slots),
+      board_(board ? std::move(board) : std::make_shared<const workplace::PropBoard>()),
+      held_(board_),
+      props_before_(board_->props().size()) {}
+
+/// `step`: seconds since the last frame; zero: there was none shortly before.
+void TrackerState::add_props(const Snapshot& snapshot, double step, TrackerFrame& frame) {
+  std::vector<workplace::Holder> people;
+  for (const TrackerBody& body : frame.bodies) {
+    const auto fused = std::ranges::find(snapshot.bodies, body.person, &FusedBody::id);
+    people.push_back({body.person.value, &fused->skeleton});
+  }
+  const auto props = held_.follow(snapshot.instant, people);
+  for (std::size_t i = 0; i < props.size(); ++i) {
+    TrackerProp prop{board_->props()[i].name, 0, {}};
+    if (props[i].pose) {
+      prop.pose.position = props[i].pose->world_from_prop.translation();
+      prop.pose.orientation = Eigen::Quaterniond(props[i].pose->world_from_prop.linear());
+    }
+    if (props[i].tracked) {
+      const auto holder =
+          std::ranges::find(frame.bodies, PersonId{*props[i].holding.person}, &TrackerBody::person);
+      prop.slot = holder->slot;
+      prop.pose.tracked = prop.pose.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
+    }
+    if (step > 0.0) set_velocity(prop.pose, props_before_[i].pose, step, false);
+    frame.props.push_back(std::move(prop));
+  }
+  props_before_ = frame.props;
 }
 
 TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
@@ -99,6 +132,7 @@ TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
   }
   std::sort(frame.bodies.begin(), frame.bodies.end(),
             [](const TrackerBody& a, const TrackerBody& b) { return a.slot < b.slot; });
+  add_props(snapshot, continues ? seconds(step) : 0.0, frame);
   instant_ = snapshot.instant;
   return frame;
 }
@@ -110,6 +144,7 @@ TrackerFrame predicted(TrackerFrame frame, const Snapshot& snapshot, Timestamp t
     const auto fused = std::ranges::find(snapshot.bodies, body.person, &FusedBody::id);
     move_on(body, fused == snapshot.bodies.end() ? nullptr : &*fused, ahead);
   }
+  for (TrackerProp& prop : frame.props) move_on(prop.pose, seconds(ahead));
   frame.instant += ahead;
   return frame;
 }

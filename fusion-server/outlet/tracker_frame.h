@@ -7,8 +7,11 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
+#include "common/workplace/prop_board.h"
 #include "fusion-server/flow/snapshot.h"
 
 namespace chorus::outlet {
@@ -36,11 +39,19 @@ struct TrackerBody {
   [[nodiscard]] const TrackerJoint& operator[](JointId id) const { return joints[index_of(id)]; }
 };
 
+/// Something that a person holds, as a rigid body of its own.
+struct TrackerProp {
+  std::string name;
+  std::size_t slot = 0;  ///< Of the person who holds it, if it is tracked.
+  TrackerJoint pose;     ///< Not tracked: nobody who is sent holds it.
+};
+
 struct TrackerFrame {
   std::uint64_t sequence = 0;  ///< Protocols with 32-bit counters send it modulo 2^32.
   Timestamp instant;           ///< Time of the poses: the fused instant, or later if predicted.
   std::size_t slots = 0;       ///< Largest number of persons that are sent.
   std::vector<TrackerBody> bodies;  ///< Ordered by slot.
+  std::vector<TrackerProp> props;   ///< All that there are, in the order of the configuration.
 };
 
 /// The joint itself if it is tracked, otherwise the nearest tracked joint towards the pelvis; if
@@ -55,7 +66,8 @@ struct TrackerFrame {
 /// and otherwise, as for all orientations, those from snapshot to snapshot.
 class TrackerState {
  public:
-  explicit TrackerState(std::size_t slots) : slots_(slots) {}
+  explicit TrackerState(std::size_t slots,
+                        std::shared_ptr<const workplace::PropBoard> board = nullptr);
 
   /// The next frame.  People without a slot, or in a slot too high, are left out.  Velocities from
   /// snapshot to snapshot are zero unless the instant is later than that of the last snapshot, by
@@ -63,7 +75,12 @@ class TrackerState {
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:
+  void add_props(const Snapshot& snapshot, double step, TrackerFrame& frame);
+
   std::size_t slots_;
+  std::shared_ptr<const workplace::PropBoard> board_;
+  workplace::HeldProps held_;
+  std::vector<TrackerProp> props_before_;
   std::map<PersonId, TrackerBody> before_;
   Timestamp instant_{};
 };

@@ -18,7 +18,7 @@ Result<void> OutputBank::replace(std::size_t index, const OutputsConfig& config)
   }  // `old` is destroyed after the lock: closing may wait for a thread.
   Result<void> outcome;
   if (fresh.enabled) {
-    auto sink = open_output(config, index, clock_);
+    auto sink = open_output(config, index, context_);
     if (sink) {
       fresh.sink = std::move(*sink);
     } else {

@@ -15,7 +15,7 @@ namespace chorus::outputs {
 /// Thread-safe.
 class OutputBank final : public Sink {
  public:
-  explicit OutputBank(std::shared_ptr<const Clock> clock) : clock_(std::move(clock)) {}
+  explicit OutputBank(OutputsContext context) : context_(std::move(context)) {}
   ~OutputBank() override;
 
   /// Opens what is enabled, closes what is not, and opens anew what has changed; the others go on
@@ -37,7 +37,7 @@ class OutputBank final : public Sink {
   /// the same port.
   Result<void> replace(std::size_t index, const OutputsConfig& config);
 
-  std::shared_ptr<const Clock> clock_;
+  OutputsContext context_;
   std::mutex applying_;       ///< One apply() at a time.
   mutable std::mutex mutex_;  ///< Guards places_; never held while an output opens or closes.
   std::vector<Place> places_;

@@ -33,8 +33,11 @@ void for_each_output(Config& config, const Visitor& visit) {
 /// open_outlet() is found in the protocol's namespace, by argument-dependent lookup.
 template <class Setting>
 Result<std::unique_ptr<Sink>> open_one(std::string_view key, const Setting& output,
-                                       const std::shared_ptr<const Clock>& clock) {
-  const outlet::OutletContext context{static_cast<std::size_t>(output.common.max_persons), clock};
+                                       const OutputsContext& given) {
+  outlet::OutletContext context{
+      static_cast<std::size_t>(output.common.max_persons), given.clock, {}};
+  if (given.board)
+    for (const workplace::Prop& prop : given.board->props()) context.props.push_back(prop.name);
   auto outlet = open_outlet(output.protocol, context);
   if (!outlet) {
     Error error = outlet.error();
@@ -43,7 +46,7 @@ Result<std::unique_ptr<Sink>> open_one(std::string_view key, const Setting& outp
   }
   return std::make_unique<outlet::OutletSink>(
       std::move(*outlet),
-      outlet::OutletTiming{output.common.latency, context.slots, context.clock});
+      outlet::OutletTiming{output.common.latency, context.slots, context.clock, given.board});
 }
 
 /// Calls `visit` with the key and the settings of the output with this index, and returns what it
@@ -77,11 +80,11 @@ void read_outputs(ConfigReader reader, OutputsConfig& out) {
 }
 
 Result<std::vector<std::unique_ptr<Sink>>> open_outputs(const OutputsConfig& config,
-                                                        const std::shared_ptr<const Clock>& clock) {
+                                                        const OutputsContext& context) {
   std::vector<std::unique_ptr<Sink>> sinks;
   for (std::size_t i = 0; i < output_names().size(); ++i) {
     if (!is_enabled(config, i)) continue;
-    auto sink = open_output(config, i, clock);
+    auto sink = open_output(config, i, context);
     if (!sink) return pass(sink);
     sinks.push_back(std::move(*sink));
   }
@@ -125,11 +128,11 @@ bool same_output(const OutputsConfig& a, const OutputsConfig& b, std::size_t ind
 }
 
 Result<std::unique_ptr<Sink>> open_output(const OutputsConfig& config, std::size_t index,
-                                          const std::shared_ptr<const Clock>& clock) {
+                                          const OutputsContext& context) {
   std::optional<Result<std::unique_ptr<Sink>>> opened;
   std::size_t at = 0;
   for_each_output(config, [&](std::string_view key, const auto& output) {
-    if (at++ == index) opened = open_one(key, output, clock);
+    if (at++ == index) opened = open_one(key, output, context);
   });
   if (!opened) return fail(ErrorCode::NotFound, "outputs", "there is no such output");
   return std::move(*opened);

@@ -61,14 +61,20 @@ void read_outputs(ConfigReader reader, OutputsConfig& out);
 [[nodiscard]] bool is_enabled(const OutputsConfig& config, std::size_t index);
 [[nodiscard]] bool same_output(const OutputsConfig& a, const OutputsConfig& b, std::size_t index);
 
+/// What all outputs get: the time, and which things are in whose hands (null: there are none).
+struct OutputsContext {
+  std::shared_ptr<const Clock> clock;
+  std::shared_ptr<const workplace::PropBoard> board = {};
+};
+
 /// Opens one output, enabled or not.  The error's context begins with "outputs.NAME".
 [[nodiscard]] Result<std::unique_ptr<Sink>> open_output(const OutputsConfig& config,
                                                         std::size_t index,
-                                                        const std::shared_ptr<const Clock>& clock);
+                                                        const OutputsContext& context);
 
 /// Opens the enabled outputs.  Returns the error of the first one that cannot be opened.
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
-    const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
+    const OutputsConfig& config, const OutputsContext& context);
 
 /// The smallest max_persons of the enabled outputs, all of which show the slots below it; the
 /// default max_persons if no output is enabled.

@@ -31,6 +31,7 @@ service::Self self_of(const std::string& title, bool with_viewer) {
                          {"registration", "registration", "where the sensors stand"},
                          {"people/", "personList", "who is there, and what they are called"},
                          {"events", "eventList", "what happened in the last day"},
+                         {"props/", "propList", "what people hold, and where it is"},
                          {"outputs/", "", "which other protocols are served, and to how many"}});
   return self;
 }

@@ -21,6 +21,7 @@
 #include "fusion-server/rest/inertial_resources.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/output_resources.h"
+#include "fusion-server/rest/prop_resources.h"
 #include "fusion-server/rest/registration_resources.h"
 #include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/rest/tracker_description.h"
@@ -118,6 +119,7 @@ struct FusionServer::Impl {
     serving.run = fmt::format("{:x}", to_unix_ns(clock->now()) / 1'000'000);
     const StartSettings& at_start = config.at_start;
     serving.root = service::root_of(at_start.http, at_start.secure, at_start.http.port);
+    board = std::make_shared<workplace::PropBoard>(at_start.props);
   }
 
   std::shared_ptr<http::Router> make_router();
@@ -134,7 +136,8 @@ struct FusionServer::Impl {
   FusionSettings config;  ///< Its live part is guarded by mutex.
   std::shared_ptr<const Clock> clock;
   service::Serving serving;
-  std::optional<outputs::OutputBank> outputs;  ///< Set before the first request.
+  std::shared_ptr<workplace::PropBoard> board;  ///< Who holds what.
+  std::optional<outputs::OutputBank> outputs;   ///< Set before the first request.
   mutable std::mutex mutex;
   Status status;  ///< Guarded by mutex.
   std::shared_ptr<const service::Configuration> configuration =
@@ -147,6 +150,7 @@ struct FusionServer::Impl {
   std::optional<rest::FrameSink> frame_sink;
   std::optional<rest::SensorResources> sensors;
   std::optional<rest::InertialResources> inertial;
+  std::optional<rest::PropResources> props;
   std::optional<rest::RegistrationResources> registration;
   std::optional<service::Recordings> recordings;
   std::optional<RecordingTap> tap;
@@ -195,6 +199,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   frames->predict_with([this] { return frame_sink->predicted(clock->now()); });
   sensors.emplace(serving, ids_of(config.live.sensors));
   inertial.emplace(serving, ids_of(config.live.inertial));
+  props.emplace(serving, board);
   registration.emplace(serving, std::move(control));
   recordings.emplace(recordings_options(config.at_start, serving, clock));
   tap.emplace(*recordings, clock);
@@ -205,6 +210,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   frames->add_routes(*router);
   sensors->add_routes(*router);
   inertial->add_routes(*router);
+  props->add_routes(*router);
   registration->add_routes(*router);
   rest::add_description_routes(*router, serving, config.at_start.title,
                                viewer_folder(config.at_start.viewer_dir));
@@ -255,6 +261,7 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   options.store_trouble = store_trouble;
   options.clock = clock;
   options.sinks.push_back(&*frame_sink);
+  options.sinks.push_back(&*props);
   options.sinks.push_back(&*tap);
   options.sinks.push_back(&*outputs);
   options.sinks.push_back(lookout->people());
@@ -319,7 +326,7 @@ Result<void> FusionServer::start() {
     log::warn("the configuration may not be what is meant", {{"what", concern}});
   auto initial = initial_registration(s.config, s.store);
   if (!initial) return pass(initial);
-  s.outputs.emplace(s.clock);
+  s.outputs.emplace(outputs::OutputsContext{s.clock, s.board});
   if (auto opened = s.outputs->apply(s.config.live.outputs); !opened) return opened;
   http::ServerConfig http = s.config.at_start.http;
   http.tokens = s.config.live.tokens;

@@ -311,6 +311,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   read_inertial(root, trust, live);
   read_registration(root.child("registration"), settings);
   outputs::read_outputs(root.child("outputs"), settings.live.outputs);
+  at_start.props = workplace::read_props(root);
   root.read("state_dir", at_start.state_dir);
   root.read("viewer_dir", at_start.viewer_dir);
   service::read_recording(root.child("recording"), at_start.recording);

@@ -10,6 +10,7 @@
 #include "common/http/server.h"
 #include "common/service/log_config.h"
 #include "common/service/recordings.h"
+#include "common/workplace/prop.h"
 #include "fusion-server/core/registration_session.h"
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/outputs/outputs.h"
@@ -50,6 +51,7 @@ struct StartSettings {
   /// The folder for state that is kept across restarts; "auto": see state_folder(); empty: none.
   std::string state_dir;
   service::RecordingConfig recording;
+  std::vector<workplace::Prop> props;  ///< Things that people take up and put down.
   /// The folder of the static files of /viewer/; "auto": see viewer_folder(); empty: no viewer.
   std::string viewer_dir;
 

@@ -51,7 +51,8 @@ Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
   options.max_clients_per_address = static_cast<std::size_t>(settings.max_clients_per_address);
   options.clock = context.clock;
   auto outlet = std::make_unique<VrpnOutlet>(
-      std::move(options), std::make_shared<const Trackers>(context.slots, settings.joint_trackers));
+      std::move(options),
+      std::make_shared<const Trackers>(context.slots, settings.joint_trackers, context.props));
   if (auto started = outlet->start(); !started) return pass(started);
   log::info("VRPN serves", {{"address", settings.address}, {"port", outlet->port()}});
   return outlet;

@@ -80,13 +80,16 @@ void add_body(Reports& out, Timestamp time, const outlet::TrackerBody& body,
 
 }  // namespace
 
-Trackers::Trackers(std::size_t slots, bool each_joint) : slots_(slots), each_joint_(each_joint) {
+Trackers::Trackers(std::size_t slots, bool each_joint, const std::vector<std::string>& props)
+    : slots_(slots), each_joint_(each_joint) {
   for (std::size_t slot = 0; slot < slots; ++slot) names_.push_back("Body" + std::to_string(slot));
   for (std::size_t slot = 0; each_joint && slot < slots; ++slot) {
     for (const std::string_view joint : kJointNames) {
       names_.push_back(names_[slot] + "_" + std::string(joint));
     }
   }
+  first_prop_ = names_.size();
+  names_.insert(names_.end(), props.begin(), props.end());
 }
 
 std::optional<std::size_t> Trackers::index_of(std::string_view name) const {
@@ -98,6 +101,11 @@ std::optional<std::size_t> Trackers::index_of(std::string_view name) const {
 std::optional<std::size_t> Trackers::joint(std::size_t slot, std::size_t joint) const {
   if (!each_joint_) return std::nullopt;
   return slots_ + slot * kJointCount + joint;
+}
+
+std::optional<std::size_t> Trackers::prop(std::size_t index) const {
+  if (first_prop_ + index >= names_.size()) return std::nullopt;
+  return first_prop_ + index;
 }
 
 std::string Trackers::descriptions() const {
@@ -114,6 +122,11 @@ std::string Trackers::descriptions() const {
 Reports encode(const outlet::TrackerFrame& frame, const Trackers& trackers) {
   Reports out;
   for (const outlet::TrackerBody& body : frame.bodies) add_body(out, frame.instant, body, trackers);
+  for (std::size_t i = 0; i < frame.props.size(); ++i) {
+    const outlet::TrackerJoint& pose = frame.props[i].pose;
+    const auto own = trackers.prop(i);
+    if (own && pose.tracked) add_joint(out, frame.instant, {*own, 0}, numbers_of(pose));
+  }
   return out;
 }
 

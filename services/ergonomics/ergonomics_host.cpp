@@ -52,12 +52,22 @@ Result<std::unique_ptr<ErgonomicsHost>> ErgonomicsHost::make(const ErgonomicsSet
     if (!own) return pass(own);
     rules.insert(rules.end(), own->begin(), own->end());
   }
-  return std::make_unique<ErgonomicsHost>(settings, Scoring(std::move(*methods), std::move(rules)));
+  std::optional<workplace::Scene> scene;
+  if (!settings.at_start.scene.empty()) {
+    const auto text = read_file(settings.at_start.scene, kMaxRulesBytes);
+    if (!text) return pass(text);
+    auto read = workplace::read_scene(*text, settings.at_start.scene);
+    if (!read) return pass(read);
+    scene = std::move(*read);
+  }
+  return std::make_unique<ErgonomicsHost>(settings, Scoring(std::move(*methods), std::move(rules)),
+                                          std::move(scene));
 }
 
-ErgonomicsHost::ErgonomicsHost(const ErgonomicsSettings& settings, Scoring scoring)
+ErgonomicsHost::ErgonomicsHost(const ErgonomicsSettings& settings, Scoring scoring,
+                               std::optional<workplace::Scene> scene)
     : settings_(settings),
-      service_(std::move(scoring), serving_of(settings.at_start)),
+      service_(std::move(scoring), serving_of(settings.at_start), std::move(scene)),
       followers_(follow_options(settings.at_start)),
       server_(server_config(settings), routes()) {}
 
@@ -115,7 +125,8 @@ service::About about_ergonomics() {
           "  chorus-ergonomics --tracker http://tracker.local:8080/\n"
           "  curl http://127.0.0.1:8093/ergonomics/\n",
           {{"--tracker", "tracker.url", "The tracker whose people are scored (tracker.url)"},
-           {"--methods", "methods", "Methods, by commas (methods)"}},
+           {"--methods", "methods", "Methods, by commas (methods)"},
+           {"--scene", "scene", "Points, boxes and obstacles of the workplace (scene)"}},
           "/etc/chorus/ergonomics.json the configuration that the service of the package reads\n"
           "/usr/share/doc/chorus-ergonomics/examples/ergonomics.json every key with its default\n"};
 }

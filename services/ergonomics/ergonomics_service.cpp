@@ -5,6 +5,7 @@
 #include "common/time/timestamp.h"
 #include "services/ergonomics/ergonomics_host.h"
 #include "services/ergonomics/score_nodes.h"
+#include "services/ergonomics/workplace_nodes.h"
 
 namespace chorus::ergonomics_service {
 
@@ -29,8 +30,12 @@ Result<const PersonScores*> person_in(const ScoreFrame& frame, std::uint64_t id)
 
 }  // namespace
 
-ErgonomicsService::ErgonomicsService(Scoring scoring, service::Serving serving)
-    : scoring_(std::move(scoring)), methods_(scoring_.methods()), serving_(std::move(serving)) {}
+ErgonomicsService::ErgonomicsService(Scoring scoring, service::Serving serving,
+                                     std::optional<workplace::Scene> scene)
+    : scoring_(std::move(scoring)),
+      methods_(scoring_.methods()),
+      serving_(std::move(serving)),
+      scene_(std::move(scene)) {}
 
 void ErgonomicsService::take(const resource::FrameResource& frame) {
   std::shared_ptr<const ScoreFrame> scores;
@@ -39,6 +44,7 @@ void ErgonomicsService::take(const resource::FrameResource& frame) {
     const std::uint64_t before = scoring_.latest().sequence;
     const ScoreFrame& latest = scoring_.take(frame);
     if (latest.sequence == before) return;
+    frame_ = frame;
     scores = std::make_shared<const ScoreFrame>(latest);
   }
   live_->publish_lazily([scores, this] {
@@ -75,6 +81,63 @@ ErgonomicsService::Answer ErgonomicsService::person(const Request& request,
   options.captured = frame->captured;
   return resource::document_of(person_node(**scores, methods_, ""), std::move(options),
                                serving_.place("ergonomics/" + std::to_string(*id)));
+}
+
+Result<const resource::BodyResource*> ErgonomicsService::body_of(const PathParams& params) const {
+  const auto id = person_of(params);
+  if (!id) return pass(id);
+  for (const resource::BodyResource& body : frame_.bodies) {
+    if (body.id == *id) return &body;
+  }
+  return fail(ErrorCode::NotFound, "person " + std::to_string(*id), "is not in the frame");
+}
+
+ErgonomicsService::Answer ErgonomicsService::size(const PathParams& params) const {
+  const std::lock_guard lock(mutex_);
+  const auto body = body_of(params);
+  if (!body) return pass(body);
+  const auto weight = weights_.find((*body)->id);
+  const auto told = weight == weights_.end() ? std::nullopt : std::optional(weight->second);
+  http::DocumentOptions options;
+  options.version = serving_.run + "-" + std::to_string(frame_.sequence) +
+                    (told ? "-" + std::to_string(*told) : "");
+  return resource::document_of(size_node(**body, told), std::move(options),
+                               serving_.place("ergonomics/" + params.at("person") + "/size",
+                                              "ergonomics/" + params.at("person") + "/"));
+}
+
+ErgonomicsService::Answer ErgonomicsService::at_workplace(const PathParams& params) const {
+  if (!scene_)
+    return fail(ErrorCode::NotFound, "workplace",
+                "is not known: name its scene (--scene FILE, or \"scene\" in the configuration)");
+  const std::lock_guard lock(mutex_);
+  const auto body = body_of(params);
+  if (!body) return pass(body);
+  http::DocumentOptions options;
+  options.version = serving_.run + "-" + std::to_string(frame_.sequence);
+  options.captured = frame_.captured;
+  resource::BodyResource now = **body;
+  now.captured = frame_.captured;
+  return resource::document_of(workplace_node(now, *scene_), std::move(options),
+                               serving_.place("ergonomics/" + params.at("person") + "/workplace",
+                                              "ergonomics/" + params.at("person") + "/"));
+}
+
+Result<http::ActionResult> ErgonomicsService::weigh(const Request& request,
+                                                    const PathParams& params) {
+  constexpr double kHeaviest = 300.0;
+  const auto fields = parse_json(request.body);
+  if (!fields) return pass(fields);
+  const auto kg =
+      fields->is_object() && fields->size() == 1 ? fields->find("weightKg") : fields->end();
+  if (kg == fields->end() || !kg->is_number() || !(kg->get<double>() >= 1.0) ||
+      !(kg->get<double>() <= kHeaviest))
+    return fail(ErrorCode::InvalidArgument, "weightKg", "send {\"weightKg\": 1 to 300}");
+  const std::lock_guard lock(mutex_);
+  const auto body = body_of(params);
+  if (!body) return pass(body);
+  weights_[(*body)->id] = kg->get<double>();
+  return http::ActionResult{204, nullptr, ""};
 }
 
 Result<http::ActionResult> ErgonomicsService::stance(const PathParams& params) {
@@ -139,6 +202,18 @@ void ErgonomicsService::add_methods(http::Router& router) {
              [document](const Request&, const PathParams&) -> Answer { return document; });
 }
 
+void ErgonomicsService::add_persons(http::Router& router) {
+  router.get("/ergonomics/{person}/size",
+             [this](const Request&, const PathParams& params) { return size(params); });
+  router.action(
+      http::Method::Put, "/ergonomics/{person}/size",
+      [this](const Request& request, const PathParams& params) { return weigh(request, params); });
+  router.get("/ergonomics/{person}/workplace",
+             [this](const Request&, const PathParams& params) { return at_workplace(params); });
+  router.action(http::Method::Post, "/ergonomics/{person}/stance",
+                [this](const Request&, const PathParams& params) { return stance(params); });
+}
+
 void ErgonomicsService::add_routes(http::Router& router) {
   router.get("/", [this](const Request&, const PathParams&) -> Answer {
     return service::self_document(description(), serving_, "plain");
@@ -147,8 +222,7 @@ void ErgonomicsService::add_routes(http::Router& router) {
   router.get("/ergonomics/{person}", [this](const Request& request, const PathParams& params) {
     return person(request, params);
   });
-  router.action(http::Method::Post, "/ergonomics/{person}/stance",
-                [this](const Request&, const PathParams& params) { return stance(params); });
+  add_persons(router);
   router.get("/asked", [this](const Request&, const PathParams&) -> Answer {
     const std::lock_guard lock(mutex_);
     return asked_document();

@@ -39,6 +39,7 @@ Result<ErgonomicsSettings> read_ergonomics_settings(ConfigReader root) {
   root.read("methods", at_start.methods);
   if (const auto known = ergonomics::find_methods(at_start.methods); !known)
     root.complain("methods", to_string(known.error()));
+  root.read("scene", at_start.scene);
   root.read("rules", at_start.rules);
   if (auto ok = root.finish(); !ok) return pass(ok);
   return settings;

@@ -28,6 +28,7 @@ struct StartSettings {
   client::FollowedService tracker;  ///< Whose /frame is scored.
   client::PollTimings poll = {};
   std::string methods = "reba,rula,owas,iso11226,en1005-4,eaws-like";
+  std::string scene;  ///< File of the workplace (reach and view); empty: none.
   std::string rules;  ///< File of named postures beside the shipped ones; empty: none.
 
   bool operator==(const StartSettings&) const = default;

@@ -12,7 +12,7 @@ ROWS = [
     ["common/rdf", "common/net", "common/alignment"],
     ["common/http"],
     ["common/body", "common/inertial"],
-    ["common/sensor", "common/layout", "common/posture"],
+    ["common/sensor", "common/layout", "common/posture", "common/workplace"],
     ["common/motion", "common/resource", "common/ergonomics"],
     ["common/record", "common/client", "common/evaluation", "common/suit", "common/silhouette"],
     ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration", "common/hand",

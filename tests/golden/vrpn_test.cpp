@@ -84,5 +84,23 @@ TEST(VrpnGolden, ReadsBackAsWhatItSays) {
   EXPECT_EQ(velocity->interval, 0.01);
 }
 
+TEST(Vrpn, ThingsInHandsAreTrackersOfTheirOwn) {
+  const auto trackers =
+      std::make_shared<const Trackers>(1, true, std::vector<std::string>{"box", "driver"});
+  outlet::TrackerFrame things = frame();
+  things.props = {{"box", 0, {}}, {"driver", 0, {.position = {4, 5, 6}, .tracked = true}}};
+  Conversation conversation(trackers, {"127.0.0.1", true});
+  testing::VrpnDecoder client;
+  const auto answer = conversation.receive(testing::vrpn_cookie(), kTime);
+  ASSERT_TRUE(answer);
+  client.take_stream(Conversation::greeting() + *answer +
+                     conversation.stream(encode(things, *trackers)));
+  ASSERT_EQ(client.error, "");
+  ASSERT_EQ(client.messages.size(), 6u);
+  EXPECT_EQ(client.messages[4].sender, "driver");
+  EXPECT_THAT(pose_of(client.messages[4])->position,
+              testing::VectorNear(Eigen::Vector3d(4, 5, 6), 1e-9));
+}
+
 }  // namespace
 }  // namespace chorus::vrpn

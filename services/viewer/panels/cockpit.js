@@ -8,9 +8,10 @@ import { Record } from './record.js';
 import { Register, Verdict } from './register.js';
 import { Sensors } from './sensors.js';
 import { Top } from './top.js';
+import { Work } from './work.js';
 import { World } from './world.js';
 
-const DRAWERS = [['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'], ['view', 'View', 'v']];
+const DRAWERS = [['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'], ['work', 'Work', 'p'], ['view', 'View', 'v']];
 export const drawerOfKey = (key) => DRAWERS.find(([, , own]) => own === key)?.[0] ?? null;
 
 /// The drawer that opens by itself: where somebody has to decide or to walk.  Pure.
@@ -23,6 +24,7 @@ function Drawer({ open, known, act }) {
   if (open === 'register') return html`<${Register} registration=${known.registration} told=${known.told} resource=${act.resource} />`;
   if (open === 'world') return html`<${World} resource=${act.resource} />`;
   if (open === 'record') return html`<${Record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} />`;
+  if (open === 'work') return html`<${Work} frame=${known.shownFrame} resource=${act.resource} />`;
   if (open === 'view') return html`<${Look} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
   return null;
 }

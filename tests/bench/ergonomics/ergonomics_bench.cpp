@@ -14,10 +14,13 @@ Result<void> run_ergonomics(Report& report) {
     Result<void> (*run)(Report&);
     bool quick;
   };
-  constexpr Case kCases[]{
-      {"tables", posture_tables, true},          {"laws", posture_laws, true},
-      {"real-vicon", posture_real_vicon, false}, {"uiprmd", posture_uiprmd, false},
-      {"simulated", posture_simulated, false},   {"cost", posture_cost, true}};
+  constexpr Case kCases[]{{"tables", posture_tables, true},
+                          {"laws", posture_laws, true},
+                          {"real-vicon", posture_real_vicon, false},
+                          {"uiprmd", posture_uiprmd, false},
+                          {"simulated", posture_simulated, false},
+                          {"cost", posture_cost, true},
+                          {"prop", held_box, false}};
   for (const Case& each : kCases) {
     if (report.list()) {
       std::cout << each.name << '\n';

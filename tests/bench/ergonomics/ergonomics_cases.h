@@ -21,6 +21,9 @@ namespace chorus::bench {
 /// Six people, four methods, with doubt.
 [[nodiscard]] Result<void> posture_cost(Report& report);
 
+/// A box in both hands of somebody at assembly work.
+[[nodiscard]] Result<void> held_box(Report& report);
+
 /// A person in the middle whose joints were moved at random, the limbs far.
 [[nodiscard]] Skeleton<WorldSpace> drawn_body(std::mt19937_64& random);
 

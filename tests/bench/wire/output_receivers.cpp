@@ -23,7 +23,7 @@ constexpr int kPersons = 6;
 constexpr int kReceiveBuffer = 4 << 20;
 
 Result<std::unique_ptr<Sink>> open_sink(const OutputsConfig& config) {
-  auto sinks = outputs::open_outputs(config, std::make_shared<SystemClock>());
+  auto sinks = outputs::open_outputs(config, {std::make_shared<SystemClock>()});
   if (!sinks) return pass(sinks);
   return std::move(sinks->front());
 }

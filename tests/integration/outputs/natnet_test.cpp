@@ -280,7 +280,7 @@ TEST(NatNetOutput, ServesWhatFusionMadeUnderItsConfiguration) {
   config.natnet.common.enabled = true;
   config.natnet.common.max_persons = 2;
   config.natnet.protocol.command_port = outlet::testing::free_port();
-  auto sinks = outputs::open_outputs(config, std::make_shared<SystemClock>());
+  auto sinks = outputs::open_outputs(config, {std::make_shared<SystemClock>()});
   ASSERT_THAT(sinks, IsOk());
   ASSERT_EQ(sinks->size(), 1u);
   const auto port = static_cast<std::uint16_t>(config.natnet.protocol.command_port);
@@ -307,7 +307,7 @@ TEST(NatNetOutput, TellsThatBonesWereMeasuredAndDescribesThem) {
   outputs::OutputsConfig config;
   config.natnet.common.enabled = true;
   config.natnet.protocol.command_port = outlet::testing::free_port();
-  auto sinks = outputs::open_outputs(config, std::make_shared<SystemClock>());
+  auto sinks = outputs::open_outputs(config, {std::make_shared<SystemClock>()});
   ASSERT_THAT(sinks, IsOk());
   const auto port = static_cast<std::uint16_t>(config.natnet.protocol.command_port);
   DatagramReceiver client;

@@ -33,7 +33,7 @@ std::shared_ptr<const Snapshot> somebody(std::uint64_t sequence) {
 std::unique_ptr<Sink> sink_of(
     const OutputsConfig& config,
     const std::shared_ptr<const Clock>& clock = std::make_shared<SystemClock>()) {
-  auto sinks = open_outputs(config, clock);
+  auto sinks = open_outputs(config, {clock});
   EXPECT_THAT(sinks, IsOk());
   if (!sinks || sinks->size() != 1) return nullptr;
   return std::move(sinks->front());

@@ -223,5 +223,18 @@ TEST(Dtrack, DecimalPointsDoNotDependOnTheLocale) {
   EXPECT_EQ(before, after);
 }
 
+TEST(Dtrack, ThingsInHandsAreBodiesBehindThoseOfAllSlots) {
+  outlet::TrackerFrame frame = frame_with(one_joint());
+  frame.slots = 2;
+  frame.props = {{"box", 0, {}}, {"driver", 0, {}}};
+  frame.props[1].pose.position = {1, 2, 3};
+  frame.props[1].pose.tracked = true;
+  const auto lines = lines_of(encode(frame));
+  EXPECT_EQ(lines.at("6dcal"), "52");
+  const auto bodies = bodies_of(lines.at("6d"));
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_THAT(bodies.at(51).place, VectorNear(Eigen::Vector3d(1000, -3000, 2000), 1e-3));
+}
+
 }  // namespace
 }  // namespace chorus::dtrack

@@ -200,5 +200,24 @@ TEST(NatNetModels, HaveTheBonesThatWereMeasured) {
   EXPECT_TRUE(read.ended());
 }
 
+TEST(NatNet, ThingsInHandsAreRigidBodiesBehindThoseOfAllSlots) {
+  outlet::TrackerFrame frame = frame_of({in(2, asymmetric_pose())});
+  frame.props = {{"box", 2, {}}};
+  frame.props[0].pose.position = {1, 2, 3};
+  frame.props[0].pose.tracked = true;
+  NatNetReader read(encode_frame(frame, {}, times()));
+  for (int i = 0; i < 2; ++i) read.one<std::uint16_t>();
+  for (int i = 0; i < 3; ++i) read.one<std::uint32_t>();
+  const auto bodies = read.bodies();
+  ASSERT_EQ(bodies.size(), kJointCount + 1);
+  EXPECT_EQ(bodies.back().id, 6 * 25 + 1);
+  EXPECT_THAT(bodies.back().place, VectorNear(Eigen::Vector3d(1, 2, 3), kFloat));
+  const Bytes models = encode_models(6, {}, {}, {"box"});
+  EXPECT_NE(std::string(models.begin(), models.end()).find(std::string("box\0\x97", 5)),
+            std::string::npos);
+  EXPECT_EQ(encode_models(6, {.rigid_bodies = false}, {}, {"box"}),
+            encode_models(6, {.rigid_bodies = false}));
+}
+
 }  // namespace
 }  // namespace chorus::natnet

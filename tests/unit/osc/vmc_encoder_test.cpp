@@ -190,5 +190,14 @@ TEST(Vmc, AnUntrackedArmIsLeftOutAndNothingIsNotANumber) {
   }
 }
 
+TEST(Vmc, ThingsInHandsAreTrackersByTheirNames) {
+  const outlet::TrackerBody body = asymmetric_pose();
+  const outlet::TrackerProp box{"box", 0, {.position = {1, 2, 3}, .tracked = true}};
+  const auto messages = read_osc(encode(&body, {0, false, {&box}}));
+  const Poses trackers = poses_at(messages, "/VMC/Ext/Tra/Pos");
+  ASSERT_EQ(trackers.size(), 1u);
+  EXPECT_THAT(trackers.at("box").p, VectorNear(Eigen::Vector3d(1, 2, -3), 1e-5));
+}
+
 }  // namespace
 }  // namespace chorus::vmc

@@ -163,5 +163,28 @@ TEST(Prediction, GoesNoFurtherThanFiftyMillisecondsAndNeverBack) {
   EXPECT_EQ(predicted(moving(), {}, kStart - milliseconds(5)).instant, kStart);
 }
 
+TEST(TrackerProps, FollowTheHandsOfWhoeverHoldsThem) {
+  auto board = std::make_shared<workplace::PropBoard>(
+      std::vector<workplace::Prop>{{.name = "driver"}, {.name = "lamp"}});
+  TrackerState state(4, board);
+  ASSERT_TRUE(board->take_up("driver", 7));
+  state.advance(snapshot(milliseconds(0), {seated(7, 3)}));
+  FusedBody moved = seated(7, 3);
+  moved.skeleton = testing::standing_person({0.1, 0, 0});
+  const Snapshot next = snapshot(milliseconds(100), {moved});
+  const TrackerFrame frame = state.advance(next);
+  ASSERT_EQ(frame.props.size(), 2u);
+  EXPECT_EQ(frame.props[0].name, "driver");
+  EXPECT_EQ(frame.props[0].slot, 3u);
+  EXPECT_TRUE(frame.props[0].pose.tracked);
+  EXPECT_FALSE(frame.props[1].pose.tracked);
+  const Eigen::Vector3d hand = moved.skeleton[JointId::HandRight].position;
+  EXPECT_THAT(frame.props[0].pose.position, VectorNear(hand, 1e-9));
+  EXPECT_THAT(frame.props[0].pose.velocity, VectorNear(Eigen::Vector3d(0.5, 0, 0), 1e-9));
+  const TrackerFrame later = predicted(frame, next, next.instant + milliseconds(40));
+  EXPECT_NEAR(later.props[0].pose.position.x(), hand.x() + 0.02, 1e-9);
+  EXPECT_FALSE(state.advance(snapshot(milliseconds(133), {})).props[0].pose.tracked);
+}
+
 }  // namespace
 }  // namespace chorus::outlet

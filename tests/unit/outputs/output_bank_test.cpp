@@ -35,7 +35,7 @@ std::vector<std::string> names_of(const OutputBank& bank) {
 }
 
 TEST(OutputBank, OpensClosesAndLeavesTheOthersAlone) {
-  OutputBank bank(std::make_shared<SystemClock>());
+  OutputBank bank({std::make_shared<SystemClock>()});
   ASSERT_THAT(bank.apply(osc(10)), IsOk());
   EXPECT_THAT(names_of(bank), ::testing::ElementsAre("mxtp", "vmc"));
   const auto sent = [&](std::size_t index) { return bank.states()[index].counters.frames; };
@@ -63,7 +63,7 @@ TEST(OutputBank, OneThatCannotBeOpenedIsToldAndTriedAgain) {
   const auto config = outputs_in(R"({"vrpn": {"enabled": true, "address": "127.0.0.1", "port": )" +
                                  std::to_string(taken.local_endpoint().port()) +
                                  R"(}, "mxtp": {"enabled": true, "targets": ["127.0.0.1:9"]}})");
-  OutputBank bank(std::make_shared<SystemClock>());
+  OutputBank bank({std::make_shared<SystemClock>()});
   ASSERT_FALSE(bank.apply(config));
   ASSERT_EQ(bank.states().size(), 2u);
   EXPECT_EQ(bank.states()[0].error, "") << "mxtp is open all the same";

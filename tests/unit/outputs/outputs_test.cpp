@@ -28,7 +28,7 @@ Result<OutputsConfig> read(std::string_view text) {
 TEST(Outputs, AreAllOffByDefault) {
   const auto config = read("{}");
   ASSERT_THAT(config, IsOk());
-  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  const auto sinks = open_outputs(*config, {std::make_shared<SystemClock>()});
   ASSERT_THAT(sinks, IsOk());
   EXPECT_TRUE(sinks->empty());
 }
@@ -38,7 +38,7 @@ TEST(Outputs, AreSwitchedOnOneByOne) {
       R"({"outputs": {"mxtp": {"enabled": true, "latency": "predicted", "targets": ["127.0.0.1:9"]}}})");
   ASSERT_THAT(config, IsOk());
   EXPECT_EQ(config->mxtp.common.latency, outlet::Latency::Predicted);
-  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  const auto sinks = open_outputs(*config, {std::make_shared<SystemClock>()});
   ASSERT_THAT(sinks, IsOk());
   ASSERT_EQ(sinks->size(), 1u);
   EXPECT_EQ(sinks->front()->name(), "mxtp");
@@ -79,7 +79,7 @@ TEST(Outputs, AnUnknownHostFailsWithTheOutputsName) {
   auto config =
       read(R"({"outputs": {"mxtp": {"enabled": true, "targets": ["no.such.invalid:9763"]}}})");
   ASSERT_THAT(config, IsOk());
-  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  const auto sinks = open_outputs(*config, {std::make_shared<SystemClock>()});
   ASSERT_FALSE(sinks);
   EXPECT_NE(sinks.error().context.find("outputs.mxtp"), std::string::npos);
 }
@@ -118,7 +118,7 @@ TEST(Outputs, MorePersonsHaveASlotAndTargetsEach) {
 std::string opening_error(std::string_view text) {
   const auto config = read(text);
   EXPECT_THAT(config, IsOk());
-  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  const auto sinks = open_outputs(*config, {std::make_shared<SystemClock>()});
   EXPECT_FALSE(sinks);
   return sinks ? "" : to_string(sinks.error());
 }
