@@ -144,6 +144,7 @@ json person_json(const AssessedPerson& person, const Assessment& about) {
   out["lifts"] = json::array();
   for (const MeasuredLift& lift : person.lifts) out["lifts"].push_back(lift_json(lift));
   if (person.lifts_unseen > 0) out["liftsNotSeen"] = person.lifts_unseen;
+  if (person.workplace) out["workplace"] = workplace_json(*person.workplace);
   out["events"] = json::array();
   for (const auto& event : person.events)
     out["events"].push_back({{"posture", event.name},
@@ -189,6 +190,8 @@ AssessedPerson assess(const PersonInput& person, const Assessment& about,
     else
       ++out.lifts_unseen;
   }
+  if (about.scene)
+    out.workplace = at_workplace({person.id, person.bodies, about.start}, *about.scene);
   ergonomics::PostureWatch watch(rules);
   const auto keep = [&](std::vector<ergonomics::PostureEvent> events) {
     out.events.insert(out.events.end(), events.begin(), events.end());

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "common/assessment/at_workplace.h"
 #include "common/assessment/lifts.h"
 #include "common/ergonomics/named_postures.h"
 #include "common/ergonomics/summary.h"
@@ -20,6 +22,7 @@ struct AssessedPerson {
   std::vector<MeasuredLift> lifts;
   std::size_t lifts_unseen = 0;
   std::vector<ergonomics::PostureEvent> events;
+  std::optional<AtWorkplace> workplace = {};  ///< If there is a scene.
 };
 
 struct Assessment {
@@ -28,6 +31,7 @@ struct Assessment {
   double seconds = 0.0;
   std::vector<const ergonomics::Method*> methods;
   ergonomics::Task task;
+  std::optional<workplace::Scene> scene = {};
   std::vector<AssessedPerson> persons;
   std::vector<std::string> notes;
 };

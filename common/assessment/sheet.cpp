@@ -24,13 +24,15 @@ constexpr std::string_view kStyle = R"(
 h1{font-size:1.4em}h2{font-size:1.15em;margin:1.2em 0 .3em}h3{font-size:1em;margin:1em 0 .3em}
 table{border-collapse:collapse;width:100%}th,td{border:1px solid #888;padding:.2em .5em;text-align:left;vertical-align:top}
 td.number,th.number{text-align:right}input{font:inherit;width:6em;border:1px solid #888;background:Field;color:FieldText}
-.measured{border-left:5px solid #1a7f4b}.asked{border-left:5px solid #1f5fbf}.unknown{border-left:5px dashed #b3541e}
+.measured{border-left:5px solid #1a7f4b}.asked{border-left:5px solid #1f5fbf}.computed{border-left:5px solid #8888}.unknown{border-left:5px dashed #b3541e}
 .result{font-size:1.2em;font-weight:600;padding:.4em 0}.small{font-size:.9em}
 .figures{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figcaption{font-size:.9em}
 .bone{stroke:#888;stroke-width:4;stroke-linecap:round}.bone.left{stroke:#1f5fbf}.head{fill:none;stroke:#888;stroke-width:3}.floor{stroke:#888}
 .timeline{width:100%}.timeline text{font-size:11px;fill:currentColor}.grid{stroke:#8886}.set{fill:#1f5fbf44}.none{fill:#8883}.score{fill:none;stroke:#1f5fbf;stroke-width:1.5}.worst{font-weight:700}
-section{break-after:page}section:last-of-type{break-after:auto}
-@media print{button{display:none}body{margin:0;max-width:none;font-size:11px}input{border:0;border-bottom:1px solid #000}figure,table{break-inside:avoid}}
+h1,h2,h3{break-after:avoid}section{break-after:page}section:last-of-type{break-after:auto}
+@page{size:A4;margin:11mm}
+@media print{button{display:none}body{margin:0;padding:0;max-width:none;font-size:10px;line-height:1.25}h1{font-size:15px;margin:0 0 2px}h2,h3{font-size:11px;margin:6px 0 2px}p{margin:2px 0}
+th,td{padding:1px 5px}input{border:0;border-bottom:1px solid #000;height:11px}.result{font-size:13px;padding:2px 0}figure svg{height:104px;width:auto}.timeline{max-height:120px}figure,table,svg{break-inside:avoid}}
 )";
 
 /// Writes what was typed into the document, so that a saved page keeps it beside what was measured.
@@ -153,9 +155,9 @@ std::string Sheet::form(const SheetPerson& person, std::size_t index) const {
   if (whole) {
     for (const auto& step : method.steps(codes))
       html += fmt::format(
-          "<tr><th>{0}</th><td class=\"number\">{1}</td><td></td><td><input "
+          "<tr><td class=\"computed\">{0}</td><td class=\"number\">{1}</td><td>{3}</td><td><input "
           "aria-label=\"{2}: {0}\" value=\"\"></td></tr>",
-          say(step.name), step.value, say(word("correction")));
+          say(step.name), step.value, say(word("correction")), say(word("computed")));
   }
   const auto& level = method.levels[level_of(method, moment.score.high)];
   html += fmt::format("</table><p class=\"result\">{}: {} - {}</p><p>{}: {} {} {}</p>",
@@ -187,10 +189,11 @@ std::string Sheet::worst(const SheetPerson& person, const MethodSummary& summary
   for (std::size_t w = 0; w < summary.worst.size(); ++w) {
     const auto& moment = summary.worst[w];
     const auto& body = person.bodies[moment.index].body;
-    html += fmt::format("<figure>{}{}<figcaption>{}. {} {} s: {} ({} {} {})</figcaption></figure>",
-                        stick_figure(body, View::Front), stick_figure(body, View::Left), w + 1,
-                        say(word("at")), number(moment.at, 1), moment.score.high, moment.set.from,
-                        german_ ? "bis" : "to", moment.set.to);
+    html +=
+        fmt::format("<figure>{}{}<figcaption>{}. {} {} s: {} ({} {} {}); {}</figcaption></figure>",
+                    stick_figure(body, View::Front), stick_figure(body, View::Left), w + 1,
+                    say(word("at")), number(moment.at, 1), moment.score.high, moment.set.from,
+                    german_ ? "bis" : "to", moment.set.to, say(word("views")));
   }
   return html + "</div>";
 }

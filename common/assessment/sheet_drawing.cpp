@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,23 @@ Vector3d middle_of_body(const Skeleton<WorldSpace>& body) {
     count += 1.0;
   }
   return count > 0.0 ? Vector3d(sum / count) : sum;
+}
+
+/// A line at the lower end of each level, with its score where there is room for it.
+template <class Height>
+std::string level_lines(const ergonomics::Method& method, const Height& y) {
+  std::string svg;
+  constexpr double kTextHeight = 10.0;
+  double written = std::numeric_limits<double>::infinity();
+  for (const auto& level : method.levels) {
+    const double at = y(level.from - 0.5);
+    const bool room = written - at >= kTextHeight;
+    if (room) written = at;
+    svg += fmt::format("<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/>",
+                       kMargin, kTimelineWidth - kMargin, at);
+    if (room) svg += fmt::format("<text x=\"2\" y=\"{:.1f}\">{}</text>", at, level.from);
+  }
+  return svg;
 }
 
 }  // namespace
@@ -90,11 +108,7 @@ std::string score_timeline(const ergonomics::ScoredPerson& person, std::size_t m
       "<svg viewBox=\"0 0 {} {}\" class=\"timeline\" role=\"img\" "
       "aria-label=\"{}\">",
       kTimelineWidth, kTimelineHeight, report::escaped(label));
-  for (const auto& level : summary.method->levels)
-    svg += fmt::format(
-        "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" "
-        "class=\"grid\"/><text x=\"2\" y=\"{2:.1f}\">{3}</text>",
-        kMargin, kTimelineWidth - kMargin, y(level.from - 0.5), level.from);
+  svg += level_lines(*summary.method, y);
   const double step = (kTimelineWidth - 2 * kMargin) /
                       static_cast<double>(std::max<std::size_t>(person.instants.size(), 1));
   std::string line;
@@ -111,18 +125,21 @@ std::string score_timeline(const ergonomics::ScoredPerson& person, std::size_t m
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{:.1f}\" "
         "class=\"set\"/>",
-        x(instant.at), y(set.to + 0.5), step + 0.1, y(set.from - 0.5) - y(set.to + 0.5));
+        x(instant.at), y(set.to + 0.5), std::min(step, kTimelineWidth - kMargin - x(instant.at)),
+        y(set.from - 0.5) - y(set.to + 0.5));
     line += fmt::format("{}{:.1f},{:.1f}", line.empty() || line.back() == ' ' ? "M" : "L",
                         x(instant.at), y(score.score.high));
   }
   svg += fmt::format("<path d=\"{}\" class=\"score\"/>", line);
+  const int digits = person.seconds < 20.0 ? 1 : 0;
   for (std::size_t w = 0; w < summary.worst.size(); ++w)
     svg += fmt::format("<text x=\"{:.1f}\" y=\"10\" class=\"worst\">{}</text>",
                        x(summary.worst[w].at) - 3, w + 1);
-  svg +=
-      fmt::format("<text x=\"{}\" y=\"{}\">{:.0f} s</text><text x=\"{}\" y=\"{}\">{:.0f} s</text>",
-                  kMargin, kTimelineHeight - 6, from, kTimelineWidth - kMargin - 20,
-                  kTimelineHeight - 6, from + person.seconds);
+  svg += fmt::format(
+      "<text x=\"{}\" y=\"{}\">{:.{}f} s</text><text x=\"{}\" y=\"{}\" "
+      "text-anchor=\"end\">{:.{}f} s</text>",
+      kMargin, kTimelineHeight - 6, from, digits, kTimelineWidth - kMargin, kTimelineHeight - 6,
+      from + person.seconds, digits);
   return svg + "</svg>";
 }
 

@@ -209,6 +209,9 @@ void Rig::add_trunk() {
 }
 
 Eigen::Vector3d Rig::turned_with(JointId joint, const Eigen::Vector3d& lateral) const {
+  // Nose and ears tell the head's left by themselves; there is nothing to compare it with.
+  if (joint == JointId::Head && body_[joint].oriented && !body_[JointId::SpineShoulder].oriented)
+    return lateral.norm() * (body_[joint].orientation * Eigen::Vector3d::UnitX());
   return body_[joint].orientation * body_[JointId::SpineShoulder].orientation.conjugate() * lateral;
 }
 

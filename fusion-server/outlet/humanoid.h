@@ -11,7 +11,8 @@
 // twist about the bone, is taken
 //   for the trunk:   from the line of the shoulders (Chest), of hips and shoulders (Spine),
 //   for neck, head:  from the shoulders' line, rotated as the joint's own orientation is against
-//                    that of SpineShoulder (the only use of orientations: those of limbs are wrong
+//                    that of SpineShoulder, or from the head's own orientation where only the head
+//                    has one (the only use of orientations: those of limbs are wrong
 //                    by 50-170 degrees about the bone, and leaf joints have none),
 //   for the limbs:   from the plane of elbow or knee if bent (faded in from 15 to 30 degrees); for
 //                    a straight limb, by the shortest turn out of T-pose relative to the trunk,

@@ -28,7 +28,8 @@ TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
     TrackerJoint& to = body.joints[i];
     to.position = from.position;
     to.tracked = from.seen() && from.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
-    if (is_unit(from.orientation)) to.orientation = from.orientation.normalized();
+    to.oriented = is_unit(from.orientation);
+    if (to.oriented) to.orientation = from.orientation.normalized();
     if (fused.motion) to.velocity = (*fused.motion)[i].velocity;
   }
   for (const Bone& bone : kBones) {  // parents come first

@@ -24,6 +24,8 @@ struct TrackerJoint {
   /// Always a unit quaternion.  A joint without an orientation has that of the nearest joint
   /// towards the pelvis that has one; if there is none, the identity.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  /// A sensor states the orientation of this very joint.
+  bool oriented = false;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< World axes [rad/s]
   /// False: the position is unknown, or too far away to be plausible, as in /frame; do not send a

@@ -107,7 +107,7 @@ Node workplace_node(const resource::BodyResource& body, const workplace::Scene& 
           reach_node(point, left, reach_of({person.body, left, &bones}, point.at, scene)));
   }
   const workplace::Gaze gaze =
-      gaze_of(person.body, body.joints[index_of(Head)].orientation_covariance);
+      workplace::gaze_of(person.body, body.joints[index_of(Head)].orientation_covariance);
   std::vector<Node> sights;
   if (gaze.known) {
     for (const workplace::ScenePoint& point : scene.points)

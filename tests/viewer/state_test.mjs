@@ -7,6 +7,7 @@ import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf, sharesOf }
 import { accuracyLine, lineOf, mapOf } from '../../services/viewer/coverage.js';
 import { framing, roomOf } from '../../services/viewer/framing.js';
 import { OutputRate, OwnDelay, ageText, freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
+import { ergonomicsBase, scoreText, stanceText } from '../../services/viewer/work.js';
 
 const LIVE = { state: 'live' };
 const GOOD = { verdict: 'Good', reasons: [], awaits: [], session: { state: 'idle' }, sensors: { s1: {}, s2: {} } };
@@ -223,4 +224,14 @@ test('an alarm has its advice as the next step', () => {
   const { tone, sentence, next } = stateOf(known({ registration: { ...GOOD, alarms } }));
   assert.deepEqual([tone, sentence], ['bad', 's4 has seen somebody where no other sensor does for 12 s.']);
   assert.ok(next.startsWith('if it was moved'));
+});
+
+test('work says scores with their set, what is wrong with a stance, and where it looked', () => {
+  assert.equal(scoreText({ method: 'reba', scoreHigh: 6, setFrom: 5, setTo: 7, shownScore: 6 }), 'reba: 6 (5 to 7)');
+  assert.equal(scoreText({ method: 'owas', scoreHigh: 2, setFrom: 2, setTo: 2, shownScore: 0 }), 'owas: 2 (2)');
+  assert.equal(scoreText({ method: 'rula' }), 'rula: –');
+  assert.match(stanceText({ ownStance: 'missing', stanceTrouble: 'the left knee is bent' }), /left knee/);
+  assert.match(stanceText({ ownStance: 'asked' }), /two seconds/);
+  assert.equal(ergonomicsBase('http://a:8080/viewer/', 'http://a:8080/'), 'http://a:8093/');
+  assert.equal(ergonomicsBase('http://a:8080/viewer/?ergonomics=http://b:9', 'http://a:8080/'), 'http://b:9/');
 });

@@ -27,6 +27,7 @@ struct ScoreArguments {
   std::string methods = "reba,rula,owas,iso11226,en1005-4,eaws-like";
   std::string task;
   std::string rules;
+  std::string scene;
   std::string out = "-";
   std::string sheet;
   std::string angles;
@@ -52,6 +53,15 @@ Result<std::vector<ergonomics::PostureRule>> rules_of(const ScoreArguments& argu
   if (!own) return pass(own);
   rules.insert(rules.end(), own->begin(), own->end());
   return rules;
+}
+
+Result<std::optional<workplace::Scene>> scene_of(const ScoreArguments& arguments) {
+  if (arguments.scene.empty()) return std::nullopt;
+  const auto text = read_file(arguments.scene, kMaxTaskBytes);
+  if (!text) return pass(text);
+  auto scene = workplace::read_scene(*text, arguments.scene);
+  if (!scene) return pass(scene);
+  return std::move(*scene);
 }
 
 struct Read {
@@ -93,6 +103,9 @@ Result<assessment::Assessment> assessed(const ScoreArguments& arguments, const R
   if (!task) return pass(task);
   if (auto ok = ergonomics::fits(*task, about.seconds, arguments.task); !ok) return pass(ok);
   about.task = std::move(*task);
+  auto scene = scene_of(arguments);
+  if (!scene) return pass(scene);
+  about.scene = std::move(*scene);
   const auto rules = rules_of(arguments);
   if (!rules) return pass(rules);
   for (const auto& [id, bodies] : read.people.bodies()) {
@@ -154,7 +167,9 @@ Result<void> write_sheet(const assessment::Assessment& about, const Read& read,
 Result<int> run_score(const ScoreArguments& arguments) {
   for (const std::string* file : {&arguments.out, &arguments.sheet, &arguments.angles}) {
     if (file->empty()) continue;
-    if (auto ok = may_write(*file, {arguments.source, arguments.task, arguments.rules}); !ok)
+    if (auto ok =
+            may_write(*file, {arguments.source, arguments.task, arguments.rules, arguments.scene});
+        !ok)
       return pass(ok);
   }
   // Before the recording is read: a wrong name is told at once.
@@ -196,6 +211,9 @@ Run add_score(CLI::App& options) {
   options.add_option("--task", arguments->task,
                      "What no tracker sees: loads, grips, phases (docs/guide/ergonomics.md)");
   options.add_option("--rules", arguments->rules, "More named postures, a text file of rules");
+  options.add_option("--scene", arguments->scene,
+                     "The workplace: points to reach, boxes to see, things in hands "
+                     "(deploy/workplaces)");
   options
       .add_option("--out", arguments->out,
                   "Scores: .csv (every instant), .mcap (a channel), else a summary as JSON")
