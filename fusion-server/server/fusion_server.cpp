@@ -119,7 +119,6 @@ struct FusionServer::Impl {
     serving.run = fmt::format("{:x}", to_unix_ns(clock->now()) / 1'000'000);
     const StartSettings& at_start = config.at_start;
     serving.root = service::root_of(at_start.http, at_start.secure, at_start.http.port);
-    board = std::make_shared<workplace::PropBoard>(at_start.props);
   }
 
   std::shared_ptr<http::Router> make_router();
@@ -136,8 +135,9 @@ struct FusionServer::Impl {
   FusionSettings config;  ///< Its live part is guarded by mutex.
   std::shared_ptr<const Clock> clock;
   service::Serving serving;
-  std::shared_ptr<workplace::PropBoard> board;  ///< Who holds what.
-  std::optional<outputs::OutputBank> outputs;   ///< Set before the first request.
+  std::shared_ptr<workplace::PropBoard> board =
+      std::make_shared<workplace::PropBoard>(config.at_start.props);
+  std::optional<outputs::OutputBank> outputs;  ///< Set before the first request.
   mutable std::mutex mutex;
   Status status;  ///< Guarded by mutex.
   std::shared_ptr<const service::Configuration> configuration =
@@ -334,7 +334,6 @@ Result<void> FusionServer::start() {
   http.clock = s.clock;
   http.policy = resource::answer_policy();
   s.http = std::make_unique<http::Server>(http, s.make_router());
-
   s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*initial)));
   if (auto bound = s.http->start(); !bound) return bound;
   s.followers = std::make_unique<client::Followers>(
