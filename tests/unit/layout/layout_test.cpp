@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "common/body/bones.h"
+#include "common/geometry/rotation.h"
 #include "common/layout/tables.h"
 #include "tests/support/matchers.h"
 
@@ -218,6 +219,46 @@ TEST(Confidence, IsTrackedInferredOrNothing) {
   EXPECT_EQ(state_of(0.59, 0.6, 0.2), JointState::Inferred);
   EXPECT_EQ(state_of(0.19, 0.6, 0.2), JointState::NotTracked);
   EXPECT_EQ(state_of(std::nan(""), 0.6, 0.2), JointState::NotTracked);
+}
+
+/// Nose, eyes and ears of a head with the eyes 3 cm above and the nose 3 cm below the ears.
+std::vector<Landmark> face_of(const Eigen::Quaterniond& turn) {
+  std::vector<Landmark> landmarks(33);
+  const Eigen::Vector3d place(0.4, 1.6, 2.0);
+  const auto put = [&](std::size_t number, const Eigen::Vector3d& in_head) {
+    landmarks[number] = {place + turn * in_head, JointState::Tracked};
+  };
+  put(0, {0, -0.06, 0.11});
+  put(2, {0.03, 0.03, 0.09});
+  put(5, {-0.03, 0.03, 0.09});
+  put(7, {0.075, 0, 0});
+  put(8, {-0.075, 0, 0});
+  return landmarks;
+}
+
+TEST(HeadTurn, FollowsNoseEyesAndEars) {
+  for (const Eigen::Vector3d turn :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0, -0.8, 0),
+        Eigen::Vector3d(0.2, 2.5, -0.3)}) {
+    const Eigen::Quaterniond true_turn = exp_map(turn);
+    const auto landmarks = face_of(true_turn);
+    const auto joints = joints_of(kMediapipe, landmarks);
+    EXPECT_LT(angular_distance(joints[index_of(JointId::Head)].orientation, true_turn), 1e-6);
+    EXPECT_FALSE(is_unit(joints[index_of(JointId::Neck)].orientation));
+  }
+}
+
+TEST(HeadTurn, IsUnknownWithoutAllMarksAsPoints) {
+  auto hidden = face_of(Eigen::Quaterniond::Identity());
+  hidden[8].state = JointState::NotTracked;
+  EXPECT_FALSE(head_turn(kMediapipe, hidden));
+  auto rays = face_of(Eigen::Quaterniond::Identity());
+  rays[0].measurement = Measurement::Ray;
+  EXPECT_FALSE(head_turn(kMediapipe, rays));
+  auto flat = face_of(Eigen::Quaterniond::Identity());
+  for (const std::size_t mark : {0u, 2u, 5u}) flat[mark].position = flat[7].position;
+  EXPECT_FALSE(head_turn(kMediapipe, flat));
+  EXPECT_FALSE(head_turn(kKinectV2, hidden));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "common/base/json.h"
 #include "common/base/not_seen.h"
+#include "common/geometry/rotation.h"
 #include "common/sensor/limits.h"
 #include "common/sensor/pixel_ray.h"
 #include "services/sensor/device/bridge/body_checks.h"
@@ -255,6 +256,16 @@ Result<Skeleton<SensorSpace>> read_joints(const Json* value, ReadLandmark read, 
   return Skeleton<SensorSpace>{layout::joints_of(*hello.layout, *landmarks)};
 }
 
+/// Rays do not tell how the head is turned, but the shape does: networks see it as from where the
+/// line of sight runs straight ahead.
+void turn_head(const Skeleton<SensorSpace>& shape, Skeleton<SensorSpace>& body) {
+  Joint& head = body[JointId::Head];
+  const Joint& shaped = shape[JointId::Head];
+  if (!head.bears() || !is_unit(shaped.orientation)) return;
+  head.orientation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), head.position) *
+                     shaped.orientation;
+}
+
 Result<PushedBody> read_body(const Json& value, const Hello& hello, const At& at) {
   if (!value.is_object())
     return wrong(at, "must be an object with \"id\" and \"points\" or \"pixels\"");
@@ -279,6 +290,7 @@ Result<PushedBody> read_body(const Json& value, const Hello& hello, const At& at
   // The error of the focal length is common to all landmarks, so it is added to joints: the mean of
   // two landmarks must not make it smaller.
   for (Joint& joint : out.body.skeleton.joints) widen_ray(joint, hello.focal_sigma);
+  turn_head(out.shape, out.body.skeleton);
   return out;
 }
 
