@@ -79,7 +79,8 @@ std::optional<HeldProp::Grip> HeldProp::grip(By by, const Skeleton<WorldSpace>& 
   const bool first = by == By::First;
   auto& before = last_limbs_[first ? 0 : 1];
   const auto now = limb(first ? prop_.joint : *prop_.other, body);
-  if (!now || !before || !last_) return std::nullopt;
+  if (!now || !last_) return std::nullopt;
+  if (!before) before = now;  // the hands change: it goes on from where it is
   // The other limb has moved on unseen since, so its end is of no use later.
   last_limbs_[first ? 1 : 0].reset();
   const Eigen::Quaterniond turn = turn_from_to(before->direction, now->direction);
@@ -91,29 +92,29 @@ std::optional<HeldProp::Grip> HeldProp::grip(By by, const Skeleton<WorldSpace>& 
   return grip;
 }
 
-/// At a change of hands the prop begins where it was; the difference is taken back little by
-/// little.
-void HeldProp::blend(Timestamp at, By by, Grip& grip) {
+void HeldProp::blend(Timestamp at, const std::optional<Grip>& carried, const Grip& grip) {
   const double step = seconds(at - at_);
   const double share = step > 0.0 && step < 1.0 ? std::exp(-step / kTakenBackIn) : 0.0;
   left_over_ *= share;
   left_turn_ *= share;
-  if (by != by_ && by_ != By::Nothing && last_ && share > 0.0) {
-    left_over_ += last_->world_from_grip.translation() - grip.world_from_grip.translation();
-    const Eigen::Quaterniond shown(exp_map(left_turn_) *
-                                   Eigen::Quaterniond(last_->world_from_grip.linear()));
-    left_turn_ = log_map(shown * Eigen::Quaterniond(grip.world_from_grip.linear()).conjugate());
-  }
+  if (!carried || share == 0.0) return;
+  left_over_ += carried->world_from_grip.translation() - grip.world_from_grip.translation();
+  const Eigen::Quaterniond shown(exp_map(left_turn_) *
+                                 Eigen::Quaterniond(carried->world_from_grip.linear()));
+  left_turn_ = log_map(shown * Eigen::Quaterniond(grip.world_from_grip.linear()).conjugate());
 }
 
 std::optional<PropPose> HeldProp::follow(Timestamp at, const Skeleton<WorldSpace>& body) {
-  By by = carried_by(body);
-  auto now = grip(by, body);
+  const By by = carried_by(body);
+  // When a hand is seen again, the prop goes on from where the other one has carried it.
+  const bool again = prop_.other && by == By::Both && (by_ == By::First || by_ == By::Second);
+  const auto carried = again ? grip(by_, body) : std::nullopt;
+  const auto now = grip(by, body);
   if (!now) {
     by_ = By::Nothing;
     return std::nullopt;
   }
-  blend(at, by, *now);
+  blend(at, carried, *now);
   last_ = now;
   by_ = by;
   at_ = at;

@@ -34,7 +34,8 @@ class HeldProp {
   [[nodiscard]] std::optional<Grip> grip(By by, const Skeleton<WorldSpace>& body);
   [[nodiscard]] Skeleton<WorldSpace> kept_apart(Skeleton<WorldSpace> body);
   [[nodiscard]] std::optional<Limb> limb(JointId end, const Skeleton<WorldSpace>& body) const;
-  void blend(Timestamp at, By by, Grip& grip);
+  /// Takes back a share of what is left over, and adds how far `carried` is from `grip`.
+  void blend(Timestamp at, const std::optional<Grip>& carried, const Grip& grip);
 
   Prop prop_;
   By by_ = By::Nothing;

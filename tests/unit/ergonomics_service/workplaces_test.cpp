@@ -106,7 +106,7 @@ TEST(Screwing, IsAQuestionOfPosture) {
   const auto screwing = scored(ergonomics::kReba, working, asked);
   ASSERT_TRUE(standing.known() && screwing.known());
   EXPECT_GE(screwing.score.low, standing.score.high + 3);
-  EXPECT_GE(screwing.score.low, 8) << "high: investigate and change soon";
+  EXPECT_GE(screwing.score.low, 4) << "medium at least: action necessary";
   workplace::HeldProp driver(scene.props.front());
   const auto tip = driver.follow(kStart, working);
   ASSERT_TRUE(tip);
@@ -134,7 +134,7 @@ TEST(Battery, IsAQuestionOfStress) {
   EXPECT_LT(reach.leaning.missing, 0.0);
   EXPECT_EQ(reach.blocked_by, "");
   const auto behind = reach_of({body, false, nullptr}, {0.3, 0.5, -1.0}, scene);
-  EXPECT_EQ(behind.blocked_by, "front") << "the car is in the way";
+  EXPECT_EQ(behind.blocked_by, "cabin") << "the car is in the way";
 }
 
 TEST(AWorkplace, AndASizeUseOnlyDeclaredTerms) {
@@ -155,7 +155,7 @@ TEST(AWorkplace, AndASizeUseOnlyDeclaredTerms) {
   EXPECT_EQ(resource::undeclared_terms(size), std::vector<std::string>{});
   const std::string text = resource::write(size, resource::Format::Json);
   EXPECT_THAT(text, ::testing::HasSubstr("leftUpperArm"));
-  EXPECT_THAT(text, ::testing::HasSubstr("\"weightKg\":82"));
+  EXPECT_THAT(text, ::testing::HasSubstr("\"weightKg\": 82"));
   const std::string seen = resource::write(view, resource::Format::Json);
   EXPECT_THAT(seen, ::testing::HasSubstr("leaningProbability"));
   EXPECT_THAT(seen, ::testing::HasSubstr("instructions"));

@@ -237,7 +237,7 @@ std::vector<Landmark> face_of(const Eigen::Quaterniond& turn) {
 }
 
 TEST(HeadTurn, FollowsNoseEyesAndEars) {
-  for (const Eigen::Vector3d turn :
+  for (const Eigen::Vector3d& turn :
        {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0, -0.8, 0),
         Eigen::Vector3d(0.2, 2.5, -0.3)}) {
     const Eigen::Quaterniond true_turn = exp_map(turn);

@@ -165,10 +165,10 @@ TEST(Prediction, GoesNoFurtherThanFiftyMillisecondsAndNeverBack) {
 
 TEST(TrackerProps, FollowTheHandsOfWhoeverHoldsThem) {
   auto board = std::make_shared<workplace::PropBoard>(
-      std::vector<workplace::Prop>{{.name = "driver"}, {.name = "lamp"}});
+      std::vector<workplace::Prop>{{.name = "driver", .other = {}}, {.name = "lamp", .other = {}}});
   TrackerState state(4, board);
   ASSERT_TRUE(board->take_up("driver", 7));
-  state.advance(snapshot(milliseconds(0), {seated(7, 3)}));
+  (void)state.advance(snapshot(milliseconds(0), {seated(7, 3)}));
   FusedBody moved = seated(7, 3);
   moved.skeleton = testing::standing_person({0.1, 0, 0});
   const Snapshot next = snapshot(milliseconds(100), {moved});

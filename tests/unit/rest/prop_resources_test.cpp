@@ -13,7 +13,7 @@ using testing::kStart;
 
 struct Shelf {
   std::shared_ptr<workplace::PropBoard> board = std::make_shared<workplace::PropBoard>(
-      std::vector<workplace::Prop>{{.name = "driver", .size = {0.2, 0.05, 0.05}}});
+      std::vector<workplace::Prop>{{.name = "driver", .other = {}, .size = {0.2, 0.05, 0.05}}});
   http::Router router;
   PropResources props{{"run1"}, board};
 
@@ -24,16 +24,16 @@ struct Shelf {
 TEST(Props, AreTakenUpAndPutDown) {
   Shelf shelf;
   shelf.props.publish(snapshot(1));
-  EXPECT_THAT(shelf.shown(), HasSubstr("\"propTracked\":false"));
+  EXPECT_THAT(shelf.shown(), HasSubstr("\"propTracked\": false"));
   ASSERT_TRUE(shelf.board->take_up("driver", 7));
   shelf.props.publish(snapshot(2));
   const std::string held = shelf.shown();
-  EXPECT_THAT(held, HasSubstr("\"propTracked\":true"));
-  EXPECT_THAT(held, HasSubstr("\"heldBy\":7"));
+  EXPECT_THAT(held, HasSubstr("\"propTracked\": true"));
+  EXPECT_THAT(held, HasSubstr("\"heldBy\": 7"));
   EXPECT_THAT(held, HasSubstr("\"qw\""));
   ASSERT_TRUE(shelf.board->put_down("driver"));
   shelf.props.publish(snapshot(3));
-  EXPECT_THAT(shelf.shown(), HasSubstr("\"propTracked\":false"));
+  EXPECT_THAT(shelf.shown(), HasSubstr("\"propTracked\": false"));
   EXPECT_THAT(shelf.shown(), HasSubstr("\"qw\""));  // where it lies
 }
 
