@@ -93,7 +93,7 @@ Node size_node(const resource::BodyResource& body, std::optional<double> weight_
                          {"segmentLength", Decimal{learned.length, kPlaceDigits}},
                          {"segmentSigma", Decimal{learned.sigma, kPlaceDigits}}}});
   }
-  node.properties.emplace_back("segments", std::move(segments));
+  node.properties.emplace_back("bodySegments", std::move(segments));
   return node;
 }
 
