@@ -155,6 +155,8 @@ void widen(GlovePlace& place, double radius, const Intrinsics& camera,
                       across * across * Eigen::Matrix3d::Identity();
 }
 
+}  // namespace
+
 bool is_usable(const PosedGlove& glove) {
   if (!(glove.skeleton.palm_radius > 0.0) || !std::isfinite(glove.skeleton.palm_radius))
     return false;
@@ -167,7 +169,14 @@ bool is_usable(const PosedGlove& glove) {
   return glove.pose.turn.coeffs().allFinite() && std::abs(glove.pose.turn.norm() - 1.0) < 0.01;
 }
 
-}  // namespace
+tl::unexpected<Error> no_pose() {
+  return fail(ErrorCode::InvalidArgument, "glove",
+              "has a pose or a skeleton that is none: not finite, or no rotations");
+}
+
+double facing_of(const PosedGlove& glove, const Eigen::Vector3d& wrist) {
+  return std::abs((glove.pose.turn * Vector3d::UnitZ()).dot(wrist.normalized()));
+}
 
 std::optional<Circle> inscribed(const cv::Mat& mask) {
   if (mask.empty()) return std::nullopt;
@@ -225,9 +234,7 @@ cv::Mat silhouette(const Skeleton& skeleton, const Pose& pose, const Intrinsics&
 
 Result<GlovePlace> place_glove(const cv::Mat& mask, const PosedGlove& glove,
                                const Intrinsics& camera, const GloveOptions& options) {
-  if (!is_usable(glove))
-    return fail(ErrorCode::InvalidArgument, "glove",
-                "has a pose or a skeleton that is none: not finite, or no rotations");
+  if (!is_usable(glove)) return no_pose();
   const auto image = inscribed(mask);
   if (!image)
     return fail(ErrorCode::NotFound, "glove", "nothing in the picture is as dark as a glove");
@@ -241,7 +248,7 @@ Result<GlovePlace> place_glove(const cv::Mat& mask, const PosedGlove& glove,
     if (!model) return fail(ErrorCode::NotFound, "glove", "is outside the picture");
     out.wrist = aligned(out.wrist, *model, *image, camera);
   }
-  out.facing = std::abs((glove.pose.turn * Vector3d::UnitZ()).dot(out.wrist.normalized()));
+  out.facing = facing_of(glove, out.wrist);
   if (options.refine) refine_place(out, mask, glove, camera);
   widen(out, image->radius, camera, options);
   return out;

@@ -67,4 +67,9 @@ struct Circle {
                                              const Intrinsics& camera,
                                              const GloveOptions& options = {});
 
+/// Whether pose and skeleton are some; what to answer if not; how the palm is turned to the camera.
+[[nodiscard]] bool is_usable(const PosedGlove& glove);
+[[nodiscard]] tl::unexpected<Error> no_pose();
+[[nodiscard]] double facing_of(const PosedGlove& glove, const Eigen::Vector3d& wrist);
+
 }  // namespace chorus::hand

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/base/units.h"
+#include "common/hand/hand_json.h"
 #include "common/synthetic/draw.h"
 
 namespace chorus::testing {
@@ -129,11 +130,13 @@ void paint(cv::Mat& grey, const cv::Mat& alpha, const GloveScene& scene, synthet
 
 }  // namespace
 
-SeenGlove seen_glove(const hand::Skeleton& skeleton, const GloveScene& scene) {
+SeenGlove seen_glove(const hand::Skeleton& skeleton, const GloveScene& scene,
+                     const std::optional<hand::Pose>& posed) {
   synthetic::Draw draw({scene.seed, 79});
   SeenGlove out;
   out.camera = {640, 480, 600.0, 600.0, 319.5, 239.5, {}};
-  hand::Pose truth = drawn_pose(skeleton, scene, draw);
+  const hand::Pose drawn = drawn_pose(skeleton, scene, draw);
+  const hand::Pose truth = posed.value_or(drawn);
   hand::Skeleton real = skeleton;
   for (auto& joint : real.joints) joint *= scene.size;
   const auto joints = joints_of(real, truth);
@@ -152,6 +155,33 @@ SeenGlove seen_glove(const hand::Skeleton& skeleton, const GloveScene& scene) {
     each = each * Eigen::Quaterniond(
                       Eigen::AngleAxisd(scene.finger_error * draw.gauss(), Vector3d::UnitX()));
   return out;
+}
+
+std::vector<hand::Pose> moving_hand() {
+  constexpr int kFrames = 40;
+  std::vector<hand::Pose> out;
+  for (int i = 0; i < kFrames; ++i) {
+    const double s = 2.0 * 3.14159265 * i / kFrames;
+    hand::Pose pose;
+    pose.wrist = {0.08 * std::sin(s), 0.06 + 0.02 * std::cos(2.0 * s), 0.65 + 0.08 * std::sin(s)};
+    pose.turn = Eigen::AngleAxisd(0.35 * std::sin(s), Vector3d::UnitZ()) *
+                Eigen::AngleAxisd(0.5 * std::sin(2.0 * s), Vector3d::UnitY()) *
+                Eigen::AngleAxisd(3.14159265358979, Vector3d::UnitX());
+    for (std::size_t f = 1; f < hand::kFingers; ++f) {
+      for (std::size_t k = 0; k < 3; ++k)
+        pose.local[hand_joint(f, k)] =
+            Eigen::AngleAxisd(0.2 - 0.2 * std::cos(s), Vector3d::UnitX());
+    }
+    out.push_back(pose);
+  }
+  return out;
+}
+
+std::string hand_file(const hand::Skeleton& skeleton) {
+  hand::HandShape shape;
+  shape.side = skeleton.side;
+  shape.outline.palm_radius = 1.0;  // A picture's; nothing is measured by it here.
+  return hand::scan_json(shape, skeleton, {"drawn", "drawn", 0.1, ""});
 }
 
 hand::Skeleton usual_skeleton() {

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -27,7 +30,15 @@ struct SeenGlove {
   Eigen::Vector3d wrist = Eigen::Vector3d::Zero();  ///< The truth [m].
 };
 
-[[nodiscard]] SeenGlove seen_glove(const hand::Skeleton& skeleton, const GloveScene& scene);
+/// `posed`: the true pose in the camera's axes; none: drawn from the scene's seed.
+[[nodiscard]] SeenGlove seen_glove(const hand::Skeleton& skeleton, const GloveScene& scene,
+                                   const std::optional<hand::Pose>& posed = {});
+
+/// A hand that moves before the camera for two seconds at 20 Hz, in the camera's axes.
+[[nodiscard]] std::vector<hand::Pose> moving_hand();
+
+/// The .json of this skeleton, as `chorus scan` writes it.
+[[nodiscard]] std::string hand_file(const hand::Skeleton& skeleton);
 
 /// A right hand of usual proportions, as a scan would give it.
 [[nodiscard]] hand::Skeleton usual_skeleton();
