@@ -6,7 +6,7 @@
 #   ergonomics, evaluation  a service that follows a tracker: posture scores; a judgement by worn inertial sensors
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
 #           runs this program; chorus-positioner, which looks through cameras
-#   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise, align
+#   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise, align, scan, glove, position; what looks at pictures needs the runner of camera
 #
 # With CHORUS_ONLY_SENSOR, only common and sensor.
 include(GNUInstallDirs)

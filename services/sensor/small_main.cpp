@@ -4,6 +4,7 @@
 #include "common/service/hosted_program.h"
 #include "common/service/whole_program.h"
 #include "services/sensor/device/camera/camera.h"
+#include "services/sensor/device/glove/glove.h"
 #include "services/sensor/device/positioner/picture_eye.h"
 #include "services/sensor/sensor_host.h"
 
@@ -23,6 +24,17 @@ Result<std::unique_ptr<FrameSource>> make_watched_camera(
 }
 
 }  // namespace chorus::camera
+
+namespace chorus::glove {
+
+/// The same for gloves before a camera.
+Result<std::unique_ptr<FrameSource>> make_glove(ConfigReader& /*section*/,
+                                                const sensor_service::DeviceContext& /*context*/) {
+  return fail(ErrorCode::NotFound, "device.kind",
+              "cameras come with a package of their own: apt install chorus-camera");
+}
+
+}  // namespace chorus::glove
 
 namespace chorus::positioner {
 

@@ -17,6 +17,15 @@ TRUTH = json.loads((ROOT / "tests/data/hand/truth.json").read_text(encoding="utf
 MOST_TIP_PX = 2.0 / TRUTH["mmPerPixel"]
 
 
+MOST_GLOVE_M = 0.015
+
+
+def wrists(bvh):
+    """The root's channels [m]."""
+    rows = bvh.split("Frame Time:")[1].splitlines()[1:]
+    return [[float(value) / 100.0 for value in row.split()[:3]] for row in rows if row.strip()]
+
+
 def scan(folder, *more):
     paths = {**os.environ, "PATH": f"{BIN.resolve()}:{os.environ['PATH']}"}
     line = " ".join([LINE.replace("--out hand.bvh", f"--out {folder}/hand.bvh"), *more])
@@ -40,6 +49,30 @@ class HandsGuide(unittest.TestCase):
             bvh = Path(folder, "hand.bvh").read_text(encoding="utf-8")
             self.assertEqual(bvh.count("JOINT RightHand"), 15)
             self.assertGreater(Path(folder, "hand.png").stat().st_size, 10_000)
+
+    def test_a_glove_is_put_where_the_camera_saw_it(self):
+        line = "chorus glove glove.avi take.bvh --hand hand.json --intrinsics lens.json --out placed.bvh"
+        self.assertIn(line, PAGE)
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([BIN / "chorus-drawn-hand", "glove", folder], check=True, timeout=60)
+            paths = {**os.environ, "PATH": f"{BIN.resolve()}:{os.environ['PATH']}"}
+            done = subprocess.run(["bash", "-c", line], cwd=folder, env=paths, capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("found in 40 of 40 pictures", done.stdout)
+            found, truth = (wrists(Path(folder, name).read_text(encoding="utf-8")) for name in ("placed.bvh", "truth.bvh"))
+            self.assertEqual(len(found), len(truth))
+            rms = math.sqrt(sum(math.dist(a, b) ** 2 for a, b in zip(found, truth)) / len(truth))
+            print(f"glove: {1000 * rms:.1f} mm rms")
+            self.assertLess(rms, MOST_GLOVE_M)
+            # The true take tells the size; a hand scanned 4 % too large does not fit it.
+            hand = json.loads(Path(folder, "hand.json").read_text(encoding="utf-8"))
+            for scale, said in ((1.0, "size fits"), (1.04, "size is wrong")):
+                wrong = {**hand, "restMm": [[scale * v for v in p] for p in hand["restMm"]], "palmMm": [scale * v for v in hand["palmMm"]],
+                         "palmRadiusMm": scale * hand["palmRadiusMm"]}
+                Path(folder, "wrong.json").write_text(json.dumps(wrong), encoding="utf-8")
+                done = subprocess.run([BIN / "chorus", "glove", "glove.avi", "truth.bvh", "--hand", "wrong.json", "--intrinsics", "lens.json",
+                                       "--placed", "--out", "x.bvh"], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+                self.assertIn(said, done.stdout, done.stderr)
 
     def test_the_papers_method_is_nameable(self):
         with tempfile.TemporaryDirectory() as folder:

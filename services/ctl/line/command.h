@@ -34,9 +34,9 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 14> kRecordingCommandNames{
-    "import", "replay", "fuse",   "export",  "train-error", "calibrate", "characterise",
-    "align",  "scan",   "report", "compare", "score",       "evaluate",  "position"};
+inline constexpr std::array<std::string_view, 15> kRecordingCommandNames{
+    "import", "replay", "fuse",   "export",  "train-error", "calibrate", "characterise", "align",
+    "scan",   "glove",  "report", "compare", "score",       "evaluate",  "position"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -56,6 +56,7 @@ Run add_characterise(CLI::App& options);
 Run add_align(CLI::App& options);
 Run add_evaluate(CLI::App& options);
 Run add_scan(CLI::App& options);
+Run add_glove(CLI::App& options);
 Run add_report(CLI::App& options);
 Run add_compare(CLI::App& options);
 Run add_score(CLI::App& options);

@@ -98,6 +98,14 @@ constexpr std::array kRecordingCommands{
         "  chorus scan hand.png --method paper --json              Madaras et al., section 4\n"
         "Exit code 0: a hand is found; 1: none, and why is printed.  More: docs/guide/hands.md.",
         &add_scan},
+    Command{"glove", "Puts a glove's take where a camera saw the hand",
+            "Examples:\n"
+            "  chorus glove video.mp4 take.bvh --hand hand.json --intrinsics lens.json --out "
+            "placed.bvh\n"
+            "  chorus glove video.mp4 take.bvh --hand hand.json --intrinsics lens.json --find "
+            "network --out placed.bvh\n"
+            "Exit code 0: placed; 1: the hand is in no picture.  More: docs/guide/hands.md.",
+            &add_glove},
     Command{"report", "Says how good a recording is, and what to do about it",
             "Examples:\n"
             "  chorus report cell.mcap --out report.html --out report.json\n"

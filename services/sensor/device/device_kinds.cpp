@@ -8,6 +8,8 @@
 #include "services/sensor/device/bridge/bridge_settings.h"
 #include "services/sensor/device/camera/camera.h"
 #include "services/sensor/device/camera/camera_settings.h"
+#include "services/sensor/device/glove/glove.h"
+#include "services/sensor/device/glove/glove_settings.h"
 #include "services/sensor/device/inertial/inertial.h"
 #include "services/sensor/device/positioner/positioner.h"
 #include "services/sensor/device/positioner/positioner_settings.h"
@@ -50,6 +52,10 @@ constexpr std::array kKinds{
                  (void)positioner::read_positioner_settings(section);
                },
                &positioner::make_positioner},
+    DeviceKind{
+        "glove",
+        [](ConfigReader& section, const SensorId&) { (void)glove::read_glove_settings(section); },
+        &glove::make_glove},
     DeviceKind{"inertial", &inertial_device::check_inertial_settings,
                &inertial_device::make_inertial},
 };

@@ -97,7 +97,8 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
 /// Chooses the device to whose section the key belongs, because only then does the key count.
 std::string choosing_its_device(const std::string& key, const std::string& text) {
   auto root = ConfigReader::parse(text, "test");
-  for (const std::string kind : {"replay", "bridge", "camera", "inertial", "suit", "positioner"}) {
+  for (const std::string kind :
+       {"replay", "bridge", "camera", "inertial", "suit", "positioner", "glove"}) {
     const bool chosen = key.starts_with("device." + kind + ".");
     EXPECT_TRUE(!chosen || root->set("device.kind=" + kind));
   }
