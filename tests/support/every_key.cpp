@@ -20,7 +20,8 @@ constexpr const char* kWords[] = {"s2",          "0.0.0.0",
                                   "multicast",   "metres",
                                   "ForearmLeft", "239.1.2.3",
                                   "tcp",         "/tmp/x.bvh",
-                                  "10.0.0.1",    "tests/unit/learn/head_model.json"};
+                                  "10.0.0.1",    "tests/unit/learn/head_model.json",
+                                  "network"};
 
 std::vector<json> other_values(const json& value) {
   std::vector<json> others;
