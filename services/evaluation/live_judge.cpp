@@ -13,20 +13,10 @@ namespace {
 constexpr Duration kPatience = std::chrono::seconds(1);
 constexpr std::size_t kMostWaiting = 300;
 
-/// The body of whoever wears the suit: the only person in sight, or the one who wore it before.
-const Skeleton<WorldSpace>* wearer_in(const TrackedInstant& instant,
-                                      std::optional<PersonId>& wearer) {
-  if (instant.people.size() == 1) wearer = instant.people.front().first;
-  if (!wearer) return nullptr;
+const Skeleton<WorldSpace>* body_of(const TrackedInstant& instant, PersonId person) {
   const auto body =
-      std::ranges::find(instant.people, *wearer, &std::pair<PersonId, Skeleton<WorldSpace>>::first);
+      std::ranges::find(instant.people, person, &std::pair<PersonId, Skeleton<WorldSpace>>::first);
   return body == instant.people.end() ? nullptr : &body->second;
-}
-
-std::string why_nobody(const TrackedInstant& instant, const std::optional<PersonId>& wearer) {
-  if (instant.people.empty()) return "the tracker sees nobody";
-  if (wearer) return "the tracker does not see who wears the suit";
-  return "it is not known who of those in sight wears the suit; let the wearer be alone once";
 }
 
 }  // namespace
@@ -80,13 +70,46 @@ std::optional<Timestamp> LiveJudge::judge() {
   return last;
 }
 
+std::optional<evaluation::TrackedOrientation> LiveJudge::tracked_limb(
+    const Skeleton<WorldSpace>& body, inertial::Limb limb) const {
+  return options_.stated ? evaluation::limb_from_orientation(body, limb)
+                         : evaluation::limb_from_joints(body, limb);
+}
+
+/// Who wears the suit: the only person in sight, the one who wore it before, or whom it fits.
+void LiveJudge::find_wearer(Source& source, const TrackedInstant& instant,
+                            const std::vector<inertial::InertialReading>& readings) const {
+  if (instant.people.size() == 1) source.wearer = instant.people.front().first;
+  if (instant.people.size() < 2 || (source.wearer && body_of(instant, *source.wearer) != nullptr))
+    return source.search.forget();
+  std::map<std::string, inertial::Limb> limbs;
+  WornInstant worn{instant.captured, {}, {}};
+  for (const auto& [sensor, limb] : source.suit) {
+    if (limb.told().limb) limbs[sensor] = *limb.told().limb;
+  }
+  for (const auto& [person, body] : instant.people) {
+    for (const auto& [sensor, limb] : limbs) {
+      if (const auto tracked = tracked_limb(body, limb)) worn.people[person][limb] = *tracked;
+    }
+  }
+  for (const inertial::InertialReading& each : readings)
+    worn.sensors[each.sensor] = *each.inertial_from_sensor;
+  if (const auto found = source.search.take(std::move(worn), limbs)) source.wearer = found;
+}
+
 void LiveJudge::judge_source(Source& source, const TrackedInstant& instant) {
-  const Skeleton<WorldSpace>* body = wearer_in(instant, source.wearer);
   const auto readings = source.history.at(instant.captured);
+  find_wearer(source, instant, readings);
+  const Skeleton<WorldSpace>* body = source.wearer ? body_of(instant, *source.wearer) : nullptr;
+  const std::string nobody = instant.people.empty() ? "the tracker sees nobody"
+                             : source.wearer        ? "the tracker does not see who wears the suit"
+                             : source.search.reason().empty()
+                                 ? "it is not known yet who of those in sight wears the suit"
+                                 : source.search.reason();
   for (auto& [sensor, limb] : source.suit) {
     if (!limb.told().limb) continue;
     if (body == nullptr) {
-      limb.unseen(why_nobody(instant, source.wearer), instant.captured, options_.watch);
+      limb.unseen(nobody, instant.captured, options_.watch);
       continue;
     }
     limb.worn_by(*source.wearer);
@@ -97,9 +120,7 @@ void LiveJudge::judge_source(Source& source, const TrackedInstant& instant) {
 
 void LiveJudge::judge_limb(LimbWatch& limb, const Skeleton<WorldSpace>& body,
                            const inertial::InertialReading* reading, Timestamp at) const {
-  const inertial::Limb which = *limb.told().limb;
-  const auto tracked = options_.stated ? evaluation::limb_from_orientation(body, which)
-                                       : evaluation::limb_from_joints(body, which);
+  const auto tracked = tracked_limb(body, *limb.told().limb);
   if (reading == nullptr) return limb.unseen("the sensor is silent", at, options_.watch);
   if (!tracked) return limb.unseen("the tracker does not see this limb", at, options_.watch);
   limb.judge({seconds(at - *origin_), *tracked, *reading->inertial_from_sensor}, at,

@@ -1,8 +1,8 @@
 // Judges a tracker live: what the sensors on a person's limbs say against what the tracker says.
 //
 // Each instant of the tracker is judged once the sensors have caught up with it (limb_watch.h).
-// Who of several people wears the suit: the only one in sight, or whoever wore it before.  Pure:
-// no clock, no thread.
+// Who of several people wears the suit: the only one in sight, whoever wore it before, or the one
+// whose limbs the sensors fit (wearer_search.h).  Pure: no clock, no thread.
 #pragma once
 
 #include <deque>
@@ -16,6 +16,7 @@
 #include "common/inertial/calibration.h"
 #include "common/inertial/orientation_history.h"
 #include "services/evaluation/limb_watch.h"
+#include "services/evaluation/wearer_search.h"
 
 namespace chorus::evaluation_service {
 
@@ -73,11 +74,16 @@ class LiveJudge {
     inertial::OrientationHistory history{{.span = std::chrono::milliseconds(2500)}};
     std::optional<Timestamp> newest;
     std::optional<PersonId> wearer;
+    WearerSearch search;
   };
 
   void know(const SensorId& id, Source& source, const inertial::InertialReading& reading);
   [[nodiscard]] std::optional<inertial::Limb> limb_of(
       const SensorId& source, const inertial::InertialReading& reading) const;
+  [[nodiscard]] std::optional<evaluation::TrackedOrientation> tracked_limb(
+      const Skeleton<WorldSpace>& body, inertial::Limb limb) const;
+  void find_wearer(Source& source, const TrackedInstant& instant,
+                   const std::vector<inertial::InertialReading>& readings) const;
   void judge_source(Source& source, const TrackedInstant& instant);
   void judge_limb(LimbWatch& limb, const Skeleton<WorldSpace>& body,
                   const inertial::InertialReading* reading, Timestamp at) const;
