@@ -88,6 +88,9 @@ void read_slip(ConfigReader& section, SimulatedSuit& out) {
   section.read("slips", limb);
   section.read_s("slips_after_s", slip.begin, Duration{0}, kLongest);
   section.read_deg("slips_by_deg", slip.size, -180.0, 180.0);
+  bool across = false;
+  section.read("slips_across", across);
+  if (across) slip.axis = Eigen::Vector3d::UnitX();
   if (limb == "none") return;
   read_limb(section, "slips", slip.limb);
   out.faults.push_back(slip);

@@ -25,6 +25,8 @@
 //     raw [false]               also angular rates and forces, as chips measure them
 //     slips [none]              the limb whose sensor slips: "ForearmLeft"
 //     slips_after_s [20]    slips_by_deg [60]
+//     slips_across [false]    false: about the bone, as straps slip; true: across it, which also
+//                             shows on limbs whose twist a tracker does not see
 //     faults [[]]               what else goes wrong: a list of kind (slip, disturbance, silence,
 //                               battery, swap, lie), limb, other (of swap), begin_s [0], lasts_s
 //                               [for ever], size_deg (slip, disturbance), factor (lie: of the

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "common/synthetic/exercise.h"
 #include "common/synthetic/performer.h"
 
 namespace chorus::sensor_service {
@@ -43,10 +44,15 @@ void read_people(ConfigReader& config, SceneSettings& out) {
   config.read("people", people, 0, kMaxPeople);
   config.read("motion", path);
   config.read("motion_metres_per_unit", file.metres_per_unit, 1e-4, 10.0);
+  bool exercise = false;
+  config.read("exercise", exercise);
   const auto count = static_cast<std::size_t>(std::clamp(people, 0, kMaxPeople));
   out.people = "CMU walking";
   if (path.empty()) {
     out.scene.people = synthetic::make_people(script, count);
+    if (!exercise) return;
+    out.people = "CMU walking, exercising";
+    for (synthetic::Person& person : out.scene.people) person = synthetic::exercising(person);
     return;
   }
   file.path = path;

@@ -7,6 +7,7 @@
 //   scene.body_scale [1]
 //   scene.motion [""]       a .bvh, .amc, .c3d or .mvnx that people play instead of walking a path
 //   scene.motion_metres_per_unit [0.01]      of a .bvh
+//   scene.exercise [false]  people who walk a path bend, raise their arms and knees, ... meanwhile
 //   scene.occluders [[]]    a list; of each:
 //     kind: car, pillar or table
 //     width_m, height_m, length_m    [as in common/synthetic/occluder.h]
