@@ -15,6 +15,7 @@
 #include "common/importers/doubts.h"
 #include "common/importers/formats.h"
 #include "services/ctl/convert/import_output.h"
+#include "services/ctl/convert/inertial_import.h"
 #include "services/ctl/convert/pose_import.h"
 #include "services/ctl/convert/sniffed.h"
 #include "services/ctl/convert/video_import.h"
@@ -78,10 +79,11 @@ std::function<std::string(const std::string&)> readable_by(Parse parse) {
 }
 
 std::string check_format(const std::string& name) {
-  if (is_of_cameras(name) || importers::format_named(name)) return {};
+  if (is_of_cameras(name) || name == kInertialFormat || importers::format_named(name)) return {};
   std::string known;
   for (const auto& row : kCameraFormats) known += fmt::format(" {}", row.first);
   for (const auto& row : importers::kFormats) known += fmt::format(" {}", row.name);
+  known += fmt::format(" {}", kInertialFormat);
   return fmt::format("there is no format \"{}\"; known are{}", name, known);
 }
 
@@ -265,10 +267,24 @@ bool has_few_joints(const std::vector<std::string>& doubts) {
       doubts, [](const std::string& doubt) { return doubt.find(": only ") != std::string::npos; });
 }
 
+/// Logs of worn sensors: one recording of all files.
+Result<int> run_inertial(const ImportArguments& given, const importers::ImportOptions& options) {
+  if (!given.floors.empty() || !given.unit.empty() || !given.up.empty() || !given.clocks.empty())
+    return fail(ErrorCode::InvalidArgument, "inertial",
+                "takes --sensor and --start only: worn sensors have no floor and no lengths");
+  InertialImport how;
+  if (options.sensor) how.source = *options.sensor;
+  if (!given.start.empty()) how.start = options.start;
+  const auto suit = import_inertial(given.inputs, given.out, how);
+  if (suit) print_imported(*suit, given.json);
+  return suit.map([](const ImportedSuit&) { return kExitOk; });
+}
+
 Result<int> run_import(const ImportArguments& arguments) {
   if (auto ok = check_options(arguments); !ok) return pass(ok);
   const auto options = options_of(arguments);
   if (!options) return pass(options);
+  if (arguments.format == kInertialFormat) return run_inertial(arguments, *options);
   const auto set = read_set(arguments, *options);
   if (!set && set.error().code == ErrorCode::Unsupported) tell_template(arguments);
   if (!set) return pass(set);
@@ -358,6 +374,7 @@ Run add_import(CLI::App& options) {
   for (const auto& [name, reads] : kCameraFormats) formats += fmt::format("\n{}: {}", name, reads);
   for (const auto& row : importers::kFormats)
     formats += fmt::format("\n{}: {}", row.name, row.reads);
+  formats += fmt::format("\n{}: {}", kInertialFormat, kInertialReads);
   options.add_option("format", arguments->format, formats)->required()->check(check_format);
   options
       .add_option("input", arguments->inputs, "Files of one take, one sensor each; or the folder")

@@ -75,13 +75,17 @@ bool may_be_recorded(const fs::path& file) {
 }
 
 /// Refuses to overwrite a recording; an import may be replaced, because it can be repeated.
+Result<void> spare_recording(const fs::path& file) {
+  if (!may_be_recorded(file)) return {};
+  return fail(ErrorCode::Conflict, file.string(),
+              "was recorded, not imported, or cannot be read, and is never overwritten. Name "
+              "another --out or --sensor.");
+}
+
 Result<void> spare_recordings(const fs::path& folder, const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
-    const fs::path file = folder / (recording.sensor.str() + ".mcap");
-    if (may_be_recorded(file))
-      return fail(ErrorCode::Conflict, file.string(),
-                  "was recorded, not imported, or cannot be read, and is never overwritten. Name "
-                  "another --out or --sensor.");
+    const auto ok = spare_recording(folder / (recording.sensor.str() + ".mcap"));
+    if (!ok) return ok;
   }
   return {};
 }
@@ -128,6 +132,15 @@ Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers:
     if (const auto done = write_truth(written.back(), set); !done) return pass(done);
   }
   return written;
+}
+
+Result<void> make_room_for(const fs::path& file) {
+  std::error_code failed;
+  fs::create_directories(file.parent_path(), failed);
+  if (failed) return fail(ErrorCode::Io, file.parent_path().string(), failed.message());
+  if (auto ok = spare_recording(file); !ok) return ok;
+  fs::remove(file, failed);
+  return {};
 }
 
 void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& written) {

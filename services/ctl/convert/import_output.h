@@ -14,6 +14,10 @@ namespace chorus::ctl {
 [[nodiscard]] Result<std::vector<std::filesystem::path>> write_set(
     const std::filesystem::path& folder, const importers::ImportedSet& set);
 
+/// Makes the folder of a recording that is to be written, and removes an earlier import of that
+/// name.  Refuses where that file was recorded, not imported.
+[[nodiscard]] Result<void> make_room_for(const std::filesystem::path& file);
+
 /// Warns of other recordings in the folder, because they would be fused along with this import.
 void warn_of_strangers(const std::filesystem::path& folder,
                        const std::vector<std::filesystem::path>& written);

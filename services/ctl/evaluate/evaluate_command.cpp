@@ -52,18 +52,27 @@ std::map<std::uint64_t, evaluation::TrackedBody> people_of(const Samples& sample
   return out;
 }
 
-std::vector<evaluation::JudgeSensor> sensors_of(const std::vector<inertial::SensorLog>& logs) {
+/// What the sensors' times count from: the tracker's first frame where both have been recorded by
+/// one clock, so that they overlap; otherwise their own first reading.
+Timestamp origin_of(const std::vector<inertial::SensorLog>& logs, const Samples& samples) {
+  Timestamp first = logs.front().readings.front().captured;
+  Timestamp last = first;
+  for (const inertial::SensorLog& log : logs) {
+    first = std::min(first, log.readings.front().captured);
+    last = std::max(last, log.readings.back().captured);
+  }
+  const bool overlap = first <= samples.back().instant && samples.front().instant <= last;
+  return overlap ? samples.front().instant : first;
+}
+
+std::vector<evaluation::JudgeSensor> sensors_of(const std::vector<inertial::SensorLog>& logs,
+                                                Timestamp origin) {
   std::vector<evaluation::JudgeSensor> out;
-  const auto early = [](const auto& a, const auto& b) {
-    return a.readings.front().captured < b.readings.front().captured;
-  };
-  const auto first = std::ranges::min_element(logs, early);
   for (const inertial::SensorLog& log : logs) {
     evaluation::JudgeSensor sensor{log.sensor, log.readings.front().limb, {}};
     for (const auto& reading : log.readings)
       if (reading.inertial_from_sensor)
-        sensor.track.push_back({seconds(reading.captured - first->readings.front().captured),
-                                *reading.inertial_from_sensor});
+        sensor.track.push_back({seconds(reading.captured - origin), *reading.inertial_from_sensor});
     out.push_back(std::move(sensor));
   }
   return out;
@@ -102,7 +111,7 @@ Result<Loaded> load(const std::string& tracking, const std::vector<std::string>&
       std::cerr << "note: sensor " << log.sensor << ": " << note << '\n';
   for (const std::string& note : inertial::heading_notes(*logs))
     std::cerr << "note: " << note << '\n';
-  return Loaded{std::move(*body), sensors_of(*logs)};
+  return Loaded{std::move(*body), sensors_of(*logs, origin_of(*logs, frames->samples))};
 }
 
 Result<EvaluationInputs> inputs_of(const EvaluateArguments& arguments) {
@@ -169,8 +178,10 @@ Run add_evaluate(CLI::App& options) {
                   "Fused frames: a recording, lines of JSON, or an address")
       ->required();
   options
-      .add_option("--inertial", arguments->inertial,
-                  "Files of the sensors: MT Manager .txt, Movella DOT .csv, OpenSim .sto, .mvnx")
+      .add_option(
+          "--inertial", arguments->inertial,
+          "Files of the sensors: MT Manager .txt, Movella DOT .csv, OpenSim .sto, .mvnx, or "
+          "a recording that holds what they said")
       ->required();
   options.add_option("--limb", arguments->limbs,
                      "SENSOR=LIMB, where names do not say; else it is found");

@@ -9,6 +9,7 @@
 #include "common/inertial/mtw_log.h"
 #include "common/inertial/orientation_table.h"
 #include "common/motion/mvnx.h"
+#include "common/record/cell_reader.h"
 
 namespace chorus::ctl {
 namespace {
@@ -43,12 +44,51 @@ Result<Logs> logs_of_mvnx(std::string_view text, std::string_view origin) {
   return fail(ErrorCode::NotFound, std::string(origin), "has no segment that is a limb");
 }
 
+/// The sensors of one source; `prefix` keeps those of several sources apart.
+void add_recorded(const std::vector<inertial::InertialFrame>& instants, const std::string& prefix,
+                  Logs& out) {
+  std::map<std::string, SensorLog> logs;
+  for (const inertial::InertialFrame& instant : instants) {
+    for (const InertialReading& reading : instant.readings) {
+      SensorLog& log = logs[reading.sensor];
+      if (!log.readings.empty() && reading.captured <= log.readings.back().captured) continue;
+      log.readings.push_back(reading);
+      InertialReading& kept = log.readings.back();
+      kept.sensor = prefix + kept.sensor;
+      if (!kept.limb) kept.limb = inertial::limb_meant_by(reading.sensor);
+    }
+  }
+  for (auto& [name, log] : logs) {
+    log.sensor = prefix + name;
+    const double span = seconds(log.readings.back().captured - log.readings.front().captured);
+    if (span > 0.0) log.rate_hz = static_cast<double>(log.readings.size() - 1) / span;
+    out.push_back(std::move(log));
+  }
+}
+
+/// What a recording has on /inertial/{id}/orientations, by the recorder's clock.
+Result<Logs> logs_of_recording(const fs::path& file) {
+  record::CellQuery query;
+  query.inertial = true;
+  query.raw = false;
+  const auto cell = record::read_cell(file, query);
+  if (!cell) return pass(cell);
+  Logs out;
+  for (const auto& [source, recorded] : cell->inertial)
+    add_recorded(recorded.instants, cell->inertial.size() > 1 ? source.str() + "/" : "", out);
+  if (!out.empty()) return out;
+  return fail(ErrorCode::NotFound, file.string(),
+              "has no topic /inertial/{id}/orientations: nothing that worn sensors said was "
+              "recorded");
+}
+
 Result<Logs> one(Result<SensorLog> log) {
   if (!log) return pass(log);
   return Logs{std::move(*log)};
 }
 
 Result<Logs> logs_in(const fs::path& file) {
+  if (file.extension() == ".mcap" || fs::is_directory(file)) return logs_of_recording(file);
   const auto text = read_file(file, inertial::kMaxLogBytes);
   if (!text) return pass(text);
   const std::string origin = file.filename().string();
@@ -61,7 +101,8 @@ Result<Logs> logs_in(const fs::path& file) {
         inertial::parse_mtw_log(*text, origin, inertial::mtw_sensor_of(file.stem().string())));
   return fail(
       ErrorCode::Unsupported, file.string(),
-      "is no file of inertial sensors that we read: .sto, .mvnx, .csv (DOT), .txt (MT Manager)");
+      "is no file of inertial sensors that we read: .sto, .mvnx, .csv (DOT), .txt (MT Manager), "
+      ".mcap (a recording)");
 }
 
 Result<std::map<std::string, inertial::Limb>> stated_limbs(const std::vector<std::string>& limbs) {

@@ -61,6 +61,7 @@ constexpr std::array kHostCommands{
             "Examples:\n"
             "  chorus status\n"
             "  chorus status --url http://127.0.0.1:8080/ --json | jq .sensors\n"
+            "Where chorus-evaluation judges the tracker by worn sensors, it says which limb is off.\n"
             "Exit code 0: at least one sensor is live; 1: none is, or no server.",
             &add_status},
     Command{"record", "Records a running sensor or fusion server into a file on this machine",

@@ -14,6 +14,7 @@
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/server_option.h"
+#include "services/ctl/operate/evaluation_status.h"
 #include "services/ctl/operate/events_report.h"
 #include "services/ctl/operate/no_fusion_server.h"
 #include "services/ctl/operate/registration_report.h"
@@ -23,6 +24,7 @@ namespace {
 
 struct StatusArguments {
   std::string url = client::default_server();
+  std::string evaluation;  ///< Empty: looked for on the server's host.
   bool json = false;
   bool events = false;
 };
@@ -152,33 +154,51 @@ Result<int> run_events(const client::ServiceClient& server, const StatusArgument
   return kExitOk;
 }
 
+/// Everything that is asked; what the server lacks is null.
+struct Told {
+  nlohmann::json sensors, registration, frame, configuration, outputs, evaluation;
+};
+
+Result<Told> asked(const client::ServiceClient& server, const StatusArguments& arguments) {
+  const auto sensors = server.get("/sensors/");
+  if (!sensors)
+    return tl::unexpected<Error>(no_fusion_server(server, arguments.url, sensors.error()));
+  auto registration = server.get("/registration");
+  if (!registration) return pass(registration);
+  auto evaluation = evaluation_of(arguments.evaluation, server, arguments.url);
+  if (!evaluation) return pass(evaluation);
+  Told told;
+  told.sensors = client::part_at(*sensors, "sensors");
+  ask_the_silent(told.sensors);
+  told.registration = std::move(*registration);
+  // Before the first fused frame the server answers with 503, which is a state, not a failure.
+  told.frame = server.get("/frame").value_or(nlohmann::json());
+  told.configuration = server.get("/configuration").value_or(nlohmann::json());
+  told.outputs = server.get("/outputs/").value_or(nlohmann::json());
+  told.evaluation = std::move(*evaluation);
+  return told;
+}
+
 Result<int> run_status(const StatusArguments& arguments) {
   const auto server = client::ServiceClient::of(arguments.url);
   if (!server) return pass(server);
   if (arguments.events) return run_events(*server, arguments);
-  const auto sensors = server->get("/sensors/");
-  if (!sensors)
-    return tl::unexpected<Error>(no_fusion_server(*server, arguments.url, sensors.error()));
-  const auto registration = server->get("/registration");
-  if (!registration) return pass(registration);
-  // Before the first fused frame the server answers with 503, which is a state, not a failure.
-  const auto frame = server->get("/frame");
-  const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
-  nlohmann::json polled = client::part_at(*sensors, "sensors");
-  ask_the_silent(polled);
-  const bool alive = any_live(polled);
-  const nlohmann::json configuration = server->get("/configuration").value_or(nlohmann::json());
-  const nlohmann::json outputs = server->get("/outputs/").value_or(nlohmann::json());
+  const auto told = asked(*server, arguments);
+  if (!told) return pass(told);
+  const bool alive = any_live(told->sensors);
   if (arguments.json) {
-    std::cout << json_text({{"sensors", polled},
-                            {"registration", *registration},
-                            {"frame", shown_frame},
-                            {"configuration", configuration},
-                            {"outputs", client::part_at(outputs, "outputs")}});
+    nlohmann::json all{{"sensors", told->sensors},
+                       {"registration", told->registration},
+                       {"frame", told->frame},
+                       {"configuration", told->configuration},
+                       {"outputs", client::part_at(told->outputs, "outputs")}};
+    if (!told->evaluation.is_null()) all["evaluation"] = told->evaluation;
+    std::cout << json_text(all);
   } else {
-    std::cout << sensors_report(polled) << registration_report(*registration)
-              << (frame ? bodies_report(shown_frame) : "no fused frame yet\n")
-              << outputs_report(outputs) << configuration_report(configuration);
+    std::cout << sensors_report(told->sensors) << registration_report(told->registration)
+              << (told->frame.is_null() ? "no fused frame yet\n" : bodies_report(told->frame))
+              << judged_limbs(told->evaluation) << outputs_report(told->outputs)
+              << configuration_report(told->configuration);
     if (!alive) std::cerr << "no sensor is live\n";
   }
   return alive ? kExitOk : kExitFailed;
@@ -189,6 +209,12 @@ Result<int> run_status(const StatusArguments& arguments) {
 Run add_status(CLI::App& options) {
   const auto arguments = std::make_shared<StatusArguments>();
   add_server_option(options, arguments->url, "The fusion server");
+  options
+      .add_option(
+          "--evaluation", arguments->evaluation,
+          "The chorus-evaluation that judges it; otherwise the one that it relays, or at port "
+          "8092 of its host")
+      ->envname("CHORUS_EVALUATION_URL");
   options.add_flag("--json", arguments->json, "Report as JSON");
   options.add_flag("--events", arguments->events,
                    "What happened in the last day, and what to do about it, instead of the state");

@@ -8,6 +8,7 @@
 #include "common/client/service_client.h"
 #include "common/record/frame_recording.h"
 #include "common/resource/floor_plane_resource.h"
+#include "common/resource/orientations_resource.h"
 #include "fusion-server/wire/registration_file.h"
 #include "services/ctl/record/recorded_clock.h"
 
@@ -25,6 +26,11 @@ bool is_a(const nlohmann::json& self, const std::string& type) {
   if (!self.is_object() || found == self.end()) return false;
   return found->is_array() ? std::find(found->begin(), found->end(), type) != found->end()
                            : *found == type;
+}
+
+/// Whether a sensor has this resource: one with worn sensors alone has no /frame.
+bool has_resource(const nlohmann::json& self, const char* key) {
+  return self.contains(key) || (std::string_view(key) == "frame" && !self.contains("orientations"));
 }
 
 Timestamp received(const http::ClientResponse& answer) { return from_unix_ns(answer.received_ns); }
@@ -59,6 +65,8 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io
   }
   Result<nlohmann::json> sensors = nlohmann::json();
   if (tracker && !(sensors = server->get("/sensors/"))) return pass(sensors);
+  // A tracker of an earlier version has no inertial sources.
+  const auto inertial = tracker ? server->get("/inertial/") : Result<nlohmann::json>();
 
   record::RecorderOptions recording;
   recording.name = "recording";
@@ -71,19 +79,22 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io
   live->recorder_ = std::move(*recorder);
   if (tracker) {
     live->poll_tracker(client::part_at(*sensors, "sensors"));
+    live->poll_suits(inertial.value_or(nlohmann::json()));
   } else {
-    live->poll_raw(*id, "/");
+    if (has_resource(*self, "frame")) live->poll_raw(*id, "/");
+    if (has_resource(*self, "orientations")) live->poll_suit(*id, "/orientations");
   }
   for (client::LivePoll& one : live->polls_) one.start();
   return live;
 }
 
-void LiveRecording::poll_frames(const std::string& topic, Take take) {
+void LiveRecording::poll_frames(const std::string& topic, Take take, const std::string& accept) {
   client::StreamCount& count = counts_[topic];
-  polls_.emplace_back(
-      io_, options_.service, client::LivePoll::Options{.target = topic, .trust = trust_},
-      client::LivePoll::Takers{std::move(take),
-                               [&count](const Error& error, int) { count.fail(error); }});
+  polls_.emplace_back(io_, options_.service,
+                      client::LivePoll::Options{.target = topic, .accept = accept, .trust = trust_},
+                      client::LivePoll::Takers{std::move(take), [&count](const Error& error, int) {
+                                                 count.fail(error);
+                                               }});
 }
 
 void LiveRecording::poll_state(client::LivePoll::Options what, Take take) {
@@ -131,6 +142,44 @@ void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
   if (options_.fused) {
     poll_frames("/frame", [this](const http::ClientResponse& answer) { take_fused(answer); });
   }
+}
+
+void LiveRecording::poll_suit(const SensorId& source, const std::string& topic) {
+  poll_frames(
+      topic,
+      [this, source, topic](const http::ClientResponse& answer) {
+        take_suit(source, topic, answer);
+      },
+      "application/json");
+}
+
+void LiveRecording::poll_suits(const nlohmann::json& listed) {
+  const nlohmann::json& sources = client::part_at(listed, "inertialSources");
+  if (!options_.raw || sources.empty()) return;
+  poll_state({"/inertial/", "application/json", kClocksEvery},
+             [this](const http::ClientResponse& answer) {
+               const auto list = parse_json(answer.body).value_or(nlohmann::json());
+               for (const auto& [name, suit] : client::part_at(list, "inertialSources").items()) {
+                 if (const auto id = SensorId::parse(name)) suit_clocks_[*id] = clock_of(suit);
+               }
+             });
+  for (const auto& [name, suit] : sources.items()) {
+    const auto id = SensorId::parse(name);
+    if (!id) continue;
+    suit_clocks_[*id] = clock_of(suit);
+    poll_suit(*id, "/inertial/" + name + "/orientations");
+  }
+}
+
+void LiveRecording::take_suit(const SensorId& source, const std::string& topic,
+                              const http::ClientResponse& answer) {
+  auto read = resource::read_orientations(answer.body, resource::Format::Json);
+  if (!read) return counts_[topic].cannot_read(read.error());
+  if (left_over(topic, read->captured + suit_clocks_[source].applied, received(answer))) return;
+  counts_[topic].take(read->sequence);
+  recorder_->offer(record::RawOrientations{
+      source, std::make_shared<const resource::OrientationsResource>(std::move(*read)),
+      received(answer), suit_clocks_[source]});
 }
 
 bool LiveRecording::left_over(const std::string& topic, Timestamp captured, Timestamp received) {

@@ -47,10 +47,15 @@ class LiveRecording {
       : io_(io), options_(std::move(options)), trust_(std::move(trust)) {}
 
   using Take = std::function<void(const http::ClientResponse&)>;
-  void poll_frames(const std::string& topic, Take take);
+  void poll_frames(const std::string& topic, Take take, const std::string& accept = "text/turtle");
   void poll_state(client::LivePoll::Options what, Take take);
   void poll_raw(const SensorId& sensor, const std::string& prefix);
   void poll_tracker(const nlohmann::json& sensors);
+  /// What worn inertial sensors say, of one source or of all that a tracker follows.
+  void poll_suit(const SensorId& source, const std::string& topic);
+  void poll_suits(const nlohmann::json& listed);
+  void take_suit(const SensorId& source, const std::string& topic,
+                 const http::ClientResponse& answer);
   void take_raw(const SensorId& sensor, const std::string& topic,
                 const http::ClientResponse& answer);
   void take_fused(const http::ClientResponse& answer);
@@ -69,6 +74,7 @@ class LiveRecording {
   /// The capture time of the frame that a topic began with, if it was left over.
   std::map<std::string, std::optional<Timestamp>> left_over_;
   std::map<SensorId, record::ClockModel> clocks_;
+  std::map<SensorId, record::ClockModel> suit_clocks_;
   std::map<SensorId, FloorPlane> floors_;
 };
 

@@ -9,6 +9,7 @@
 #include "common/http/server.h"
 #include "common/record/cell_reader.h"
 #include "common/resource/frame_resource.h"
+#include "common/resource/orientations_resource.h"
 #include "common/time/clock.h"
 #include "services/ctl/line/command.h"
 #include "tests/support/builders.h"
@@ -142,6 +143,83 @@ TEST(StreamCount, WhatComesLateIsNotMissed) {
   EXPECT_EQ(count.last, 11u);
   for (const std::uint64_t number : {1000, 1, 2, 4}) count.take(number);
   EXPECT_EQ(count.missed, 1u + 988u + 1u) << "the device began anew with 1, and 3 is missing";
+}
+
+/// A tracker without sensors that follows a suit, and a suit by itself.
+class CellWithASuit : public ::testing::Test {
+ protected:
+  CellWithASuit() {
+    auto router = std::make_shared<http::Router>();
+    const auto json = [&](const char* path, const char* text) {
+      router->get(path, [text](const http::Request&, const http::PathParams&) {
+        return Result<http::DocumentPtr>(http::make_document("application/json", text, {}));
+      });
+    };
+    json("/tracker/", R"({"@type":["Tracker"]})");
+    json("/tracker/sensors/", R"({"sensors":{}})");
+    json("/tracker/inertial/",
+         R"({"inertialSources":{"suit":{"clockOffsetMilliseconds":250,"state":"live"}}})");
+    json("/suit/", R"({"@type":["Sensor"],"sensorId":"suit","orientations":"orientations"})");
+    for (const char* path : {"/tracker/inertial/suit/orientations", "/suit/orientations"}) {
+      router->get(path, [this](const http::Request&, const http::PathParams&) { return said(); });
+    }
+    server_ = std::make_unique<http::Server>(http::ServerConfig{}, router);
+    EXPECT_THAT(server_->start(), IsOk());
+  }
+
+  Result<http::DocumentPtr> said() {
+    resource::OrientationsResource document;
+    document.sequence = static_cast<std::uint64_t>(std::min(++asked_, 6));
+    document.source = "suit";
+    auto& instant = document.instants.emplace_back();
+    instant.sequence = document.sequence;
+    instant.captured = begun_ + std::chrono::milliseconds(20 * document.sequence);
+    instant.source = chorus::testing::sensor_id("suit");
+    auto& one = instant.readings.emplace_back();
+    one.sensor = "pelvis";
+    one.captured = document.captured = instant.captured;
+    one.inertial_from_sensor = Eigen::Quaterniond::Identity();
+    return http::make_document("application/json",
+                               resource::write(document, resource::Format::Json),
+                               {std::to_string(document.sequence)});
+  }
+
+  /// Records below `path` until four documents have come; the readings by the recorder's clock.
+  std::vector<inertial::InertialFrame> recorded(const std::string& path, const std::string& topic) {
+    LiveRecordingOptions options;
+    options.service =
+        http::parse_url("http://127.0.0.1:" + std::to_string(server_->port()) + path).value();
+    options.file = (folder_ / "a.mcap").string();
+    options.fused = false;
+    asio::io_context io{1};
+    const auto live = LiveRecording::start(io, options);
+    EXPECT_TRUE(live) << to_string(live.error());
+    if (!live) return {};
+    EXPECT_EQ((*live)->counts().size(), 1u) << "a suit has no /frame";
+    while ((*live)->counts().at(topic).frames < 4) io.run_one();
+    (void)(*live)->stop();
+    const auto cell = record::read_cell(options.file, {.inertial = true});
+    EXPECT_THAT(cell, IsOk());
+    return cell->inertial.at(chorus::testing::sensor_id("suit")).instants;
+  }
+
+  chorus::testing::TemporaryFolder folder_;
+  std::atomic<int> asked_ = 0;
+  const Timestamp begun_ = SystemClock().now();
+  std::unique_ptr<http::Server> server_;
+};
+
+TEST_F(CellWithASuit, IsRecordedFromTheTrackerWithItsClock) {
+  const auto instants = recorded("/tracker/", "/inertial/suit/orientations");
+  ASSERT_GE(instants.size(), 4u);
+  EXPECT_EQ(instants[0].captured - begun_, std::chrono::milliseconds(20 + 250));
+  EXPECT_EQ(instants[0].readings.at(0).sensor, "pelvis");
+}
+
+TEST_F(CellWithASuit, IsRecordedAlone) {
+  const auto instants = recorded("/suit/", "/orientations");
+  ASSERT_GE(instants.size(), 4u);
+  EXPECT_EQ(instants[3].captured - begun_, std::chrono::milliseconds(80));
 }
 
 TEST_F(BrokenCell, MakesTheCommandFailThoughSomethingCame) {

@@ -140,6 +140,52 @@ TEST(StatusTable, SaysNothingElseAsJson) {
   EXPECT_TRUE(json.at("frame").at("bodies").empty());
 }
 
+/// What a chorus-evaluation says of one limb.
+Json limb(const std::string& state, const std::string& words) {
+  return {{"state", state}, {"comment", words}};
+}
+
+TEST(StatusOfAJudgedTracker, SaysWhichLimbIsOffByHowMuchAndForHowLong) {
+  const ScriptedServer evaluation(ScriptedServer::Texts{
+      {"/evaluation",
+       {Json{{"limbs",
+              {limb("good", "chest agrees"), limb("calibrating", "right shank: calibrates: walk"),
+               limb("off", "left forearm off by 70 deg for 4 s"), limb("good", "pelvis agrees")}}}
+            .dump()}}});
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/sensors/", {R"({"sensors": {"s1": {"state": "live"}}})"}},
+                            {"/registration", {"{}"}},
+                            {"/frame", {R"({"bodies": []})"}}});
+  const Outcome told =
+      run_chorus({"status", "--url", server.url(), "--evaluation", evaluation.url()});
+  EXPECT_EQ(told.code, kExitOk);
+  EXPECT_THAT(told.out, HasSubstr("judged by worn sensors: 2 limbs agree, 1 off, 1 not judged\n"
+                                  "  left forearm off by 70 deg for 4 s\n"
+                                  "  right shank: calibrates: walk\n"));
+  const Outcome json =
+      run_chorus({"status", "--url", server.url(), "--evaluation", evaluation.url(), "--json"});
+  EXPECT_EQ(Json::parse(json.out).at("evaluation").at("limbs").size(), 4u);
+}
+
+TEST(StatusOfAJudgedTracker, TakesWhatTheTrackerRelays) {
+  const ScriptedServer server(ScriptedServer::Texts{
+      {"/sensors/", {R"({"sensors": {"s1": {"state": "live"}}})"}},
+      {"/registration", {"{}"}},
+      {"/frame", {R"({"bodies": []})"}},
+      {"/evaluation", {Json{{"limbs", {limb("off", "head off by 50 deg for 1 s")}}}.dump()}}});
+  EXPECT_THAT(run_chorus({"status", "--url", server.url()}).out,
+              HasSubstr("  head off by 50 deg for 1 s\n"));
+}
+
+TEST(StatusOfAJudgedTracker, FailsIfTheEvaluationThatWasNamedDoesNotAnswer) {
+  const ScriptedServer server(ScriptedServer::Texts{
+      {"/sensors/", {R"({"sensors": {}})"}}, {"/registration", {"{}"}}, {"/frame", {"{}"}}});
+  const ScriptedServer waiting(ScriptedServer::Texts{{"/evaluation", {}}});
+  const Outcome told = run_chorus({"status", "--url", server.url(), "--evaluation", waiting.url()});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("evaluation"));
+}
+
 TEST(RegistrationReport, PutsAlarmsFirstAndWhatToDoNextLast) {
   const std::string text = registration_report(Json{{"verdict", "Good"},
                                                     {"master", "s1"},
