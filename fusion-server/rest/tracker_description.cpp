@@ -17,7 +17,7 @@ http::DocumentPtr floor_document(const service::Serving& serving) {
 
 }  // namespace
 
-service::Self self_of(const std::string& title, bool with_viewer) {
+service::Self self_of(const std::string& title, bool with_viewer, bool judged) {
   service::Self self;
   self.title = title;
   self.description = "Many body-tracking sensors, fused into one virtual tracker.";
@@ -33,12 +33,14 @@ service::Self self_of(const std::string& title, bool with_viewer) {
                          {"events", "eventList", "what happened in the last day"},
                          {"props/", "propList", "what people hold, and where it is"},
                          {"outputs/", "", "which other protocols are served, and to how many"}});
+  if (judged)
+    self.resources.push_back({"evaluation", "evaluation", "what worn sensors say of it, live"});
   return self;
 }
 
 void add_description_routes(http::Router& router, const service::Serving& serving,
-                            const std::string& title, const std::string& viewer_dir) {
-  const auto root = service::self_document(self_of(title, !viewer_dir.empty()), serving, "1");
+                            const service::Self& self, const std::string& viewer_dir) {
+  const auto root = service::self_document(self, serving, "1");
   const auto floor = floor_document(serving);
   router.get("/", [root](const http::Request&, const http::PathParams&) { return root; });
   router.get("/floor-plane",

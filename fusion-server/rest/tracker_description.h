@@ -8,10 +8,12 @@
 
 namespace chorus::rest {
 
-[[nodiscard]] service::Self self_of(const std::string& title, bool with_viewer);
+/// `judged`: there is an /evaluation.
+[[nodiscard]] service::Self self_of(const std::string& title, bool with_viewer,
+                                    bool judged = false);
 
 /// Adds /, /floor-plane (world: y = 0), and /viewer/ if there is a folder for it.
 void add_description_routes(http::Router& router, const service::Serving& serving,
-                            const std::string& title, const std::string& viewer_dir);
+                            const service::Self& self, const std::string& viewer_dir);
 
 }  // namespace chorus::rest

@@ -17,6 +17,7 @@
 #include "common/service/http_config.h"
 #include "fusion-server/foxglove/viewer_dialogue.h"
 #include "fusion-server/outputs/output_bank.h"
+#include "fusion-server/rest/evaluation_relay.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/inertial_resources.h"
 #include "fusion-server/rest/metrics.h"
@@ -151,6 +152,7 @@ struct FusionServer::Impl {
   std::optional<rest::SensorResources> sensors;
   std::optional<rest::InertialResources> inertial;
   std::optional<rest::PropResources> props;
+  std::optional<rest::EvaluationRelay> evaluation;  ///< Where one judges this tracker.
   std::optional<rest::RegistrationResources> registration;
   std::optional<service::Recordings> recordings;
   std::optional<RecordingTap> tap;
@@ -200,6 +202,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   sensors.emplace(serving, ids_of(config.live.sensors));
   inertial.emplace(serving, ids_of(config.live.inertial));
   props.emplace(serving, board);
+  if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run);
   registration.emplace(serving, std::move(control));
   recordings.emplace(recordings_options(config.at_start, serving, clock));
   tap.emplace(*recordings, clock);
@@ -211,9 +214,11 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   sensors->add_routes(*router);
   inertial->add_routes(*router);
   props->add_routes(*router);
+  if (evaluation) evaluation->add_routes(*router);
   registration->add_routes(*router);
-  rest::add_description_routes(*router, serving, config.at_start.title,
-                               viewer_folder(config.at_start.viewer_dir));
+  const auto self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty(),
+                                  evaluation.has_value());
+  rest::add_description_routes(*router, serving, self, viewer_folder(config.at_start.viewer_dir));
   service::CommonResources common;
   common.clock = clock;
   common.health = [this] { return with_outputs(health_of(status_now()), outputs->states()); };
@@ -221,9 +226,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
     return rest::metrics_text(status_now(), outputs->states(), http->counters()) +
            recordings->metrics_text();
   };
-  common.self = [self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty())] {
-    return self;
-  };
+  common.self = [self] { return self; };
   common.configuration = [this] {
     const std::scoped_lock lock(mutex);
     return configuration;
@@ -276,6 +279,7 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
 
 void FusionServer::Impl::follow(const LiveSettings& live) {
   follow_inertial(live.inertial);
+  if (evaluation) evaluation->follow(*followers, config.at_start.evaluation);
   const auto& all = live.sensors;
   followers->follow<resource::FrameResource>(client::kFrames, all, [this](FrameArrival arrived) {
     SensorFrame frame = client::place_in_time(arrived);

@@ -6,6 +6,7 @@
 
 #include "common/base/config_reader.h"
 #include "common/client/follow_config.h"
+#include "common/http/client.h"
 #include "common/sensor/limits.h"
 #include "common/service/http_config.h"
 #include "fusion-server/learn/error_file.h"
@@ -283,6 +284,15 @@ void read_inertial(ConfigReader& root, const tls::Trust& trust, LiveSettings& ou
     root.complain("inertial", "at most " + std::to_string(kMaxSensors) + " are possible");
 }
 
+void read_evaluation(ConfigReader reader, const tls::Trust& trust, StartSettings& out) {
+  client::FollowedService service{SensorId::parse("evaluation").value(), "", "", trust};
+  reader.read("url", service.url);
+  reader.read("token", service.token);
+  if (service.url.empty()) return;
+  if (auto url = http::parse_url(service.url); !url) reader.complain("url", url.error().message);
+  out.evaluation.push_back(std::move(service));
+}
+
 }  // namespace
 
 Result<FusionSettings> read_fusion_settings(ConfigReader root) {
@@ -309,6 +319,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   const tls::Trust trust = client::read_trust(root.child("poll"));
   read_sensors(root, trust, live);
   read_inertial(root, trust, live);
+  read_evaluation(root.child("evaluation"), trust, at_start);
   read_registration(root.child("registration"), settings);
   outputs::read_outputs(root.child("outputs"), settings.live.outputs);
   at_start.props = workplace::read_props(root);

@@ -54,6 +54,7 @@ struct StartSettings {
   std::vector<workplace::Prop> props;  ///< Things that people take up and put down.
   /// The folder of the static files of /viewer/; "auto": see viewer_folder(); empty: no viewer.
   std::string viewer_dir;
+  std::vector<client::FollowedService> evaluation;  ///< Who judges this tracker; at most one.
 
   bool operator==(const StartSettings&) const = default;
 };

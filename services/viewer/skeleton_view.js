@@ -94,6 +94,7 @@ export class FusedView {
     this.object = new THREE.Group();
     this.object.add(this.bones.mesh, this.joints.mesh);
     this.guessed = GUESSED.dark;
+    this.judged = new Map(); // judgedBones() of judged.js
   }
 
   theme(theme) { this.guessed = GUESSED[theme]; }
@@ -108,6 +109,12 @@ export class FusedView {
     const color = new THREE.Color(colourOf(body.bodyId));
     if (left(name)) color.multiplyScalar(LEFT_DARKER);
     return tracked ? color : color.lerp(this.guessed, INFERRED_PALER);
+  }
+
+  /// A bone that worn sensors judge has the colour of the judgement.
+  boneColour(body, child, tracked) {
+    const judged = this.judged.get(Number(body.bodyId))?.[child];
+    return judged ? new THREE.Color(judged) : this.colour(body, child, tracked);
   }
 
   /// Returns how many joints are drawn.
@@ -141,7 +148,7 @@ export class FusedView {
     const middle = from.addScaledVector(along, 0.5);
     const turn = new THREE.Quaternion().setFromUnitVectors(UP, along.divideScalar(length));
     const tracked = a.state === 'Tracked' && b.state === 'Tracked';
-    this.bones.add(new THREE.Matrix4().compose(middle, turn, new THREE.Vector3(1, length, 1)), this.colour(body, child, tracked));
+    this.bones.add(new THREE.Matrix4().compose(middle, turn, new THREE.Vector3(1, length, 1)), this.boneColour(body, child, tracked));
   }
 }
 

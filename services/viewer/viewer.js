@@ -7,6 +7,7 @@ import { html, render } from './panels/html.js';
 import { watchOrigin } from './origin.js';
 import { Resource, clock, follow, link } from './poll.js';
 import { Readout } from './readout.js';
+import { judgedBones } from './judged.js';
 import { askFor, takeToken, tokenInUse } from './request.js';
 import { Room } from './room.js';
 import { OutputRate, OwnDelay, freshness, stateOf } from './state.js';
@@ -25,7 +26,7 @@ const room = new Room(document.getElementById('scene'));
 
 /// All facts that the panels show.
 const known = {
-  frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '', people: null, events: null,
+  frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '', people: null, events: null, evaluation: null,
   state: { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' }, shownFrame: null, shownRate: NaN, age: NaN,
   drawer: null, dialog: null, asking: null,
   switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false },
@@ -146,6 +147,16 @@ follow(resource('events'), 1000, ({ events }) => change({ events }), failed);
 // What is amiss with the service itself although it runs: its configuration, its outputs, its disk.
 follow(resource('healthz'), 5000, ({ warning }) => change({ warning: warning ?? '' }), failed);
 
+// What worn sensors say of the tracker, where somebody judges it.
+const JUDGED_EVERY_MS = 250;
+resource('').next().then((self) => {
+  if (!self?.evaluation) return;
+  follow(resource('evaluation'), JUDGED_EVERY_MS, (evaluation) => {
+    room.fused.judged = judgedBones(evaluation);
+    change({ evaluation });
+  }, failed);
+}).catch(() => {}); // a server of an earlier version
+
 /// The map of the walk, while a session runs.
 let session = null;
 async function followSession(registration) {
@@ -199,7 +210,8 @@ function forget() {
     showRaw(view, { bodies: [] });
   }
   const unknown = Object.keys(known.sensors ?? {}).map((id) => [id, { state: 'unknown' }]);
-  change({ frame: null, sensors: Object.fromEntries(unknown), registration: null, told: null, people: null });
+  room.fused.judged = new Map();
+  change({ frame: null, sensors: Object.fromEntries(unknown), registration: null, evaluation: null, told: null, people: null });
 }
 
 // ---- drawing -------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 import { html } from './html.js';
 import { Keys, Phone, Token } from './dialogs.js';
 import { Events } from './events.js';
+import { Judged } from './judged.js';
 import { Look } from './look.js';
 import { People, Tracker } from './people.js';
 import { Record } from './record.js';
@@ -46,6 +47,7 @@ export function Cockpit({ known, act }) {
       </aside>
       <aside id="right" aria-label="people and events">
         <${People} frame=${known.shownFrame} known=${known.people} resource=${act.resource} onLook=${(id) => act.onView('person', id)} />
+        <${Judged} evaluation=${known.evaluation} />
         <${Tracker} frame=${known.shownFrame} rate=${known.shownRate} age=${known.age} />
         <${Events} events=${known.events} />
       </aside>

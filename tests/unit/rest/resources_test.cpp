@@ -98,7 +98,7 @@ TEST(SensorResources, TellsOfTheClockByWhomAndWhatBecameOfUntimelyFrames) {
 }
 
 TEST(SelfDescription, LeadsToEverythingAndUsesOnlyDeclaredTerms) {
-  EXPECT_EQ(resource::undeclared_terms(service::self_node(self_of("x", true))),
+  EXPECT_EQ(resource::undeclared_terms(service::self_node(self_of("x", true, true))),
             std::vector<std::string>{});
   const auto page = service::self_page(self_of("<script>", true));
   EXPECT_EQ(page.find("<script>"), std::string::npos);
@@ -110,7 +110,7 @@ TEST(SelfDescription, LeadsToEverythingAndUsesOnlyDeclaredTerms) {
 
 TEST(SelfDescription, BrowsersGetThePageOthersTurtle) {
   http::Router router;
-  add_description_routes(router, {"run1"}, "Hall 3", "");
+  add_description_routes(router, {"run1"}, self_of("Hall 3", false), "");
   EXPECT_NE(body(ask(router, "/"), "text/html,application/xhtml+xml,*/*;q=0.8").find("<h1>Hall 3"),
             std::string::npos);
   EXPECT_NE(body(ask(router, "/"), "").find("dcterms:title \"Hall 3\""), std::string::npos);

@@ -1,0 +1,33 @@
+// /evaluation of a tracker that is judged: what its chorus-evaluation says, relayed in JSON, so
+// that the viewer and others who know the tracker need no other address.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/client/evaluation.h"
+#include "common/client/followers.h"
+#include "common/http/router.h"
+
+namespace chorus::rest {
+
+/// Thread-safe.
+class EvaluationRelay {
+ public:
+  /// `run`: of this run of the service, for ETags.
+  explicit EvaluationRelay(std::string run)
+      : run_(std::move(run)), live_(std::make_shared<http::LiveDocument>()) {}
+
+  /// Relays what these say from now on.  The relay must outlive the followers.
+  void follow(client::Followers& followers, std::vector<client::FollowedService> services);
+  void relay(std::shared_ptr<const client::EvaluationText> evaluation);
+  void add_routes(http::Router& router) { router.live("/evaluation", live_); }
+
+ private:
+  std::string run_;
+  std::shared_ptr<http::LiveDocument> live_;
+};
+
+}  // namespace chorus::rest
