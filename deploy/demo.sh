@@ -13,6 +13,9 @@
 #                                   bodies of their rays, with the published extrinsics
 #   --suit                          puts the take of an inertial suit where a camera saw its wearer (chorus position, on the video
 #                                   and the take that ship with the tests), and fuses the result like any sensor's
+#   --inertial                      the person exercises and wears thirteen simulated trackers, one of which slips after 20 s:
+#                                   chorus-evaluation judges the fused tracker by them (port 21 after the fusion server's), `chorus
+#                                   status` and the viewer say which limb is off, and `chorus evaluate` writes a report of the take
 #   --until-good                    with --seconds: stops earlier, as soon as the places are good and it delivers
 #   --register                      with --recording: finds the extrinsics from the person alone
 #   --port N                        the fusion server's port (8080); the sensors use the ports after it, live posture scores
@@ -37,7 +40,7 @@ usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 step() { printf '\n== %s\n' "$*"; }
 fail() { printf '\ndemo: %s\n' "$*" >&2; exit 1; }
 
-sheet='' seconds='' until_good='' recording='' cameras='' suit='' register='' port=8080 overrides=() bin=build/release/bin build=yes
+sheet='' seconds='' until_good='' recording='' cameras='' suit='' inertial='' register='' port=8080 overrides=() bin=build/release/bin build=yes
 read_arguments() {
   while (( $# > 0 )); do
     case $1 in
@@ -47,6 +50,7 @@ read_arguments() {
         if [[ -n "${2:-}" && "${2:0:2}" != -- ]]; then recording=$2; shift; fi ;;
       --cameras) cameras=yes ;;
       --suit) suit=yes ;;
+      --inertial) inertial=yes ;;
       --sheet) sheet=${2:?--sheet needs a file}; shift ;;
       --register) register=yes ;;
       --until-good) until_good=yes ;;
@@ -66,6 +70,7 @@ read_arguments() {
   [[ -z "$recording" || -d "$recording" ]] || fail "there is no folder '$recording'"
   [[ -z "$recording" || -z "$cameras" ]] || fail "--cameras and --recording are two demos: choose one"
   [[ -z "$suit" || -z "$recording$cameras" ]] || fail "--suit is a demo of its own: leave out --cameras and --recording"
+  [[ -z "$inertial" || -z "$recording$cameras" ]] || fail "--inertial simulates its sensors: leave out --recording and --cameras"
   [[ -n "$recording" || -z "$register" ]] || fail "--register goes with --recording"
   [[ -z "$sheet" || -n "$seconds" ]] || fail "--sheet goes with --seconds"
   [[ -z "$sheet" || "$sheet" = /* ]] || sheet=$called_from/$sheet
@@ -73,7 +78,7 @@ read_arguments() {
 
 # --- what we started, and stopping it -------------------------------------------------------------
 
-children=() sensor_processes=0 scores_pid='' sheet_pid=''
+children=() sensor_processes=0 scores_pid='' sheet_pid='' judge_pid=''
 # start NAME COMMAND...: runs it in the background, with its log in NAME.log. The process ends with this script.
 start() {
   local name=$1; shift
@@ -86,7 +91,7 @@ stop_all() {
   trap - EXIT
   trap '' INT TERM
   local extra
-  for extra in $scores_pid $sheet_pid; do kill -TERM "$extra" 2>/dev/null || true; done
+  for extra in $scores_pid $sheet_pid $judge_pid; do kill -TERM "$extra" 2>/dev/null || true; done
   (( ${#children[@]} > 0 )) || return 0
   local i
   # The fusion server was started last and stops first, so that it need not see its sensors vanish.
@@ -132,7 +137,8 @@ build() {
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake --preset release "${launcher[@]}" --log-level=WARNING > "$logs/configure.out"
-  cmake --build build/release -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-fusion chorus chorus-ergonomics
+  cmake --build build/release -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-fusion chorus chorus-ergonomics \
+    chorus-evaluation
 }
 
 # install_modules FOLDER: installs what its package-lock.json names, unless that is already there.
@@ -166,12 +172,17 @@ wait_for() {
 sensors=()  # as JSON objects, for the fusion server
 add_sensor() { sensors+=("{\"id\":\"$1\",\"url\":\"$2\"}"); }
 
+# Calibrating worn sensors takes more than walking.
+scene_options() { [[ -z "$inertial" ]] || printf '%s\n' --set "$1.exercise=true"; }
+
 start_simulated() {
-  local i
+  local i more
+  mapfile -t more < <(scene_options device.simulated.scene)
   for (( i = 0; i < sensor_count; ++i )); do
     local id="s$(( i + 1 ))" p=$(( port + 1 + i ))
     start "$id" "$bin/chorus-sensor" --config deploy/config/sensor.json --set "id=$id" --set "http.port=$p" \
-      --set device.kind=simulated --set "device.simulated.ring.index=$i" --set "device.simulated.ring.count=$sensor_count"
+      --set device.kind=simulated --set "device.simulated.ring.index=$i" --set "device.simulated.ring.count=$sensor_count" \
+      "${more[@]}"
     add_sensor "$id" "http://127.0.0.1:$p/"
   done
 }
@@ -236,6 +247,10 @@ start_fusion() {
   if [[ -n "$cameras" ]]; then
     options+=(--set "registration.file=$bundled_cameras/registration.json" --set registration.auto=false)
   fi
+  if [[ -n "$inertial" ]]; then
+    options+=(--set "inertial=[{\"id\":\"suit\",\"url\":\"http://127.0.0.1:$suit_port/\"}]"
+      --set "evaluation.url=http://127.0.0.1:$evaluation_port/")
+  fi
   start fusion "$bin/chorus-fusion" --config "$config" "${options[@]}" "${overrides[@]}"
 }
 
@@ -261,15 +276,57 @@ finish_scores() {
   [[ -z "$scores_pid" ]] || kill -TERM "$scores_pid" 2>/dev/null || true
 }
 
+# --- a tracker judged by worn sensors -------------------------------------------------------------
+
+readonly judged_s=45 slip_after_s=20
+# Waits until the sensors are placed; then a suit, its judge, a recording and a report of it.  What it starts ends with it.
+judge_tracker() {
+  until curl -s --max-time 2 -H 'Accept: application/json' "$base/registration" | grep -q '"verdict": *"Good"'; do sleep 0.5; done
+  local more suit
+  mapfile -t more < <(scene_options device.inertial.scene)
+  suit='[{"id":"suit","url":"http://127.0.0.1:'$suit_port'/"}]'
+  setpriv --pdeathsig TERM "$bin/chorus-sensor" --id suit --port "$suit_port" --device inertial --set device.inertial.source=simulated \
+    --set device.inertial.slips=ForearmLeft --set device.inertial.slips_across=true --set "device.inertial.slips_after_s=$slip_after_s" \
+    --set device.inertial.slips_by_deg=70 "${more[@]}" > "$logs/suit.out" 2> "$logs/suit.log" &
+  setpriv --pdeathsig TERM "$bin/chorus-evaluation" --tracker "$base/" --port "$evaluation_port" --set "inertial=$suit" \
+    > "$logs/evaluation.out" 2> "$logs/evaluation.log" &
+  sleep 1
+  rm -f "$logs/judged.mcap"
+  setpriv --pdeathsig TERM "$bin/chorus" record "$base/" --out "$logs/judged.mcap" --seconds "$judged_s" > "$logs/record.out" 2> "$logs/record.log" &
+  local recorder=$! said=''
+  while kill -0 "$recorder" 2>/dev/null; do
+    sleep 1
+    [[ -z "$said" ]] || continue
+    said=$("$bin/chorus" status --url "$base/" 2>/dev/null | grep ' off by ' || true)
+    [[ -z "$said" ]] || printf 'chorus status: %s\n' "$said"
+  done
+  wait "$recorder" || { tail -n 3 "$logs/record.log"; return 1; }
+  "$bin/chorus" evaluate --tracking "$logs/judged.mcap" --inertial "$logs/judged.mcap" --most 100 --out "$logs/judged" \
+    2> "$logs/evaluate.log" || { tail -n 3 "$logs/evaluate.log"; return 1; }
+  echo "report: $logs/judged/evaluation.html"
+}
+
+start_judging() {
+  [[ -n "$inertial" ]] || return 0
+  judge_tracker &
+  judge_pid=$!
+}
+
+finish_judging() {
+  [[ -n "$judge_pid" ]] || return 0
+  wait "$judge_pid" || { judge_pid=''; fail "the tracker was not judged; logs in $logs/"; }
+  judge_pid=''
+}
+
 # --- main -----------------------------------------------------------------------------------------
 
 read_arguments "$@"
-logs=var/demo/$port
+logs=var/demo/$port suit_port=$(( port + sensor_count + 1 )) evaluation_port=$(( port + 21 ))
 mkdir -p "$logs"
 rm -f "$logs"/*.log "$logs"/*.out "$logs"/registration.json
 rm -rf "$logs/state"  # each demo registers its sensors anew
 # How many sensors a recording has is only known when it is played; each of them complains if its port is taken.
-if [[ -n "$recording$suit" ]]; then need_free_ports 1; else need_free_ports $sensor_count; fi
+if [[ -n "$recording$suit" ]]; then need_free_ports 1; else need_free_ports $(( sensor_count + 1 )); fi
 [[ -z "$build" ]] || build
 
 trap stop_all EXIT
@@ -298,7 +355,9 @@ ${#sensors[@]} sensors at $(( port + 1 ))..$(( port + ${#sensors[@]} )), fusion 
   scores:  curl -s -H 'Accept: application/json' http://127.0.0.1:$(( port + 20 ))/ergonomics/
 
 TEXT
+[[ -z "$inertial" ]] || printf '  judged:  %s\n\n' "curl -s -H 'Accept: application/json' http://127.0.0.1:$evaluation_port/evaluation"
 start_scores
+start_judging
 [[ -n "$seconds" ]] || echo "Ctrl-C stops everything."
 
 watcher=(python3 -B deploy/watch_tracker.py --base "$base")
@@ -321,7 +380,7 @@ while true; do
   children=("${alive[@]}")
   verdict=0 ended=''
   wait -n -p ended "${children[@]}" || verdict=$?
-  if [[ "$ended" == "$watch_pid" ]]; then finish_scores; exit "$verdict"; fi
+  if [[ "$ended" == "$watch_pid" ]]; then finish_scores; finish_judging; exit "$verdict"; fi
   if ! kill -0 "$fusion_pid" 2>/dev/null; then
     show_logs
     fail "the fusion server ended by itself with code $verdict; logs in $logs/"

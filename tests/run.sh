@@ -90,7 +90,7 @@ run_sanitized() {
 run_strict() {
   step "release, warnings are errors, and its demo"
   cmake --preset strict "${launcher[@]}" --log-level=WARNING
-  cmake --build build/strict -j "$jobs" --target chorus-sensor chorus-fusion chorus chorus-ergonomics
+  cmake --build build/strict -j "$jobs" --target chorus-sensor chorus-fusion chorus chorus-ergonomics chorus-evaluation
   local free='import sys; sys.path.insert(0, "tests/support"); from ports import free_ports; print(free_ports(8))'
   deploy/demo.sh --bin build/strict/bin --port "$(python3 -B -c "$free")" --seconds 20
 }

@@ -17,13 +17,14 @@ namespace chorus::rest {
 class EvaluationRelay {
  public:
   /// `run`: of this run of the service, for ETags.
-  explicit EvaluationRelay(std::string run)
-      : run_(std::move(run)), live_(std::make_shared<http::LiveDocument>()) {}
+  EvaluationRelay(std::string run, http::Router& router)
+      : run_(std::move(run)), live_(std::make_shared<http::LiveDocument>()) {
+    router.live("/evaluation", live_);
+  }
 
   /// Relays what these say from now on.  The relay must outlive the followers.
   void follow(client::Followers& followers, std::vector<client::FollowedService> services);
   void relay(std::shared_ptr<const client::EvaluationText> evaluation);
-  void add_routes(http::Router& router) { router.live("/evaluation", live_); }
 
  private:
   std::string run_;

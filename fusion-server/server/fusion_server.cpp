@@ -202,7 +202,6 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   sensors.emplace(serving, ids_of(config.live.sensors));
   inertial.emplace(serving, ids_of(config.live.inertial));
   props.emplace(serving, board);
-  if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run);
   registration.emplace(serving, std::move(control));
   recordings.emplace(recordings_options(config.at_start, serving, clock));
   tap.emplace(*recordings, clock);
@@ -214,7 +213,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   sensors->add_routes(*router);
   inertial->add_routes(*router);
   props->add_routes(*router);
-  if (evaluation) evaluation->add_routes(*router);
+  if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run, *router);
   registration->add_routes(*router);
   const auto self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty(),
                                   evaluation.has_value());
@@ -251,11 +250,9 @@ void FusionServer::Impl::take_status(const Status& next) {
 LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   LoopOptions options;
   options.core = core_config(config);
-  // Sequences grow across restarts (no output is faster than 1 kHz), so that a cache never takes
-  // /frames/{seq} or an ETag of an earlier run for ours.
+  // Sequences grow across restarts (no output is faster than 1 kHz): no cache takes an old frame.
   options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
-  // Ids of sessions grow across restarts, too, because no session is shorter than a second.  So no
-  // client follows a session of another run.
+  // Ids of sessions, too: no session is shorter than a second, so no client follows an old one.
   options.core.first_session = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000'000);
   options.core.first_person = first_person(store);
   options.registration = std::move(initial.registration);

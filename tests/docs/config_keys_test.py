@@ -12,6 +12,7 @@ READERS = {
                     "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/service",
                     "common/client"],
     "sensor.json": ["services/sensor", "common/service"],
+    "evaluation.json": ["services/evaluation", "common/service/http_config.cpp", "common/service/log_config.cpp", "common/client"],
 }
 READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\(|\bDeviceKind\{|\bread_mb\(|\bread_count\()\s*"([A-Za-z0-9_]+)\"""")
 KEY_LINE = re.compile(r'^\s*"([A-Za-z0-9_]+)"\s*:')
@@ -41,8 +42,9 @@ def keys_shown_in_comments(text):
 
 
 def source_of(folders):
-    return "\n".join(file.read_text(encoding="utf-8")
-                     for folder in folders for file in sorted((ROOT / folder).rglob("*.cpp")))
+    """Of folders, or of single files of rooms that read more for others."""
+    return "\n".join(file.read_text(encoding="utf-8") for folder in folders
+                     for file in ([ROOT / folder] if folder.endswith(".cpp") else sorted((ROOT / folder).rglob("*.cpp"))))
 
 
 def unexplained(text):

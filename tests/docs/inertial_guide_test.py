@@ -6,11 +6,17 @@ import math
 import os
 import re
 import subprocess
+import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/support"))
+from ports import free_ports  # noqa: E402
+
+PATIENCE_S = 60
 BIN = Path(os.environ.get("CHORUS_BIN", ROOT / "build/dev/bin"))
 GUIDE = ROOT / "docs/guide/inertial.md"
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
@@ -117,15 +123,18 @@ def write_sensors(file):
     file.write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
-def guide_lines():
-    blocks = BLOCK.findall(GUIDE.read_text(encoding="utf-8"))
-    return [line for block in blocks for line in block.splitlines() if line.startswith("chorus ")]
+def guide_parts():
+    """The lines that work on files, and those of the live service."""
+    text = GUIDE.read_text(encoding="utf-8")
+    before, live = text.split("<!-- live -->")
+    lines = [line for block in BLOCK.findall(before + live.split("```", 2)[2]) for line in block.splitlines() if line.startswith("chorus ")]
+    return lines, BLOCK.findall(live)[0].splitlines()
 
 
 class InertialGuide(unittest.TestCase):
     def test_every_line_does_what_it_says(self):
-        lines = guide_lines()
-        self.assertGreaterEqual(len(lines), 3)
+        lines, _ = guide_parts()
+        self.assertGreaterEqual(len(lines), 5)
         paths = {**os.environ, "PATH": f"{BIN.resolve()}:{os.environ['PATH']}"}
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
@@ -152,6 +161,69 @@ class InertialGuide(unittest.TestCase):
         self.assertEqual(report["judgement"], "bad")
         clocks = report["subject"]["clocks"]
         self.assertAlmostEqual(float(re.search(r"sensors ([+-][\d.]+)", clocks).group(1)), 80, delta=12)
+
+
+class LiveService(unittest.TestCase):
+    """The lines of "Live" run as printed, on free ports, until the slipped sensor is told."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        printed = ("8080", "8081", "8091", "8092")
+        first = free_ports(len(printed))
+        self.ports = {port: str(first + i) for i, port in enumerate(printed)}
+        self.paths = {**os.environ, "PATH": f"{BIN.resolve()}:{os.environ['PATH']}", "XDG_STATE_HOME": self.folder.name}
+        self.started = []
+
+    def adapted(self, line):
+        return re.sub(r"\b80\d\d\b", lambda port: self.ports[port.group(0)], line)
+
+    def start(self, line):
+        process = subprocess.Popen(["bash", "-c", "exec " + line.removesuffix("&")], cwd=self.folder.name, env=self.paths,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.terminate)
+        self.started.append(process)
+
+    def said(self, line, until, patience=PATIENCE_S):
+        """The output of the line, once it contains the text."""
+        end = time.monotonic() + patience
+        while True:
+            done = subprocess.run(["bash", "-c", line], cwd=self.folder.name, env=self.paths, capture_output=True, text=True,
+                                  timeout=patience, check=False)
+            if (done.returncode == 0 and re.search(until, done.stdout)) or time.monotonic() > end:
+                return done.stdout + done.stderr
+            time.sleep(0.3)
+
+    def test_a_slipped_sensor_is_told(self):
+        _, lines = guide_parts()
+        patterns = iter((r"left forearm off by \d+ deg for \d+ s", '"state": *"off"', '"ForearmLeft"', '"heading"'))
+        for line in map(self.adapted, lines):
+            if line.startswith("chorus record"):  # once there is something to record
+                self.said(f"curl -sf http://127.0.0.1:{self.ports['8080']}/frame", "Skeleton")
+                self.said(f"curl -sf http://127.0.0.1:{self.ports['8091']}/orientations", "Orientations")
+            if line.endswith("&"):
+                self.start(line)
+            elif line.startswith("chorus evaluate"):
+                self.started[-1].wait(PATIENCE_S)
+                self.assertIn("left forearm", self.said(line, "left forearm", 20))
+            else:
+                pattern = next(patterns)
+                self.assertRegex(self.said(line, pattern), pattern)
+        self.conforms("evaluation", "LimbEvaluation")
+        self.conforms("evaluation/segments", "ErrorSegment")
+        report = json.loads((Path(self.folder.name) / "live/evaluation.json").read_text(encoding="utf-8"))
+        figures = {f["key"]: f["value"] for section in report["sections"] for f in section["figures"]}
+        self.assertGreater(figures["left_forearm.in_error"], 5)
+        self.assertLess(figures["right_forearm.in_error"], 5)
+
+    def conforms(self, path, name):
+        """What is served as Turtle conforms to the shapes."""
+        url = f"http://127.0.0.1:{self.ports['8092']}/{path}"
+        turtle = subprocess.run(["curl", "-s", "-H", "Accept: text/turtle", url], capture_output=True, text=True, check=True).stdout
+        done = subprocess.run(["node", str(ROOT / "tests/support/conforms.mjs"), url, name], input=turtle, capture_output=True, text=True,
+                              cwd=ROOT / "tests", check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr + turtle)
 
 
 if __name__ == "__main__":

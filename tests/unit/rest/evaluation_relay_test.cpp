@@ -14,9 +14,8 @@ Result<client::Document> evaluation_read(const std::string& text) {
 }
 
 TEST(EvaluationRelay, GivesTheNewestAsItWasSent) {
-  EvaluationRelay relay("run1");
   http::Router router;
-  relay.add_routes(router);
+  EvaluationRelay relay("run1", router);
   EXPECT_EQ(testing::get(router, "/evaluation").status, 503);
   const std::string sent =
       R"({"@type": "Evaluation", "sequence": 7, "capturedNanoseconds": "1795246200000000000",
