@@ -94,8 +94,15 @@ std::size_t Tracker::outline_camera(std::size_t camera) const {
   return settings_.method == Method::Both ? settings_.cameras + camera : camera;
 }
 
+bool Tracker::may_search(Duration now) {
+  constexpr Duration kBetweenSearches = std::chrono::milliseconds(500);
+  if (searched_ && now - *searched_ < kBetweenSearches) return false;
+  searched_ = now;
+  return true;
+}
+
 /// Somebody who fits, in the first picture that has any.
-std::optional<SightedPlace> Tracker::first_sight(const Instant& instant, double height) const {
+std::optional<SightedPlace> Tracker::first_sight(const Instant& instant, double height) {
   const double heading = settings_.heading.value_or(0.0);
   if (settings_.start) {
     SightedPlace out{*settings_.start, kStepSigma * kStepSigma * Eigen::Matrix3d::Identity(),
@@ -106,7 +113,7 @@ std::optional<SightedPlace> Tracker::first_sight(const Instant& instant, double 
   if (settings_.method == Method::Suit)
     return SightedPlace{{0.0, height, 0.0}, Eigen::Matrix3d::Zero(), heading};
   for (const Look& look : instant.looks) {
-    if (!look.sight) continue;
+    if (!look.sight || !may_search(instant.pose.time)) continue;
     if (auto seen = look.sight->anywhere(instant.pose, settings_.heading, height)) return seen;
   }
   return std::nullopt;
@@ -119,9 +126,10 @@ void Tracker::outline(const Look& look, const Instant& instant, double height, T
   const bool landmarks = uses_landmarks(settings_.method);
   std::optional<SightedPlace> seen;
   if (filter_.begun()) seen = look.sight->outlined({instant.pose, now.heading, now.place});
-  if (!landmarks && lost && (!seen || seen->ambiguous)) {
+  if (!landmarks && lost && (!seen || seen->ambiguous) && may_search(instant.pose.time)) {
     const auto heading = filter_.begun() ? std::optional(now.heading) : settings_.heading;
     seen = look.sight->anywhere(instant.pose, heading, height);
+    if (seen && filter_.begun()) filter_.forget_place();
   }
   if (!seen) return;
   out.ambiguous = out.ambiguous || seen->ambiguous;

@@ -81,9 +81,10 @@ class Tracker {
   /// By the suit's steps, or by the paper's search, from a place that is stated or found.
   std::optional<Tracked> added_up(const Instant& instant, const suit::Step& step);
   void outline(const Look& look, const Instant& instant, double height, Tracked& out);
-  [[nodiscard]] std::optional<SightedPlace> first_sight(const Instant& instant,
-                                                        double height) const;
+  [[nodiscard]] std::optional<SightedPlace> first_sight(const Instant& instant, double height);
   void search(const Instant& instant, Tracked& out);
+  /// Whether the whole floor may be searched now: that takes as long as many pictures.
+  [[nodiscard]] bool may_search(Duration now);
   [[nodiscard]] std::size_t outline_camera(std::size_t camera) const;
 
   TrackerSettings settings_;
@@ -94,6 +95,7 @@ class Tracker {
   int refused_ = 0;
   int misfits_ = 0;  ///< Pictures in a row in which nobody fits.
   std::uint64_t strangers_ = 0;
+  std::optional<Duration> searched_{};        ///< When the whole floor was last searched.
   std::optional<SightedPlace> last_place_{};  ///< Of the methods without a filter.
   double walked_ = 0.0;                       ///< Since last_place_ was seen [m].
 };

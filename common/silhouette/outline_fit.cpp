@@ -56,37 +56,49 @@ Eigen::Matrix<double, 2, 3> pixel_slope(const SearchView& view, const OutlinePoi
   return flat * camera_from_sensor_axes() * view.world_from_sensor.linear().transpose();
 }
 
+/// How far the body is moved, and by how much it is thicker all around than its shape [m].
+using Unknowns = Eigen::Vector4d;
+
 struct Normal {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
 };
 
 Normal normal_at(const SearchView& view, const std::vector<OutlinePoint>& outline,
-                 const Eigen::Vector3d& since, const OutlineSettings& settings) {
+                 const Unknowns& since, const OutlineSettings& settings) {
   Normal normal;
+  const double focal = 0.5 * (view.camera.fx + view.camera.fy);
   for (const OutlinePoint& point : outline) {
     const Eigen::Matrix<double, 2, 3> moves = pixel_slope(view, point);
-    const Eigen::Vector2d pixel = point.pixel + moves * since;
+    const Eigen::Vector2d swells = focal / point.depth * point.normal;
+    const Eigen::Vector2d pixel = point.pixel + moves * since.head<3>() + swells * since[3];
     const double away = view.evidence.distance(pixel);
     const Eigen::Vector2d slope = view.evidence.slope(pixel);
     // An edge that runs across the outline is not this outline's.
     if (slope.norm() > 0.3 && std::abs(slope.normalized().dot(point.normal)) < 0.5) continue;
     const double weight = 1.0 / (1.0 + std::pow(away / settings.cauchy_px, 2));
-    Eigen::Vector3d row = moves.transpose() * slope;
+    Unknowns row;
+    row.head<3>() = moves.transpose() * slope;
+    row[3] = swells.dot(slope);
     if (settings.over_floor) row.y() = 0.0;
     normal.matrix += weight * row * row.transpose();
     normal.right -= weight * row * away;
   }
   if (settings.over_floor) normal.matrix(1, 1) = std::max(1.0, normal.matrix(0, 0));
+  // Clothes and girth: the shape is about as thick as this says.
+  const double known = std::pow(kLeastNoise / settings.thickness, 2) * kAlike;
+  normal.matrix(3, 3) += known;
+  normal.right[3] -= known * since[3];
   return normal;
 }
 
-Eigen::Vector3d step_of(const Normal& normal, double most) {
-  Eigen::Matrix3d damped = normal.matrix;
-  damped.diagonal().array() += 1e-3 * normal.matrix.diagonal().maxCoeff() + 1e-9;
-  const Eigen::Vector3d step = damped.ldlt().solve(normal.right);
-  if (!step.allFinite()) return Eigen::Vector3d::Zero();
-  return step.norm() > most ? Eigen::Vector3d(most * step.normalized()) : step;
+Unknowns step_of(const Normal& normal, double most) {
+  Eigen::Matrix4d damped = normal.matrix;
+  damped.diagonal().array() +=
+      1e-3 * normal.matrix.topLeftCorner<3, 3>().diagonal().maxCoeff() + 1e-9;
+  const Unknowns step = damped.ldlt().solve(normal.right);
+  if (!step.allFinite()) return Unknowns::Zero();
+  return step.norm() > most ? Unknowns(most * step.normalized()) : step;
 }
 
 /// The best place of a coarse grid, and whether another one is as good.
@@ -115,19 +127,20 @@ std::pair<Eigen::Vector3d, bool> coarse(const SearchView& view, const OutlineSet
 
 Eigen::Vector3d refined(const SearchView& view, Eigen::Vector3d shift,
                         const OutlineSettings& settings) {
+  double thicker = 0.0;
   for (int outer = 0; outer < kOuter; ++outer) {
     const auto outline = outline_at(view, shift, settings.spacing_px);
-    Eigen::Vector3d since = Eigen::Vector3d::Zero();
+    Unknowns since(0.0, 0.0, 0.0, thicker);
     for (int inner = 0; inner < kInner; ++inner) {
-      const Eigen::Vector3d step =
-          step_of(normal_at(view, outline, since, settings), settings.most_shift);
+      const Unknowns step = step_of(normal_at(view, outline, since, settings), settings.most_shift);
       since += step;
       if (step.norm() < kConverged) break;
     }
-    if (since.norm() > 2.0 * settings.most_shift)
-      since = 2.0 * settings.most_shift * since.normalized();
-    shift += since;
-    if (since.norm() < kConverged) break;
+    Eigen::Vector3d by = since.head<3>();
+    thicker = since[3];
+    if (by.norm() > 2.0 * settings.most_shift) by *= 2.0 * settings.most_shift / by.norm();
+    shift += by;
+    if (by.norm() < kConverged) break;
   }
   return shift;
 }
@@ -160,12 +173,12 @@ std::optional<OutlineFit> fit_outline(const SearchView& view, const OutlineSetti
   if (outline.size() < kFewestPoints) return std::nullopt;
   out.inside = inside_share(outline, view.evidence);
   if (out.inside < kLeastInside) return std::nullopt;
-  const Normal normal = normal_at(view, outline, Eigen::Vector3d::Zero(), settings);
+  const Normal normal = normal_at(view, outline, Unknowns::Zero(), settings);
   const double noise = std::max(kLeastNoise, out.mean_px);
-  Eigen::Matrix3d information = normal.matrix / (noise * noise * kAlike);
+  Eigen::Matrix4d information = normal.matrix / (noise * noise * kAlike);
   if (settings.over_floor) information(1, 1) = 0.0;  // The height was not measured.
   information.diagonal().array() += 1e-2;
-  out.covariance = information.inverse();
+  out.covariance = information.inverse().topLeftCorner<3, 3>();
   return out;
 }
 

@@ -13,7 +13,10 @@ struct OutlineSettings {
   double spacing_px = 5.0;  ///< Of the outline's points [px of the picture].
   double cauchy_px = 8.0;
   double most_shift = 0.15;  ///< Of one step [m].
-  bool over_floor = true;    ///< Only along x and z; the height is the suit's.
+  /// Standard deviation of how much thicker the person is all around than the shape, by girth and
+  /// clothes: it is estimated with the shift, or it would be taken for nearness [m].
+  double thickness = 0.015;
+  bool over_floor = true;  ///< Only along x and z; the height is the suit's.
   /// Mean distance above which the start is searched on a grid [px].
   double lost_px = 9.0;
   double reach = 0.6;  ///< Of that grid [m].
