@@ -34,7 +34,8 @@ double worst_limb(inertial::StreamReader& reader, const std::vector<std::vector<
   for (const auto& datagram : sent)
     EXPECT_TRUE(reader.take({datagram.data(), datagram.size()}, {}));
   const auto frame = reader.instant({});
-  double worst = frame ? 0.0 : 1e9;
+  if (!frame) return 1e9;
+  double worst = 0.0;
   for (const LimbBone& same : kSame)
     for (const auto& reading : frame->readings)
       if (reading.limb == same.limb) {
