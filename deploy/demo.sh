@@ -70,7 +70,7 @@ read_arguments() {
   [[ -z "$recording" || -d "$recording" ]] || fail "there is no folder '$recording'"
   [[ -z "$recording" || -z "$cameras" ]] || fail "--cameras and --recording are two demos: choose one"
   [[ -z "$suit" || -z "$recording$cameras" ]] || fail "--suit is a demo of its own: leave out --cameras and --recording"
-  [[ -z "$inertial" || -z "$recording$cameras" ]] || fail "--inertial simulates its sensors: leave out --recording and --cameras"
+  [[ -z "$inertial" || -z "$recording$cameras$suit" ]] || fail "--inertial simulates its sensors: leave out --recording, --cameras and --suit"
   [[ -n "$recording" || -z "$register" ]] || fail "--register goes with --recording"
   [[ -z "$sheet" || -n "$seconds" ]] || fail "--sheet goes with --seconds"
   [[ -z "$sheet" || "$sheet" = /* ]] || sheet=$called_from/$sheet

@@ -57,13 +57,14 @@ constexpr std::array kHostCommands{
             "  chorus origin --yaw 90                 turns the world and leaves its origin\n"
             "The world then stays: over new walks, another master, and restarts.",
             &add_origin},
-    Command{"status", "Shows the sensors, the registration and the fused bodies of a fusion server",
-            "Examples:\n"
-            "  chorus status\n"
-            "  chorus status --url http://127.0.0.1:8080/ --json | jq .sensors\n"
-            "Where chorus-evaluation judges the tracker by worn sensors, it says which limb is off.\n"
-            "Exit code 0: at least one sensor is live; 1: none is, or no server.",
-            &add_status},
+    Command{
+        "status", "Shows the sensors, the registration and the fused bodies of a fusion server",
+        "Examples:\n"
+        "  chorus status\n"
+        "  chorus status --url http://127.0.0.1:8080/ --json | jq .sensors\n"
+        "Where chorus-evaluation judges the tracker by worn sensors, it says which limb is off.\n"
+        "Exit code 0: at least one sensor is live; 1: none is, or no server.",
+        &add_status},
     Command{"record", "Records a running sensor or fusion server into a file on this machine",
             "Examples:\n"
             "  chorus record --out walk.mcap --seconds 60\n"
