@@ -26,7 +26,7 @@ nlohmann::json found_at(http::Url host) {
   return read.is_object() ? read : nlohmann::json();
 }
 
-bool is_loopback(const std::string& host) {
+bool is_this_host(const std::string& host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
@@ -34,7 +34,7 @@ bool is_loopback(const std::string& host) {
 bool judges(const nlohmann::json& evaluation, const http::Url& tracker) {
   const auto told = http::parse_url(client::text_at(evaluation, "tracker", ""));
   return told && told->port == tracker.port &&
-         (told->host == tracker.host || is_loopback(told->host));
+         (told->host == tracker.host || is_this_host(told->host));
 }
 
 }  // namespace

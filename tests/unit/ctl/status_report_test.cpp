@@ -141,17 +141,19 @@ TEST(StatusTable, SaysNothingElseAsJson) {
 }
 
 /// What a chorus-evaluation says of one limb.
-Json limb(const std::string& state, const std::string& words) {
+Json told_limb(const std::string& state, const std::string& words) {
   return {{"state", state}, {"comment", words}};
 }
 
 TEST(StatusOfAJudgedTracker, SaysWhichLimbIsOffByHowMuchAndForHowLong) {
-  const ScriptedServer evaluation(ScriptedServer::Texts{
-      {"/evaluation",
-       {Json{{"limbs",
-              {limb("good", "chest agrees"), limb("calibrating", "right shank: calibrates: walk"),
-               limb("off", "left forearm off by 70 deg for 4 s"), limb("good", "pelvis agrees")}}}
-            .dump()}}});
+  const ScriptedServer evaluation(
+      ScriptedServer::Texts{{"/evaluation",
+                             {Json{{"limbs",
+                                    {told_limb("good", "chest agrees"),
+                                     told_limb("calibrating", "right shank: calibrates: walk"),
+                                     told_limb("off", "left forearm off by 70 deg for 4 s"),
+                                     told_limb("good", "pelvis agrees")}}}
+                                  .dump()}}});
   const ScriptedServer server(
       ScriptedServer::Texts{{"/sensors/", {R"({"sensors": {"s1": {"state": "live"}}})"}},
                             {"/registration", {"{}"}},
@@ -172,7 +174,7 @@ TEST(StatusOfAJudgedTracker, TakesWhatTheTrackerRelays) {
       {"/sensors/", {R"({"sensors": {"s1": {"state": "live"}}})"}},
       {"/registration", {"{}"}},
       {"/frame", {R"({"bodies": []})"}},
-      {"/evaluation", {Json{{"limbs", {limb("off", "head off by 50 deg for 1 s")}}}.dump()}}});
+      {"/evaluation", {Json{{"limbs", {told_limb("off", "head off by 50 deg for 1 s")}}}.dump()}}});
   EXPECT_THAT(run_chorus({"status", "--url", server.url()}).out,
               HasSubstr("  head off by 50 deg for 1 s\n"));
 }
