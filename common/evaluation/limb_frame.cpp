@@ -124,4 +124,9 @@ std::optional<TrackedOrientation> limb_from_orientation(const Skeleton<WorldSpac
 
 JointId end_joint_of(Limb limb) { return kEnds[inertial::index_of(limb)]; }
 
+LimbBone bone_of(Limb limb) {
+  const LimbRow& row = kRows[inertial::index_of(limb)];
+  return {row.from, row.to};
+}
+
 }  // namespace chorus::evaluation

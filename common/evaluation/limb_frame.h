@@ -49,4 +49,11 @@ struct LimbFrameOptions {
 /// The joint at whose end the limb's bone ends: the one whose orientation is the limb's.
 [[nodiscard]] JointId end_joint_of(inertial::Limb limb);
 
+/// The joints that the limb's +y leads from and to.
+struct LimbBone {
+  JointId from;
+  JointId to;
+};
+[[nodiscard]] LimbBone bone_of(inertial::Limb limb);
+
 }  // namespace chorus::evaluation

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -57,6 +58,13 @@ struct FusedBody {
   std::optional<LearnedLength> stature = {};
   /// For predictions (fusion/prediction.h); none: the method has no velocities.
   std::optional<std::array<JointMotion, kJointCount>> motion = {};
+  /// The inertial sources that had a say; bit i of `worn_contributors`: worn_sources[i] in a joint.
+  std::vector<SensorId> worn_sources = {};
+  std::array<std::uint64_t, kJointCount> worn_contributors = {};
+  /// By how much they, not the views, determine the position [0, 1].
+  std::array<double, kJointCount> worn_share = {};
+  /// The joints before inertial sensors had their say; none: they had none.
+  std::optional<Skeleton<WorldSpace>> sighted = {};
 };
 
 }  // namespace chorus

@@ -10,6 +10,7 @@
 #include "common/base/strong_id.h"
 #include "common/body/skeleton.h"
 #include "fusion-server/flow/aligned_sensor.h"
+#include "fusion-server/flow/worn_limb.h"
 
 namespace chorus {
 
@@ -39,6 +40,9 @@ struct Person {
   /// Where the middle of the person is expected, world [m].  Set only if no sensor sees the person;
   /// then there are no views.
   std::optional<Eigen::Vector3d> carried = {};
+  /// What inertial sensors on the person say of their limbs; empty: they wear none, or fusion is
+  /// not to use them.
+  std::vector<WornLimb> worn = {};
 };
 
 }  // namespace chorus

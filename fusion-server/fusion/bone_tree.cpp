@@ -1,5 +1,7 @@
 #include "fusion-server/fusion/bone_tree.h"
 
+#include <algorithm>
+
 #include <Eigen/LU>
 
 namespace chorus::fusion {
@@ -20,6 +22,25 @@ struct Follower {
   Eigen::Matrix3d follow = Eigen::Matrix3d::Zero();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };
+
+/// What a bone adds to the normal equations of its ends.
+struct Spring {
+  Eigen::Matrix3d stiff;
+  Eigen::Vector3d push;
+};
+
+/// `way`: from parent to child now.  Nothing if the bone holds nothing.
+std::optional<Spring> spring_of(const HeldBone& bone, const Eigen::Vector3d& way) {
+  if (bone.way) {
+    const Eigen::Matrix3d stiff = bone.way->covariance.inverse();
+    return Spring{stiff, stiff * bone.way->way};
+  }
+  const double length = way.norm();
+  if (!(bone.sigma > 0) || !(length > kNoLength)) return std::nullopt;
+  const Eigen::Vector3d u = way / length;
+  const double weight = 1.0 / (bone.sigma * bone.sigma);
+  return Spring{weight * u * u.transpose(), weight * bone.length * u};
+}
 
 class Tree {
  public:
@@ -48,14 +69,10 @@ class Tree {
     followers_[b] = {};
     const std::size_t p = index_of(kBones[b].parent);
     const std::size_t c = index_of(kBones[b].child);
-    if (!seen_[p].placed || !seen_[c].placed || !(bone.sigma > 0)) return;
-    const Eigen::Vector3d way = body_[c].position - body_[p].position;
-    const double length = way.norm();
-    if (!(length > kNoLength)) return;
-    const Eigen::Vector3d u = way / length;
-    const double weight = 1.0 / (bone.sigma * bone.sigma);
-    const Eigen::Matrix3d stiff = weight * u * u.transpose();
-    const Eigen::Vector3d push = weight * bone.length * u;
+    if (!seen_[p].placed || !seen_[c].placed) return;
+    const auto spring = spring_of(bone, body_[c].position - body_[p].position);
+    if (!spring) return;
+    const auto& [stiff, push] = *spring;
     const Eigen::Matrix3d spread = (nodes_[c].information + stiff).inverse();
     Follower& follower = followers_[b];
     follower = {true, spread, spread * stiff, spread * (nodes_[c].right + push)};
@@ -92,6 +109,15 @@ class Tree {
 };
 
 }  // namespace
+
+HeldWay held_way(const HeldBone& bone, const Eigen::Vector3d& direction,
+                 const Eigen::Matrix3d& covariance) {
+  const double along = std::max(bone.sigma, kNoLength);
+  // Across the direction at least so much, so that the way's covariance has an inverse.
+  const Eigen::Matrix3d across =
+      bone.length * bone.length * covariance + kNoLength * kNoLength * Eigen::Matrix3d::Identity();
+  return {bone.length * direction, across + along * along * direction * direction.transpose()};
+}
 
 PlacedBody hold_bones(const PlacedBody& seen, const HeldBones& bones, int rounds) {
   Tree tree(seen);

@@ -2,10 +2,13 @@
 //
 //   min  sum_j |x_j - z_j|^2_S_j + sum_b (|x_c - x_p| - L_b)^2 / s_b^2
 // (docs/papers/body.md (4)) by Gauss-Newton, each step solved exactly from the leaves to the root
-// and back (5)-(7).
+// and back (5)-(7).  A bone whose direction is known too, from an inertial sensor on the limb, is
+//   + |x_c - x_p - w_b|^2_W_b
+// instead (docs/papers/body.md (23)): linear, solved in the same pass.
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -21,11 +24,22 @@ struct PlacedJoint {
 };
 using PlacedBody = std::array<PlacedJoint, kJointCount>;
 
-/// The length of a bone.
-struct HeldBone {
-  double length = 0.0;  ///< [m]
-  double sigma = 0.0;   ///< Standard deviation [m]; 0: unknown length.
+/// Length and direction of a bone.
+struct HeldWay {
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();         ///< From parent to child [m].
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< [m^2], positive definite.
 };
+
+/// The length of a bone, and its direction where that is known.
+struct HeldBone {
+  double length = 0.0;              ///< [m]
+  double sigma = 0.0;               ///< Standard deviation [m]; 0: unknown length.
+  std::optional<HeldWay> way = {};  ///< Takes the place of the length.
+};
+
+/// The way along a unit direction whose own covariance is given [1], for a bone of known length.
+[[nodiscard]] HeldWay held_way(const HeldBone& bone, const Eigen::Vector3d& direction,
+                               const Eigen::Matrix3d& covariance);
 using HeldBones = std::array<HeldBone, kBones.size()>;  ///< In the order of kBones.
 
 /// Joints without a position stay without one; their bones, and bones of unknown length, have no

@@ -11,7 +11,8 @@ Memory::Memory(const Memory& other)
     : config_(other.config_),
       last_(other.last_),
       several_(other.several_),
-      place_errors_(other.place_errors_) {
+      place_errors_(other.place_errors_),
+      limbs_(other.limbs_) {
   for (const auto& [key, estimator] : other.estimators_) {
     estimators_.emplace(key, estimator->clone());
   }
@@ -52,6 +53,8 @@ FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   place_errors_[person.id].add(body, person, instant.sensors);
   const bool placed = std::ranges::any_of(body.skeleton.joints, &Joint::seen);
   if (!person.carried && placed) last_[person.id] = {body, instant.at, method};
+  if (config_.inertial.enabled && !person.carried)
+    body = limbs_[person.id].steer(std::move(body), person, instant.at, config_);
   if (!known) return body;
   const Duration unseen = instant.at - last->second.at;
   if (!placed) body = carry(last->second.body, unseen, *person.carried);
@@ -65,6 +68,7 @@ void Memory::keep_only(const std::set<PersonId>& tracked) {
   std::erase_if(last_, [&](const auto& entry) { return !tracked.contains(entry.first); });
   std::erase_if(several_, [&](const auto& entry) { return !tracked.contains(entry.first); });
   std::erase_if(place_errors_, [&](const auto& entry) { return !tracked.contains(entry.first); });
+  std::erase_if(limbs_, [&](const auto& entry) { return !tracked.contains(entry.first); });
 }
 
 FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,

@@ -11,6 +11,7 @@
 #include "fusion-server/flow/person.h"
 #include "fusion-server/fusion/estimator.h"
 #include "fusion-server/fusion/fusion_config.h"
+#include "fusion-server/fusion/inertial_limbs.h"
 #include "fusion-server/fusion/methods.h"
 #include "fusion-server/fusion/place_errors.h"
 
@@ -50,6 +51,7 @@ class Memory {
   std::map<PersonId, Timestamp> several_;  ///< When method_for() last returned the configured
                                            ///< method.
   std::map<PersonId, PlaceErrors> place_errors_;
+  std::map<PersonId, InertialLimbs> limbs_;  ///< Only of people whom inertial sensors may steer.
   std::map<std::pair<PersonId, Method>, std::unique_ptr<Estimator>> estimators_;
 };
 

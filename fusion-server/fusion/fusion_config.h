@@ -7,6 +7,7 @@
 #include "common/base/strong_id.h"
 #include "fusion-server/fusion/body_model.h"
 #include "fusion-server/fusion/error_predictor.h"
+#include "fusion-server/fusion/inertial_model.h"
 #include "fusion-server/fusion/noise_model.h"
 #include "fusion-server/fusion/pose_error.h"
 
@@ -57,7 +58,8 @@ struct FusionConfig {
   /// PointsAndRays, BodyFilter: rays alone do not determine a joint if they leave its position less
   /// certain than this [m].
   double max_sigma = 0.15;
-  BodyModel body;  ///< Parameters of BodyFilter.
+  BodyModel body;          ///< Parameters of BodyFilter.
+  InertialModel inertial;  ///< Of worn inertial sensors, behind every method.
 
   bool operator==(const FusionConfig&) const = default;
 };

@@ -77,6 +77,40 @@ TEST(BoneTree, OneRoundIsTheDenseSolutionWithItsCovariance) {
   }
 }
 
+/// A bone with a direction is linear: the dense solution of the same problem.
+TEST(BoneTree, ABoneWithADirectionIsSolvedInTheSamePass) {
+  const Problem problem = random_problem(6);
+  Problem directed = problem;
+  const std::size_t b = 6;  // ElbowLeft to WristLeft
+  const auto p = static_cast<Eigen::Index>(3 * index_of(kBones[b].parent));
+  const auto c = static_cast<Eigen::Index>(3 * index_of(kBones[b].child));
+  directed.bones = {};
+  const Eigen::Vector3d u = Eigen::Vector3d(1, 2, -1).normalized();
+  directed.bones[b] = {0.25, 0.005};
+  directed.bones[b].way =
+      held_way(directed.bones[b], u, 0.01 * (Eigen::Matrix3d::Identity() - u * u.transpose()));
+  const PlacedBody body = hold_bones(directed.seen, directed.bones, 1);
+  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(3, kSize);
+  slope.block<3, 3>(0, c).setIdentity();
+  slope.block<3, 3>(0, p) = -Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d weight = directed.bones[b].way->covariance.inverse();
+  Eigen::MatrixXd information = slope.transpose() * weight * slope;
+  Eigen::VectorXd right = slope.transpose() * weight * (0.25 * u);
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto at = static_cast<Eigen::Index>(3 * j);
+    const Eigen::Matrix3d own = directed.seen[j].covariance.inverse();
+    information.block<3, 3>(at, at) += own;
+    right.segment<3>(at) += own * directed.seen[j].position;
+  }
+  const Eigen::MatrixXd covariance = information.inverse();
+  const Eigen::VectorXd places = covariance * right;
+  for (const Eigen::Index at : {p, c}) {
+    const PlacedJoint& joint = body[static_cast<std::size_t>(at) / 3];
+    EXPECT_LT((joint.position - places.segment<3>(at)).norm(), 1e-9);
+    EXPECT_LT((joint.covariance - covariance.block<3, 3>(at, at)).norm(), 1e-12);
+  }
+}
+
 TEST(BoneTree, WithoutLengthsNothingMoves) {
   const Problem problem = random_problem(1);
   const PlacedBody body = hold_bones(problem.seen, {});
