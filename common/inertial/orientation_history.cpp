@@ -8,13 +8,6 @@
 namespace chorus::inertial {
 namespace {
 
-/// The sensor's sample in this instant, if it has an orientation.
-const InertialReading* sample_of(const InertialFrame& instant, std::string_view sensor) {
-  const auto found = std::ranges::find(instant.readings, sensor, &InertialReading::sensor);
-  const bool there = found != instant.readings.end() && found->inertial_from_sensor;
-  return there ? &*found : nullptr;
-}
-
 std::optional<Eigen::Vector3d> mixed(const std::optional<Eigen::Vector3d>& a,
                                      const std::optional<Eigen::Vector3d>& b, double share) {
   if (!a || !b) return std::nullopt;
@@ -55,12 +48,14 @@ bool OrientationHistory::push(InertialFrame instant) {
 std::vector<InertialReading> OrientationHistory::at(Timestamp instant) const {
   std::map<std::string_view, const InertialReading*> before;
   std::map<std::string_view, const InertialReading*> after;
-  for (const InertialFrame& one : instants_) {
-    for (const InertialReading& reading : one.readings) {
-      const InertialReading* sample = sample_of(one, reading.sensor);
-      if (sample == nullptr) continue;
-      if (sample->captured <= instant) before[reading.sensor] = sample;
-      if (sample->captured >= instant) after.try_emplace(reading.sensor, sample);
+  // Samples of one frame lie at most a gap apart; farther frames have nothing to interpolate with.
+  const Duration reach = 2 * limits_.max_gap;
+  auto one = std::ranges::lower_bound(instants_, instant - reach, {}, &InertialFrame::captured);
+  for (; one != instants_.end() && one->captured <= instant + reach; ++one) {
+    for (const InertialReading& reading : one->readings) {
+      if (!reading.inertial_from_sensor) continue;
+      if (reading.captured <= instant) before[reading.sensor] = &reading;
+      if (reading.captured >= instant) after.try_emplace(reading.sensor, &reading);
     }
   }
   std::vector<InertialReading> out;

@@ -19,7 +19,7 @@ ROWS = [
      "common/characteristics", "common/assessment", "common/quality", "common/comparison", "common/positioning"],
     ["fusion-server/flow"],
     ["fusion-server/status", "fusion-server/sink.h"],
-    ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],
+    ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch", "fusion-server/worn"],
     ["fusion-server/registration"],
     ["fusion-server/pipeline", "fusion-server/learn"],
     ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "fusion-server/journal", "services/sensor",
@@ -35,7 +35,7 @@ ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 # A header of values that is a room of its own.
 VALUE_HEADERS = {"fusion-server/sink.h"}
 
-STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}
+STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "worn", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
 NO_SOCKET = {"fusion-server/core", "fusion-server/journal", "fusion-server/learn", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES

@@ -1,0 +1,171 @@
+#include "fusion-server/worn/wear.h"
+
+#include <algorithm>
+
+#include "common/evaluation/limb_frame.h"
+
+namespace chorus::worn {
+namespace {
+
+constexpr double kWearerGone = 5.0;   // [s] for which nobody has seen the wearer
+constexpr double kSlipIsNews = 60.0;  // [s] for which a slip is told
+
+/// The body as views alone show it: hidden and guessed joints are left out.
+Skeleton<WorldSpace> views_alone(const FusedBody& body) {
+  Skeleton<WorldSpace> alone = body.sighted.value_or(body.skeleton);
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (body.contributors[j] == 0) alone.joints[j] = {};
+  }
+  return alone;
+}
+
+std::optional<inertial::Limb> limb_of(const inertial::InertialReading& reading) {
+  return reading.limb ? reading.limb : inertial::limb_meant_by(reading.sensor);
+}
+
+}  // namespace
+
+void Wear::configure(const WornConfig& config, const std::set<SensorId>& sources) {
+  if (!(config == config_)) sources_.clear();
+  config_ = config;
+  if (!config_.enabled) return sources_.clear();
+  std::erase_if(sources_, [&](const auto& entry) { return !sources.contains(entry.first); });
+  for (const SensorId& id : sources) sources_.try_emplace(id);
+}
+
+void Wear::take(inertial::InertialFrame frame) {
+  const auto source = sources_.find(frame.source);
+  if (source != sources_.end()) (void)source->second.history.push(std::move(frame));
+}
+
+double Wear::time_of(Timestamp instant) const {
+  return origin_ ? seconds(instant - *origin_) : 0.0;
+}
+
+void Wear::dress(std::vector<Person>& people, Timestamp instant) const {
+  for (const auto& [id, source] : sources_) {
+    if (!source.wearer) continue;
+    const auto person = std::ranges::find(people, *source.wearer, &Person::id);
+    if (person == people.end() || person->carried) continue;
+    for (const inertial::InertialReading& reading : source.history.at(instant)) {
+      const auto sensor = source.sensors.find(reading.sensor);
+      if (sensor == source.sensors.end()) continue;
+      auto limb = sensor->second.limb_at(time_of(instant), id, reading);
+      if (limb) person->worn.push_back(std::move(*limb));
+    }
+  }
+}
+
+void Wear::search_wearer(Source& source, const std::vector<inertial::InertialReading>& readings,
+                         const std::vector<FusedBody>& bodies, double time) {
+  std::vector<Beside> all;
+  for (const FusedBody& body : bodies) {
+    const Skeleton<WorldSpace> alone = views_alone(body);
+    for (const inertial::InertialReading& reading : readings) {
+      const auto limb = limb_of(reading);
+      if (!limb) continue;
+      const auto tracked = evaluation::limb_from_joints(alone, *limb);
+      if (tracked)
+        all.push_back(
+            {body.id, reading.sensor, *limb, {time, *tracked, *reading.inertial_from_sensor}});
+    }
+  }
+  source.search.take(time, all);
+  source.wearer = source.search.look(time);
+  if (!source.wearer) return;
+  source.seen = time;
+  source.search = {};
+}
+
+void Wear::learn_limbs(Source& source, const std::vector<inertial::InertialReading>& readings,
+                       const FusedBody& body, double time) {
+  const Skeleton<WorldSpace> alone = views_alone(body);
+  source.unplaced.clear();
+  for (const inertial::InertialReading& reading : readings) {
+    const auto limb = limb_of(reading);
+    if (!limb) {
+      source.unplaced.push_back(reading.sensor);
+      continue;
+    }
+    auto at = source.sensors.find(reading.sensor);
+    if (at != source.sensors.end() && at->second.limb() != *limb)
+      at = source.sensors.erase(at), at = source.sensors.end();
+    if (at == source.sensors.end())
+      at = source.sensors.emplace(reading.sensor, WornSensor(reading.sensor, *limb)).first;
+    const auto tracked = evaluation::limb_from_joints(alone, *limb);
+    if (tracked) at->second.learn(time, *tracked, *reading.inertial_from_sensor, config_);
+  }
+}
+
+/// The sensor that has waited longest.
+bool Wear::calibrate_one(double time) {
+  WornSensor* next = nullptr;
+  for (auto& [id, source] : sources_) {
+    for (auto& [name, sensor] : source.sensors) {
+      if (!sensor.wants_calibration(time)) continue;
+      if (next == nullptr || sensor.tried_at() < next->tried_at()) next = &sensor;
+    }
+  }
+  if (next != nullptr) next->calibrate(time, config_);
+  return next != nullptr;
+}
+
+void Wear::learn(const std::vector<FusedBody>& bodies, Timestamp instant) {
+  if (sources_.empty()) return;
+  if (!origin_) origin_ = instant;
+  const double time = time_of(instant);
+  for (auto& [id, source] : sources_) {
+    std::vector<inertial::InertialReading> readings = source.history.at(instant);
+    std::erase_if(readings, [](const auto& each) { return !each.inertial_from_sensor; });
+    if (source.wearer) {
+      const auto body = std::ranges::find(bodies, *source.wearer, &FusedBody::id);
+      if (body != bodies.end()) {
+        source.seen = time;
+        learn_limbs(source, readings, *body, time);
+        continue;
+      }
+      if (time - source.seen < kWearerGone && time >= source.seen) continue;
+      // Somebody else may wear it next: mounts and headings are learned anew.
+      source.wearer.reset();
+      source.sensors.clear();
+    }
+    if (!readings.empty()) search_wearer(source, readings, bodies, time);
+  }
+  (void)calibrate_one(time);
+}
+
+void Wear::leave_world() {
+  for (auto& [id, source] : sources_) {
+    source.wearer.reset();
+    source.sensors.clear();
+    source.search = {};
+  }
+}
+
+std::vector<WornReport> Wear::reports(Timestamp now) const {
+  const double time = time_of(now);
+  std::vector<WornReport> all;
+  for (const auto& [id, source] : sources_) {
+    WornReport& report = all.emplace_back();
+    report.source = id;
+    report.wearer = source.wearer;
+    if (!source.wearer) report.reason = source.search.reason();
+    report.unplaced = source.unplaced;
+    for (const auto& [name, sensor] : source.sensors) {
+      WornSensorReport& one = report.sensors.emplace_back();
+      one.sensor = name;
+      one.limb = sensor.limb();
+      one.calibrated = sensor.fit().has_value();
+      one.refusal = sensor.refusal();
+      if (sensor.fit()) one.prediction_sigma = sensor.direction_sigma();
+      one.heading = sensor.heading();
+      one.heading_sigma = sensor.heading_sigma(time);
+      if (!sensor.slip() || time - sensor.slip()->time > kSlipIsNews) continue;
+      one.slipped_ago = time - sensor.slip()->time;
+      one.slip = sensor.slip()->angle;
+    }
+  }
+  return all;
+}
+
+}  // namespace chorus::worn

@@ -1,0 +1,62 @@
+// Everything that the server knows of inertial sensors which people wear: who wears which source,
+// how each sensor sits on its limb, and what that says at an instant.
+//
+// Pure: frames and fused bodies go in, orientations of limbs come out; times are arguments.  It
+// learns from what the views show alone (FusedBody::sighted), so no sensor confirms itself.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/evaluation/wearing.h"
+#include "common/inertial/orientation_history.h"
+#include "fusion-server/flow/fused_body.h"
+#include "fusion-server/flow/person.h"
+#include "fusion-server/flow/worn_report.h"
+#include "fusion-server/worn/wearer.h"
+#include "fusion-server/worn/worn_sensor.h"
+
+namespace chorus::worn {
+
+class Wear {
+ public:
+  /// Forgets sources that are not followed any more, and everything when it is switched off.
+  void configure(const WornConfig& config, const std::set<SensorId>& sources);
+
+  /// Takes what a source said; the times are by our clock.
+  void take(inertial::InertialFrame frame);
+  /// Sets Person::worn of everybody who is known to wear a calibrated source.
+  void dress(std::vector<Person>& people, Timestamp instant) const;
+  /// Learns from the bodies that were fused at `instant`; at most one fit.
+  void learn(const std::vector<FusedBody>& bodies, Timestamp instant);
+  /// The world has changed: headings and people are others.
+  void leave_world();
+
+  [[nodiscard]] std::vector<WornReport> reports(Timestamp now) const;
+
+ private:
+  struct Source {
+    inertial::OrientationHistory history;
+    std::optional<PersonId> wearer;
+    double seen = 0.0;  ///< When the wearer was last seen [s].
+    WearerSearch search;
+    std::map<std::string, WornSensor> sensors;
+    std::vector<std::string> unplaced;  ///< Sensors whose limb is not known.
+  };
+
+  [[nodiscard]] double time_of(Timestamp instant) const;
+  void search_wearer(Source& source, const std::vector<inertial::InertialReading>& readings,
+                     const std::vector<FusedBody>& bodies, double time);
+  void learn_limbs(Source& source, const std::vector<inertial::InertialReading>& readings,
+                   const FusedBody& body, double time);
+  [[nodiscard]] bool calibrate_one(double time);
+
+  WornConfig config_;
+  std::map<SensorId, Source> sources_;
+  std::optional<Timestamp> origin_;  ///< Of the times in seconds.
+};
+
+}  // namespace chorus::worn

@@ -1,0 +1,71 @@
+// One inertial sensor on one person's limb: calibrated while it is worn, followed, and left out
+// when it slips.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "common/evaluation/calibrate.h"
+#include "common/inertial/inertial_frame.h"
+#include "fusion-server/flow/worn_limb.h"
+#include "fusion-server/worn/heading.h"
+#include "fusion-server/worn/slip.h"
+#include "fusion-server/worn/worn_config.h"
+
+namespace chorus::worn {
+
+class WornSensor {
+ public:
+  WornSensor(std::string name, inertial::Limb limb) : name_(std::move(name)), limb_(limb) {}
+
+  /// Takes what is tracked of the limb and what the sensor says, at `time` [s].
+  void learn(double time, const evaluation::TrackedOrientation& tracked,
+             const Eigen::Quaterniond& inertial_from_sensor, const WornConfig& config);
+
+  /// True if a calibration is worth an attempt: there is none yet, or a better one may be found.
+  [[nodiscard]] bool wants_calibration(double time) const;
+  /// Attempts it; takes some milliseconds.
+  void calibrate(double time, const WornConfig& config);
+  [[nodiscard]] double tried_at() const { return tried_; }
+
+  /// What it says of its limb; nothing while it is not calibrated.
+  [[nodiscard]] std::optional<WornLimb> limb_at(double time, const SensorId& source,
+                                                const inertial::InertialReading& reading) const;
+
+  [[nodiscard]] inertial::Limb limb() const { return limb_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::optional<evaluation::CalibrationFit>& fit() const { return fit_; }
+  /// What the calibration lets the direction of the limb's bone err by about one axis [rad].
+  [[nodiscard]] double direction_sigma() const { return direction_sigma_; }
+  /// Why it is not calibrated, and what to do; empty if it is.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  /// The last slip: when [s], and by how much [rad].
+  struct Slip {
+    double time = 0.0;
+    double angle = 0.0;
+  };
+  [[nodiscard]] const std::optional<Slip>& slip() const { return slip_; }
+  [[nodiscard]] double heading() const;
+  [[nodiscard]] double heading_sigma(double time) const;
+
+ private:
+  [[nodiscard]] inertial::SensorCalibration corrected(double time) const;
+  void keep_pair(double time, const evaluation::TrackedOrientation& tracked,
+                 const Eigen::Quaterniond& inertial_from_sensor);
+  void slipped(double time, double angle);
+
+  std::string name_;
+  inertial::Limb limb_;
+  std::deque<evaluation::OrientationPair> pairs_;  ///< Of the last calibration's span.
+  std::optional<evaluation::CalibrationFit> fit_;
+  double fitted_ = 0.0;  ///< When [s].
+  double tried_ = -1e9;
+  std::string refusal_;
+  Heading heading_;
+  SlipWatch watch_;
+  std::optional<Slip> slip_;
+  double direction_sigma_ = 0.0;  ///< What direction_sigma() returns [rad].
+};
+
+}  // namespace chorus::worn

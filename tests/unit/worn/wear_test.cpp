@@ -1,0 +1,169 @@
+// Who wears the sensors, how they sit, and what they say then.
+#include "fusion-server/worn/wear.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/worn/walker.h"
+
+namespace chorus::worn {
+namespace {
+
+using walker::Suit;
+using walker::Walker;
+
+/// A room whose people are seen, and a suit that the first of them wears.
+struct WornWorld {
+  explicit WornWorld(std::vector<Walker> all) : people(std::move(all)) {
+    config.enabled = true;
+    wear.configure(config, {suit.id});
+  }
+
+  /// Goes on to `end` [s] at 15 Hz; stops early if `until` holds.
+  template <class Until>
+  void run(double end, const Until& until) {
+    constexpr double kStep = 1.0 / 15.0;
+    for (; time < end; time += kStep) {
+      wear.take(suit.says(people.front(), time));
+      std::vector<FusedBody> bodies;
+      for (const Walker& who : people) bodies.push_back(walker::fused_of(who, time, 0.015, random));
+      for (FusedBody& body : bodies)
+        for (const JointId id : hidden) body.contributors[index_of(id)] = 0;
+      wear.learn(bodies, walker::at(time));
+      if (until()) return;
+    }
+  }
+  void run(double end) {
+    run(end, [] { return false; });
+  }
+
+  [[nodiscard]] WornReport report() const { return wear.reports(walker::at(time)).front(); }
+  [[nodiscard]] bool all_calibrated() const {
+    const WornReport now = report();
+    return now.sensors.size() == walker::kLimbs.size() &&
+           std::ranges::all_of(now.sensors, &WornSensorReport::calibrated);
+  }
+  /// What the sensors say of the first person, at the last instant.
+  [[nodiscard]] std::vector<WornLimb> says() {
+    const double last = time - 1.0 / 15.0;
+    std::vector<Person> all{Person{PersonId{people.front().id}, {}}};
+    wear.dress(all, walker::at(last));
+    return all.front().worn;
+  }
+  /// Largest angle by which a limb's predicted bone is off [rad].
+  [[nodiscard]] double worst() {
+    const double last = time - 1.0 / 15.0;
+    double most = 0.0;
+    for (const WornLimb& limb : says()) {
+      const auto exact =
+          evaluation::limb_from_joints(walker::body_of(people.front(), last), limb.limb);
+      const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+      const Eigen::Vector3d a = exact->world_from_limb * y;
+      const Eigen::Vector3d b = limb.world_from_limb * y;
+      most = std::max(most, std::atan2(a.cross(b).norm(), a.dot(b)));
+    }
+    return most;
+  }
+
+  WornConfig config;
+  Suit suit;
+  std::vector<Walker> people;
+  std::vector<JointId> hidden;
+  Wear wear;
+  double time = 0.0;
+  std::mt19937_64 random{7};
+};
+
+const Walker kWearer{.id = 1, .phase = 0.0, .tempo = 1.0};
+const Walker kOther{.id = 2, .phase = 1.4, .tempo = 0.83, .x = 1.5};
+const Walker kThird{.id = 3, .phase = 2.9, .tempo = 1.21, .x = -1.5};
+
+TEST(Wear, OfThreePeopleTheOneWhoWearsItIsFoundInSeconds) {
+  WornWorld world({kWearer, kOther, kThird});
+  world.run(10.0, [&] { return world.report().wearer.has_value(); });
+  ASSERT_TRUE(world.report().wearer);
+  EXPECT_EQ(*world.report().wearer, PersonId{1});
+  EXPECT_LT(world.time, 5.0);
+}
+
+TEST(Wear, WhileAllStandStillNobodyIsNamed) {
+  Walker still = kWearer;
+  Walker also = kOther;
+  still.lively = also.lively = 0.0;
+  WornWorld world({still, also});
+  world.run(8.0);
+  EXPECT_FALSE(world.report().wearer);
+  EXPECT_NE(world.report().reason.find("still"), std::string::npos);
+  EXPECT_TRUE(world.says().empty());
+}
+
+TEST(Wear, SomebodyElseAloneIsNotTakenForTheWearer) {
+  WornWorld world({kWearer});
+  std::vector<FusedBody> bodies;
+  for (double t = 0.0; t < 10.0; t += 1.0 / 15.0) {
+    world.wear.take(world.suit.says(kWearer, t));
+    world.wear.learn({walker::fused_of(kOther, t, 0.015, world.random)}, walker::at(t));
+  }
+  EXPECT_FALSE(world.report().wearer);
+}
+
+TEST(Wear, CalibratesWhileSomebodyMovesAndThenKnowsTheLimbs) {
+  WornWorld world({kWearer});
+  world.run(25.0, [&] { return world.all_calibrated(); });
+  ASSERT_TRUE(world.all_calibrated());
+  world.run(world.time + 5.0);
+  EXPECT_EQ(world.says().size(), walker::kLimbs.size());
+  EXPECT_LT(world.worst(), deg(6));
+}
+
+TEST(Wear, ADriftingSuitIsFollowed) {
+  WornWorld world({kWearer});
+  world.suit.drift = deg(0.3);
+  world.run(40.0);
+  ASSERT_TRUE(world.all_calibrated());
+  EXPECT_LT(world.worst(), deg(8));  // 12 degrees without
+}
+
+TEST(Wear, ASensorThatSlipsIsToldLeftOutAndCalibratedAgain) {
+  WornWorld world({kWearer});
+  world.run(20.0);
+  ASSERT_TRUE(world.all_calibrated());
+  world.suit.slip[inertial::Limb::ShankLeft] = deg(60);
+  const auto shank = [&] {
+    const WornReport now = world.report();
+    return *std::ranges::find(now.sensors, "ShankLeft", &WornSensorReport::sensor);
+  };
+  world.run(30.0, [&] { return shank().slipped_ago.has_value(); });
+  EXPECT_LT(world.time, 25.0);
+  EXPECT_NEAR(shank().slip, deg(60), deg(20));
+  EXPECT_FALSE(shank().calibrated);
+  EXPECT_EQ(world.says().size(), walker::kLimbs.size() - 1);
+  world.run(world.time + 12.0);
+  EXPECT_TRUE(shank().calibrated);
+  EXPECT_LT(world.worst(), deg(6));
+}
+
+TEST(Wear, WhatHiddenLimbsWouldShowIsNotLearned) {
+  WornWorld world({kWearer});
+  world.hidden = {JointId::WristLeft};
+  world.run(12.0);
+  const WornReport now = world.report();
+  const auto forearm = std::ranges::find(now.sensors, "ForearmLeft", &WornSensorReport::sensor);
+  ASSERT_NE(forearm, now.sensors.end());
+  EXPECT_FALSE(forearm->calibrated);
+}
+
+TEST(Wear, ASourceThatIsNotFollowedAndOneThatIsSwitchedOffSayNothing) {
+  WornWorld world({kWearer});
+  world.run(5.0);
+  world.wear.configure(world.config, {});
+  EXPECT_TRUE(world.wear.reports(walker::at(6.0)).empty());
+  WornConfig off;
+  world.wear.configure(off, {world.suit.id});
+  world.run(7.0);
+  EXPECT_TRUE(world.wear.reports(walker::at(8.0)).empty());
+}
+
+}  // namespace
+}  // namespace chorus::worn
