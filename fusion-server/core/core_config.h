@@ -10,6 +10,7 @@
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/registration/registration.h"
 #include "fusion-server/watch/watch_config.h"
+#include "fusion-server/worn/worn_config.h"
 
 namespace chorus::core {
 
@@ -19,7 +20,9 @@ struct CoreConfig {
   registration::RegistrationConfig registration;
   SessionConfig session;
   watch::WatchConfig watch;
-  std::set<SensorId> sensors;  ///< Frames of other sensors are ignored.
+  worn::WornConfig worn;
+  std::set<SensorId> sensors;   ///< Frames of other sensors are ignored.
+  std::set<SensorId> inertial;  ///< Inertial sources, which are none of the sensors.
   std::uint64_t first_sequence = 1;
   std::uint64_t first_session = 1;
   std::uint64_t first_person = 1;

@@ -42,6 +42,7 @@ FusionCore::FusionCore(CoreConfig config, Registration registration)
       registrar_(registrar_config(config_), std::move(registration), config_.first_session),
       hindsight_(config_.output.late_frames) {
   memory_.tracks.next_id = config_.first_person;
+  wear_.configure(config_.worn, config_.inertial);
 }
 
 void FusionCore::reconfigure(CoreConfig config) {
@@ -58,6 +59,7 @@ void FusionCore::reconfigure(CoreConfig config) {
   guard_.keep(config_.sensors);
   strays_.keep(config_.sensors);
   clocks_.keep(config_.sensors);
+  wear_.configure(config_.worn, config_.inertial);
   awaited_by_ = 0;
 }
 
@@ -124,10 +126,12 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
 pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   const pipeline::Inputs in{tick.instant, now, tick.sequence};
   auto seen = pipeline::perceive(in, histories_, registration(), memory_, config_.pipeline);
+  wear_.dress(seen.people, tick.instant);
   smooth(in, seen);
   pipeline::Step step =
       pipeline::fuse(std::move(seen), in, pipeline::taking_part(registration(), config_.pipeline),
                      config_.pipeline);
+  wear_.learn(step.snapshot.bodies, tick.instant);
   if (before_) {
     auto was = pipeline::step(in, histories_, *before_, memory_, config_.pipeline).snapshot;
     fade_.apply(was.bodies, tick.instant);
@@ -180,6 +184,7 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
   const pipeline::Inputs in{tick.instant, now, tick.sequence};
   const pipeline::PipelineConfig& config = config_.pipeline;
   auto seen = pipeline::perceive(in, histories_, registration(), answered->before, config);
+  wear_.dress(seen.people, tick.instant);
   const auto sensors = pipeline::taking_part(registration(), config);
   if (config.smoothing.live) smoother_.amend(pipeline::perception_of(in, sensors, seen));
   pipeline::Step step = pipeline::fuse(std::move(seen), in, sensors, config);
@@ -284,6 +289,7 @@ void FusionCore::leave_world() {
   smoother_ = {};
   before_.reset();
   fade_.stop();
+  wear_.leave_world();
 }
 
 Outcome FusionCore::solved(Solution solution, Timestamp now) {

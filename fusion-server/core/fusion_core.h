@@ -26,6 +26,7 @@
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/sensor_status.h"
 #include "fusion-server/status/session_status.h"
+#include "fusion-server/worn/wear.h"
 
 namespace chorus::core {
 
@@ -35,6 +36,8 @@ class FusionCore {
 
   void reconfigure(CoreConfig config);
   void take(SensorFrame frame);
+  /// What an inertial source said, its times by our clock.
+  void take(inertial::InertialFrame frame) { wear_.take(std::move(frame)); }
 
   /// The next snapshot if it is due.
   [[nodiscard]] std::optional<Snapshot> tick(Timestamp now);
@@ -94,6 +97,8 @@ class FusionCore {
   [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
   /// What is added to capture times because a walk showed that a sensor's clock is off.
   [[nodiscard]] const WalkedClocks& walked_clocks() const noexcept { return clocks_; }
+  /// What is known of the inertial sources and who wears them; empty while they are not used.
+  [[nodiscard]] std::vector<WornReport> worn(Timestamp now) const { return wear_.reports(now); }
   /// How often a sensor lost its place because it was moved.
   [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
@@ -131,6 +136,7 @@ class FusionCore {
   Guard guard_;
   Strays strays_;
   CrossFade fade_;
+  worn::Wear wear_;
   /// The old registration, from which to fade; set until the next instant.
   std::optional<Registration> before_;
   std::map<SensorId, Timestamp> displaced_at_;  ///< When each sensor last lost its place.

@@ -1,6 +1,11 @@
 #include "fusion-server/rest/inertial_resources.h"
 
+#include <algorithm>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "common/base/units.h"
 
 namespace chorus::rest {
 namespace {
@@ -34,19 +39,53 @@ resource::Node inertial_source_node(const client::FollowReport& source, Timestam
   return node;
 }
 
+std::vector<std::string> worn_sentences(const WornReport& worn) {
+  std::vector<std::string> all;
+  if (!worn.wearer) all.push_back("nobody is known to wear it: " + worn.reason);
+  for (const std::string& sensor : worn.unplaced)
+    all.push_back("the limb of " + sensor +
+                  " is not known; name it after its limb at its source (LeftLowerLeg)");
+  for (const WornSensorReport& one : worn.sensors) {
+    const auto limb = inertial::words_for(one.limb);
+    if (one.slipped_ago)
+      all.push_back(
+          fmt::format("the sensor of the {} has turned on it by {:.0f} degrees {:.0f} s "
+                      "ago{}",
+                      limb, to_deg(one.slip), *one.slipped_ago,
+                      one.calibrated ? "; it is calibrated again" : ""));
+    if (!one.calibrated && !one.refusal.empty())
+      all.push_back(fmt::format("the {} is not calibrated: {}", limb, one.refusal));
+  }
+  return all;
+}
+
+void add_worn(const WornReport& worn, resource::Node& node) {
+  if (worn.wearer)
+    node.properties.emplace_back("wearer", static_cast<std::int64_t>(worn.wearer->value));
+  std::vector<std::string> limbs;
+  for (const WornSensorReport& one : worn.sensors)
+    if (one.calibrated) limbs.emplace_back(inertial::name_of(one.limb));
+  if (!limbs.empty()) node.properties.emplace_back("limbs", std::move(limbs));
+  auto sentences = worn_sentences(worn);
+  if (!sentences.empty()) node.properties.emplace_back("reasons", std::move(sentences));
+}
+
 InertialResources::InertialResources(service::Serving serving, const std::vector<SensorId>& sources)
     : serving_(std::make_shared<const service::Serving>(std::move(serving))),
       list_(std::make_shared<http::LiveDocument>()) {
   for (const SensorId& source : sources) live_[source] = std::make_shared<http::LiveDocument>();
 }
 
-void InertialResources::publish(const std::vector<client::FollowReport>& sources, Timestamp now) {
+void InertialResources::publish(const std::vector<client::FollowReport>& sources,
+                                const std::vector<WornReport>& worn, Timestamp now) {
   resource::Node node{"", {"InertialSourceList", "ldp:BasicContainer", "ldp:Container"}, {}};
   std::vector<resource::Ref> contains;
   std::vector<resource::Node> members;
   for (const client::FollowReport& source : sources) {
     contains.push_back({source.service.id.str()});
     members.push_back(inertial_source_node(source, now, source.service.id.str()));
+    const auto known = std::ranges::find(worn, source.service.id, &WornReport::source);
+    if (known != worn.end()) add_worn(*known, members.back());
   }
   node.properties.emplace_back("title", std::string("followed inertial sources"));
   node.properties.emplace_back("contains", std::move(contains));

@@ -12,6 +12,7 @@
 #include "common/resource/node.h"
 #include "common/resource/orientations_resource.h"
 #include "common/service/serving.h"
+#include "fusion-server/flow/worn_report.h"
 
 namespace chorus::rest {
 
@@ -19,13 +20,20 @@ namespace chorus::rest {
 [[nodiscard]] resource::Node inertial_source_node(const client::FollowReport& source, Timestamp now,
                                                   std::string id);
 
+/// Adds who wears the source, which limbs it knows, and what is amiss or to be done.
+void add_worn(const WornReport& worn, resource::Node& node);
+
+/// What is amiss with a worn source, in sentences for people; empty if nothing is.
+[[nodiscard]] std::vector<std::string> worn_sentences(const WornReport& worn);
+
 /// Thread-safe.
 class InertialResources {
  public:
   /// What these sources say is relayed live; sources that are added later only answer plain GETs.
   InertialResources(service::Serving serving, const std::vector<SensorId>& sources);
 
-  void publish(const std::vector<client::FollowReport>& sources, Timestamp now);
+  void publish(const std::vector<client::FollowReport>& sources,
+               const std::vector<WornReport>& worn, Timestamp now);
   /// Publishes a document as the source sent it, by its own clock.
   void relay(const SensorId& source,
              std::shared_ptr<const resource::OrientationsResource> orientations);

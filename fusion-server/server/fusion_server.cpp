@@ -52,6 +52,8 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   core.registration = live.registration;
   core.session = live.session;
   core.watch = live.watch;
+  core.worn = live.worn;
+  for (const client::FollowedService& source : live.inertial) core.inertial.insert(source.id);
   const bool places_are_given = !settings.at_start.registration_file.empty();
   if (places_are_given) core.session.automatic = false;
   for (const client::FollowedService& sensor : live.sensors) core.sensors.insert(sensor.id);
@@ -238,7 +240,8 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
 void FusionServer::Impl::take_status(const Status& next) {
   status_at = std::chrono::steady_clock::now();
   sensors->publish(next.sensors);
-  if (followers) inertial->publish(followers->reports(client::kOrientations), clock->now());
+  if (followers)
+    inertial->publish(followers->reports(client::kOrientations), next.worn, clock->now());
   registration->publish(next.registration, next.progress);
   tap->places(next.registration);
   lookout->look(next);
@@ -294,6 +297,7 @@ void FusionServer::Impl::follow_inertial(const std::vector<client::FollowedServi
       client::kOrientations, sources, [this](Arrived arrived) {
         tap->raw(record::RawOrientations{arrived.source, arrived.document, arrived.received,
                                          clock_model(arrived.clock)});
+        for (auto& instant : client::place_in_time(arrived)) loop->give(std::move(instant));
         inertial->relay(arrived.source, std::move(arrived.document));
       });
 }

@@ -152,6 +152,20 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read_ms("carry_ms", out.carry, milliseconds(0), std::chrono::seconds(1));
 }
 
+/// What is learned of worn sensors, and how they steer bodies: one switch for both.
+void read_worn(ConfigReader reader, LiveSettings& out) {
+  fusion::InertialModel& model = out.pipeline.fusion.inertial;
+  reader.read("enabled", model.enabled);
+  out.worn.enabled = model.enabled;
+  reader.read("gate", model.gate, 0.5, 100.0);
+  reader.read_ms("hidden_ms", model.hidden, milliseconds(1), std::chrono::seconds(60));
+  reader.read_ms("handback_ms", model.handback, milliseconds(1), std::chrono::seconds(10));
+  reader.read_deg("most_sigma_deg", model.most_sigma, 1.0, 90.0);
+  reader.read_deg("heading_walk_deg", out.worn.heading_walk, 0.0, 30.0);
+  reader.read_deg("slip_deg", out.worn.slip, 1.0, 90.0);
+  reader.read_deg("most_prediction_deg", out.worn.most_prediction, 1.0, 90.0);
+}
+
 void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   std::vector<std::string_view> names;
   for (const fusion::MethodRow& row : fusion::methods()) names.push_back(row.name);
@@ -315,6 +329,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   read_facing(root.child("facing"), live.pipeline.sides);
   ConfigReader fusion = root.child("fusion");
   read_smoothing(fusion.child("smoothing"), live.pipeline.smoothing);
+  read_worn(fusion.child("inertial"), live);
   read_fusion(std::move(fusion), live.pipeline.fusion);
   const tls::Trust trust = client::read_trust(root.child("poll"));
   read_sensors(root, trust, live);

@@ -17,6 +17,7 @@
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/registration/registration.h"
 #include "fusion-server/watch/watch_config.h"
+#include "fusion-server/worn/worn_config.h"
 
 namespace chorus::server {
 
@@ -34,6 +35,7 @@ struct LiveSettings {
   registration::RegistrationConfig registration;
   core::SessionConfig session;
   watch::WatchConfig watch;
+  worn::WornConfig worn;  ///< From the section fusion.inertial.
   outputs::OutputsConfig outputs;
 
   bool operator==(const LiveSettings&) const = default;

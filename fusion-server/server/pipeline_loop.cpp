@@ -14,7 +14,8 @@
 namespace chorus::server {
 namespace {
 
-constexpr std::size_t kMaxFrames = 4096;  // Two seconds of 64 sensors at 30 Hz.
+constexpr std::size_t kMaxFrames = 4096;        // Two seconds of 64 sensors at 30 Hz.
+constexpr std::size_t kMaxOrientations = 4096;  // The same of inertial sources.
 // Limit of the waiting commands: clients send commands on people's request, not with every frame.
 constexpr std::size_t kMaxCommands = 256;
 constexpr Duration kMaxIdle = std::chrono::milliseconds(20);
@@ -68,6 +69,7 @@ PipelineLoop::PipelineLoop(LoopOptions options)
     : options_(std::move(options)),
       core_(options_.core, options_.registration),
       frames_(kMaxFrames),
+      orientations_(kMaxOrientations),
       commands_(kMaxCommands),
       solutions_(1),
       age_(kAgeBounds),
@@ -126,6 +128,8 @@ void PipelineLoop::gather(Duration idle) {
   }
   std::vector<SensorFrame> frames = frames_.take(idle);
   if (!frames.empty()) gathered_at_ = std::chrono::steady_clock::now();
+  // Instants wait for views, not for inertial sensors: what has come until now is taken.
+  for (auto& frame : orientations_.take(Duration{0})) core_.take(std::move(frame));
   for (SensorFrame& frame : frames) core_.take(std::move(frame));
 }
 
@@ -332,6 +336,22 @@ void PipelineLoop::complain(const SensorStatus& sensor) {
   if (news) told = sensor.last_error;
 }
 
+/// Logs who wears a source and which of its sensors slipped, once each.
+void PipelineLoop::tell_of_worn(const std::vector<WornReport>& worn) {
+  for (const WornReport& source : worn) {
+    std::string news;
+    if (source.wearer) news = fmt::format("is worn by person {}", source.wearer->value);
+    for (const WornSensorReport& one : source.sensors)
+      if (one.slipped_ago)
+        news += fmt::format("; the sensor of the {} has turned on it by {:.0f} degrees",
+                            inertial::words_for(one.limb), to_deg(one.slip));
+    std::string& told = told_worn_[source.source];
+    if (!news.empty() && news != told)
+      log::info("inertial source", {{"source", source.source.str()}, {"what", news}});
+    told = std::move(news);
+  }
+}
+
 void PipelineLoop::publish_status(Timestamp now) {
   status_at_ = now;
   keeper_.people(worker_, core_.next_person());
@@ -340,6 +360,8 @@ void PipelineLoop::publish_status(Timestamp now) {
     status.sensors.push_back(status_of(report, now));
     complain(status.sensors.back());
   }
+  status.worn = core_.worn(now);
+  tell_of_worn(status.worn);
   status.registration = core_.registration();
   status.progress = core_.progress(now);
   status.progress.storage = keeper_.status();

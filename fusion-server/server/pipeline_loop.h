@@ -13,6 +13,7 @@
 #include "common/base/handover.h"
 #include "common/base/rate_report.h"
 #include "common/client/followers.h"
+#include "common/inertial/inertial_frame.h"
 #include "common/time/clock.h"
 #include "fusion-server/core/fusion_core.h"
 #include "fusion-server/flow/registration.h"
@@ -83,6 +84,7 @@ class PipelineLoop {
 
   /// Never blocks; if the pipeline falls behind, the oldest frames are dropped.
   void give(SensorFrame frame) { frames_.give(std::move(frame)); }
+  void give(inertial::InertialFrame frame) { orientations_.give(std::move(frame)); }
   /// The command usually takes effect within 20 ms.
   void ask(Command command) { commands_.give(std::move(command)); }
 
@@ -103,14 +105,17 @@ class PipelineLoop {
   void publish_status(Timestamp now);
   void note_displaced();
   void complain(const SensorStatus& sensor);
+  void tell_of_worn(const std::vector<WornReport>& worn);
   [[nodiscard]] SensorStatus status_of(const client::FollowReport& report, Timestamp now) const;
 
   LoopOptions options_;
   core::FusionCore core_;
   Handover<SensorFrame> frames_;
+  Handover<inertial::InertialFrame> orientations_;
   Handover<Command> commands_;
   Handover<core::Solution> solutions_;
-  std::map<SensorId, std::string> told_;  ///< The last complaint that was logged, by sensor.
+  std::map<SensorId, std::string> told_;       ///< The last complaint that was logged, by sensor.
+  std::map<SensorId, std::string> told_worn_;  ///< The same of inertial sources.
   Counters counters_;
   Histogram age_;  ///< Time from instant to publication [s].
   Timestamp status_at_{};

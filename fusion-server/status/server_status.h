@@ -8,6 +8,7 @@
 
 #include "common/base/histogram.h"
 #include "fusion-server/flow/registration.h"
+#include "fusion-server/flow/worn_report.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/sensor_status.h"
 
@@ -30,6 +31,7 @@ struct Status {
   Registration registration;
   RegistrationProgress progress;
   Counters counters;
+  std::vector<WornReport> worn;  ///< Of inertial sources; empty while fusion does not use them.
 };
 
 }  // namespace chorus

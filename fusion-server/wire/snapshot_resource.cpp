@@ -1,8 +1,10 @@
 #include "fusion-server/wire/snapshot_resource.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "common/body/bones.h"
+#include "common/sensor/shares.h"
 
 namespace chorus::wire {
 namespace {
@@ -43,7 +45,49 @@ void set_bones(const BoneLengthOf& bones, BodyResource& out) {
   }
 }
 
-BodyResource body_of(const FusedBody& body, Timestamp instant) {
+/// The inertial sources that had a say: they are contributors behind the sensors.
+class WornBits {
+ public:
+  explicit WornBits(const Snapshot& snapshot) : first_(snapshot.sensors.size()) {
+    for (const FusedBody& body : snapshot.bodies)
+      for (const SensorId& source : body.worn_sources)
+        if (std::ranges::find(sources_, source) == sources_.end()) sources_.push_back(source);
+    if (first_ + sources_.size() > kMaxSensors) sources_.resize(kMaxSensors - first_);
+  }
+
+  [[nodiscard]] const std::vector<SensorId>& sources() const { return sources_; }
+  [[nodiscard]] std::uint64_t of(const FusedBody& body, std::size_t joint) const {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < body.worn_sources.size(); ++i) {
+      const auto found = std::ranges::find(sources_, body.worn_sources[i]);
+      if (((body.worn_contributors[joint] >> i) & 1U) == 0 || found == sources_.end()) continue;
+      bits |= std::uint64_t{1} << (first_ + static_cast<std::size_t>(found - sources_.begin()));
+    }
+    return bits;
+  }
+  /// The shares of the sensors, scaled to leave the inertial sources theirs.
+  [[nodiscard]] Shares shares_of(const FusedBody& body, std::size_t joint) const {
+    const std::uint64_t bits = of(body, joint);
+    const std::uint64_t seers = body.contributors[joint];
+    const Shares& seen = body.shares[joint];
+    const bool one = std::has_single_bit(seers);
+    if (bits == 0 || seers == 0 || (!seen.known() && !one)) return seen;
+    const double worn = body.worn_share[joint];
+    ShareTally tally;
+    tally.add(bits, worn);
+    for (std::size_t i = 0; i < first_; ++i) {
+      const double share = one ? 1.0 : seen.of(i);
+      if ((seers >> i & 1U) != 0) tally.add(std::uint64_t{1} << i, share * (1.0 - worn));
+    }
+    return tally.shares();
+  }
+
+ private:
+  std::size_t first_;
+  std::vector<SensorId> sources_;
+};
+
+BodyResource body_of(const FusedBody& body, Timestamp instant, const WornBits& worn) {
   BodyResource out;
   out.id = body.id.value;
   out.captured = instant;
@@ -59,8 +103,8 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
     out.joints[j].state = joint.state;
     if (joint.state == JointState::NotTracked) continue;
     out.joints[j].variance = body.variance[j];
-    out.joints[j].contributors = body.contributors[j];
-    out.joints[j].shares = body.shares[j];
+    out.joints[j].contributors = body.contributors[j] | worn.of(body, j);
+    out.joints[j].shares = worn.shares_of(body, j);
     if (body.contributors[j] == 0) out.joints[j].age = body.age[j];
     out.joints[j].covariance = joint.covariance;
     out.joints[j].orientation_covariance = body.orientation_covariance[j];
@@ -86,10 +130,12 @@ FrameResource to_resource(const Snapshot& snapshot) {
   if (snapshot.registration_version > 0) frame.registration_version = snapshot.registration_version;
   frame.sensors.reserve(snapshot.sensors.size());
   for (const SensorId& sensor : snapshot.sensors) frame.sensors.push_back(sensor.str());
+  const WornBits worn(snapshot);
+  for (const SensorId& source : worn.sources()) frame.sensors.push_back(source.str());
   const std::size_t count = std::min(snapshot.bodies.size(), kMaxBodies);
   frame.bodies.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    frame.bodies.push_back(body_of(snapshot.bodies[i], snapshot.instant));
+    frame.bodies.push_back(body_of(snapshot.bodies[i], snapshot.instant, worn));
   }
   return frame;
 }

@@ -114,6 +114,25 @@ std::string bodies_report(const nlohmann::json& frame) {
   return text;
 }
 
+/// A line for each inertial source: who wears it, what it knows, and what is amiss.
+std::string inertial_report(const nlohmann::json& sources) {
+  std::string text;
+  for (const auto& [name, source] : sources.items()) {
+    text += fmt::format("inertial {}: {}, {} Hz", printable(name), client::text_at(source, "state"),
+                        shown(client::number_at(source, "rateHz"), 1));
+    if (source.contains("wearer"))
+      text += fmt::format(", worn by body {}, {} limbs known",
+                          shown(client::number_at(source, "wearer"), 0),
+                          lines_at(source, "limbs").size());
+    text += "\n";
+    const std::string error = client::text_at(source, "lastError", "");
+    if (!error.empty()) text += "  " + printable(error) + "\n";
+    for (const std::string& reason : lines_at(source, "reasons"))
+      text += "  " + printable(reason) + "\n";
+  }
+  return text;
+}
+
 /// What is amiss with the configuration; empty if nothing is, or if the server is too old to say.
 std::string configuration_report(const nlohmann::json& told) {
   std::string text;
@@ -156,7 +175,7 @@ Result<int> run_events(const client::ServiceClient& server, const StatusArgument
 
 /// Everything that is asked; what the server lacks is null.
 struct Told {
-  nlohmann::json sensors, registration, frame, configuration, outputs, evaluation;
+  nlohmann::json sensors, registration, frame, configuration, outputs, evaluation, inertial;
 };
 
 Result<Told> asked(const client::ServiceClient& server, const StatusArguments& arguments) {
@@ -176,6 +195,9 @@ Result<Told> asked(const client::ServiceClient& server, const StatusArguments& a
   told.configuration = server.get("/configuration").value_or(nlohmann::json());
   told.outputs = server.get("/outputs/").value_or(nlohmann::json());
   told.evaluation = std::move(*evaluation);
+  // Older servers have no /inertial/.
+  const nlohmann::json inertial = server.get("/inertial/").value_or(nlohmann::json());
+  told.inertial = client::part_at(inertial, "inertialSources");
   return told;
 }
 
@@ -187,18 +209,17 @@ Result<int> run_status(const StatusArguments& arguments) {
   if (!told) return pass(told);
   const bool alive = any_live(told->sensors);
   if (arguments.json) {
-    nlohmann::json all{{"sensors", told->sensors},
-                       {"registration", told->registration},
-                       {"frame", told->frame},
-                       {"configuration", told->configuration},
-                       {"outputs", client::part_at(told->outputs, "outputs")}};
+    nlohmann::json all{
+        {"sensors", told->sensors},   {"registration", told->registration},
+        {"frame", told->frame},       {"configuration", told->configuration},
+        {"inertial", told->inertial}, {"outputs", client::part_at(told->outputs, "outputs")}};
     if (!told->evaluation.is_null()) all["evaluation"] = told->evaluation;
     std::cout << json_text(all);
   } else {
     std::cout << sensors_report(told->sensors) << registration_report(told->registration)
               << (told->frame.is_null() ? "no fused frame yet\n" : bodies_report(told->frame))
-              << judged_limbs(told->evaluation) << outputs_report(told->outputs)
-              << configuration_report(told->configuration);
+              << judged_limbs(told->evaluation) << inertial_report(told->inertial)
+              << outputs_report(told->outputs) << configuration_report(told->configuration);
     if (!alive) std::cerr << "no sensor is live\n";
   }
   return alive ? kExitOk : kExitFailed;

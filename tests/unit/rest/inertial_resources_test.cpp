@@ -33,7 +33,7 @@ TEST(InertialResources, ListWhatIsFollowedAndRelayWhatItSaid) {
   InertialResources resources({"a"}, {sensor_id("suit"), sensor_id("silent")});
   http::Router router;
   resources.add_routes(router);
-  resources.publish({suit_report()}, kStart + std::chrono::milliseconds(40));
+  resources.publish({suit_report()}, {}, kStart + std::chrono::milliseconds(40));
   const auto list = nlohmann::json::parse(get(router, "/inertial/").body);
   const auto& suit = list.at("inertialSources").at("suit");
   EXPECT_EQ(suit.at("state"), "live");
@@ -53,6 +53,26 @@ TEST(InertialResources, ListWhatIsFollowedAndRelayWhatItSaid) {
             5);
   EXPECT_EQ(get(router, "/inertial/silent/orientations").status, 503);
   EXPECT_EQ(get(router, "/inertial/stranger/orientations").status, 404);
+}
+
+TEST(InertialResources, TellWhoWearsASourceAndWhatIsAmiss) {
+  InertialResources resources({"a"}, {sensor_id("suit")});
+  http::Router router;
+  resources.add_routes(router);
+  WornReport worn{sensor_id("suit"), PersonId{7}, "", {}, {"IMU-3"}};
+  worn.sensors.push_back({"L", inertial::Limb::ForearmLeft, true, "", 0.05, 0.0, 0.02, {}, 0.0});
+  worn.sensors.push_back({"S", inertial::Limb::ShankLeft, false, "bend it", 0, 0, 0, 4.0, 1.0472});
+  resources.publish({suit_report()}, {worn}, kStart);
+  const auto list = nlohmann::json::parse(get(router, "/inertial/").body);
+  const auto& suit = list.at("inertialSources").at("suit");
+  EXPECT_EQ(suit.at("wearer"), 7);
+  EXPECT_EQ(suit.at("limbs"), nlohmann::json({"ForearmLeft"}));
+  EXPECT_EQ(suit.at("reasons").size(), 3U);
+  EXPECT_NE(suit.at("reasons").dump().find("left shank has turned on it by 60 degrees"),
+            std::string::npos);
+  resource::Node node = inertial_source_node(suit_report(), kStart, "suit");
+  add_worn(worn, node);
+  EXPECT_THAT(resource::undeclared_terms(node), ::testing::IsEmpty());
 }
 
 }  // namespace

@@ -156,6 +156,26 @@ TEST(Between, SharesAreInBetweenAndAJointThatNobodySeesGetsOlder) {
               1e-9);
 }
 
+TEST(SnapshotResource, NamesInertialSourcesBehindTheSensors) {
+  Snapshot s = snapshot(1, 0.0);
+  FusedBody& body = s.bodies.front();
+  const std::size_t wrist = index_of(JointId::WristLeft);
+  const std::size_t hand = index_of(JointId::HandLeft);
+  body.worn_sources = {sensor_id("suit")};
+  body.worn_contributors[wrist] = body.worn_contributors[hand] = 1;
+  body.worn_share[wrist] = 0.5;
+  body.worn_share[hand] = 1.0;
+  const auto frame = to_resource(s);
+  EXPECT_EQ(frame.sensors, (std::vector<std::string>{"s1", "s2", "suit"}));
+  const auto& joints = frame.bodies.at(0).joints;
+  EXPECT_EQ(joints[wrist].contributors, 0b111u);
+  EXPECT_DOUBLE_EQ(joints[wrist].shares.of(0), 0.4);
+  EXPECT_DOUBLE_EQ(joints[wrist].shares.of(2), 0.5);
+  EXPECT_EQ(joints[hand].contributors, 0b100u);
+  ASSERT_TRUE(joints[hand].age) << "no sensor sees it";
+  EXPECT_EQ(joints[index_of(JointId::Neck)].contributors, 0b11u);
+}
+
 TEST(Between, LeavesOutBodiesThatOnlyOneOfThemHas) {
   const auto a = to_resource(snapshot(1, 0.0));
   auto b = to_resource(snapshot(2, 0.1));
