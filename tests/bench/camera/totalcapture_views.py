@@ -87,6 +87,7 @@ def main():
     parser.add_argument("--calibration", type=Path, required=True)
     parser.add_argument("--truth", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--orientations", type=Path, help="gt_skel_gbl_ori.txt of the take, for chorus-bench inertial")
     parser.add_argument("--lag", type=int, default=2, help="video frames by which landmarks come after the truth")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
@@ -98,6 +99,8 @@ def main():
             raise SystemExit(f"{options.landmarks}: expected one *{name}.npy, found {len(files)}")
         (options.out / f"{name}.json").write_text(json.dumps(view(read_npy(files[0]), name, options.lag)))
     (options.out / "cameras.json").write_text(json.dumps(lenses))
+    if options.orientations:
+        (options.out / "gt_skel_gbl_ori.txt").write_text(options.orientations.read_text())
     (options.out / "triangulated.json").write_text(json.dumps(truth(options.truth)))
 
 

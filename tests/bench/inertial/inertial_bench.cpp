@@ -15,6 +15,9 @@ constexpr InertialCase kCases[] = {
     {"detect-real", run_detect_real}, {"paper", run_paper},
     {"keraal", run_keraal},         {"filter", run_filter},
     {"residual-real", run_residual_real},
+    {"fuse-hidden", run_fuse_hidden}, {"fuse-seen", run_fuse_seen},
+    {"heading", run_heading},       {"suit-of-whom", run_suit_of_whom},
+    {"cost", run_worn_cost},
 };
 // clang-format on
 

@@ -41,6 +41,21 @@ struct InertialCase {
 /// Errors injected into real takes, and found.
 [[nodiscard]] Result<void> run_detect_real(Report& report);
 
+/// Limbs that no camera shows for a second, with sensors and without.
+[[nodiscard]] Result<void> run_fuse_hidden(Report& report);
+
+/// Limbs that two, four and eight cameras show, and a sensor that slips.
+[[nodiscard]] Result<void> run_fuse_seen(Report& report);
+
+/// Headings that drift, followed from bones that cameras see.
+[[nodiscard]] Result<void> run_heading(Report& report);
+
+/// Which of three people wears the suit.
+[[nodiscard]] Result<void> run_suit_of_whom(Report& report);
+
+/// What following thirteen sensors costs the fusion server.
+[[nodiscard]] Result<void> run_worn_cost(Report& report);
+
 /// The folder of recordings from outside the project: $CHORUS_SHARED/data or ../shared/data.
 [[nodiscard]] std::filesystem::path shared_recordings();
 

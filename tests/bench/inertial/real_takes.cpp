@@ -159,6 +159,26 @@ Result<std::vector<RealTake>> real_takes() {
   return out;
 }
 
+Result<std::vector<std::vector<Eigen::Quaterniond>>> orientation_rows(const fs::path& file) {
+  const auto rows = number_rows_of(file, "\t");
+  if (!rows) return pass(rows);
+  std::vector<std::vector<Eigen::Quaterniond>> out;
+  for (const auto& row : *rows) {
+    auto& segments = out.emplace_back();
+    for (std::size_t at = 0; at + 4 <= row.size(); at += 4)
+      segments.push_back(xyzw(row, at).normalized());
+  }
+  const bool whole = std::ranges::all_of(out, [](const auto& row) { return row.size() > 20; });
+  if (out.empty() || !whole)
+    return fail(ErrorCode::Malformed, file.string(), "must have 21 quaternions a line.");
+  return out;
+}
+
+std::size_t segment_of(Limb limb) {
+  const auto row = std::ranges::find(kThirteen, limb, &ThirteenRow::limb);
+  return row == kThirteen.end() ? 0 : row->segment;
+}
+
 evaluation::OrientationPairs pairs_of(const RealSensor& sensor, double shift) {
   evaluation::OrientationPairs out;
   for (const auto& each : sensor.optical) {

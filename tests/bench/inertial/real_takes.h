@@ -1,6 +1,7 @@
 // Recordings with inertial sensors and optical truth of one take, made by others.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,12 @@ struct RealTake {
 
 /// Optical and inertial orientations of one sensor at the optical times.
 [[nodiscard]] evaluation::OrientationPairs pairs_of(const RealSensor& sensor, double shift = 0.0);
+
+/// The orientations of a file of TotalCapture (gt_skel_gbl_ori.txt, 60 Hz), world_from_segment, by
+/// frame and segment.
+[[nodiscard]] Result<std::vector<std::vector<Eigen::Quaterniond>>> orientation_rows(
+    const std::filesystem::path& file);
+/// The segment of such a file that is this limb.
+[[nodiscard]] std::size_t segment_of(inertial::Limb limb);
 
 }  // namespace chorus::bench
