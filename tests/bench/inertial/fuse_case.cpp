@@ -38,7 +38,7 @@ bool in_window(std::size_t from, std::size_t index, std::size_t length) {
   return index >= from && (index - from) % kHideEvery < length;
 }
 
-struct Errors {
+struct FusedErrors {
   std::vector<double> all;      ///< [m]
   std::vector<double> leaps;    ///< Steps of the error when limbs are seen again [m].
   std::vector<double> squared;  ///< Squared error by stated variance, per axis.
@@ -51,7 +51,8 @@ double mean_of(const std::vector<double>& values) {
   return values.empty() ? kNoRatio : sum / static_cast<double>(values.size());
 }
 
-void judge(const FusedTake& fused, const WornTake& take, std::size_t i, JointId id, Errors& out) {
+void judge_joint(const FusedTake& fused, const WornTake& take, std::size_t i, JointId id,
+                 FusedErrors& out) {
   out.asked += 1.0;
   if (!fused.bodies[i] || !fused.bodies[i]->skeleton[id].seen()) return;
   const Joint& joint = fused.bodies[i]->skeleton[id];
@@ -64,7 +65,7 @@ void judge(const FusedTake& fused, const WornTake& take, std::size_t i, JointId 
 
 /// How far the joint's error steps from the instant before to this one.
 void judge_leap(const FusedTake& fused, const WornTake& take, std::size_t i, JointId id,
-                Errors& out) {
+                FusedErrors& out) {
   const auto off = [&](std::size_t at) -> std::optional<Eigen::Vector3d> {
     if (!fused.bodies[at] || !fused.bodies[at]->skeleton[id].seen()) return std::nullopt;
     return fused.bodies[at]->skeleton[id].position - take.rays.truth[at].skeleton[id].position;
@@ -74,13 +75,13 @@ void judge_leap(const FusedTake& fused, const WornTake& take, std::size_t i, Joi
   if (before && now) out.leaps.push_back((*now - *before).norm());
 }
 
-Errors hidden_errors(const FusedTake& fused, const WornTake& take,
-                     const std::vector<JointId>& joints) {
-  Errors out;
+FusedErrors hidden_errors(const FusedTake& fused, const WornTake& take,
+                          const std::vector<JointId>& joints) {
+  FusedErrors out;
   const std::size_t from = take.judged_from();
   for (std::size_t i = from; i < take.size(); ++i) {
     for (const JointId id : joints) {
-      if (in_window(from, i, kHideFor)) judge(fused, take, i, id, out);
+      if (in_window(from, i, kHideFor)) judge_joint(fused, take, i, id, out);
       const bool back = !in_window(from, i, kHideFor) && in_window(from, i, kHideFor + kBackFor);
       if (back) judge_leap(fused, take, i, id, out);
     }
@@ -88,21 +89,21 @@ Errors hidden_errors(const FusedTake& fused, const WornTake& take,
   return out;
 }
 
-Errors seen_errors(const FusedTake& fused, const WornTake& take, std::size_t from) {
-  Errors out;
+FusedErrors seen_errors(const FusedTake& fused, const WornTake& take, std::size_t from) {
+  FusedErrors out;
   for (std::size_t i = from; i < take.size(); ++i)
-    for (const JointId id : kSeenJoints) judge(fused, take, i, id, out);
+    for (const JointId id : kSeenJoints) judge_joint(fused, take, i, id, out);
   return out;
 }
 
-void add(Errors& to, const Errors& more) {
+void add_errors(FusedErrors& to, const FusedErrors& more) {
   to.all.insert(to.all.end(), more.all.begin(), more.all.end());
   to.leaps.insert(to.leaps.end(), more.leaps.begin(), more.leaps.end());
   to.squared.insert(to.squared.end(), more.squared.begin(), more.squared.end());
   to.asked += more.asked;
 }
 
-double missing_percent(const Errors& errors) {
+double missing_percent(const FusedErrors& errors) {
   return 100.0 * (1.0 - static_cast<double>(errors.all.size()) / std::max(1.0, errors.asked));
 }
 
@@ -115,12 +116,12 @@ Result<void> hide(Report& report, const WornTake& take, const HiddenLimbs& limbs
   const auto seen = seen_by(take, {0, 2, 4, 6}, hides);
   if (!seen) return pass(seen);
   const SensorFaults faults;
-  const Errors ours = hidden_errors(fused_with(take, *seen, &faults), take, limbs.judged);
-  const Errors filter = hidden_errors(fused_by_body_filter(*seen), take, limbs.judged);
+  const FusedErrors ours = hidden_errors(fused_with(take, *seen, &faults), take, limbs.judged);
+  const FusedErrors filter = hidden_errors(fused_by_body_filter(*seen), take, limbs.judged);
   const auto unhidden = seen_by(take, {0, 2, 4, 6});
   if (!unhidden) return pass(unhidden);
-  const Errors usual = hidden_errors(fused_with(take, *unhidden, nullptr), take, limbs.judged);
-  const Errors shipped = hidden_errors(fused_with(take, *seen, nullptr), take, limbs.judged);
+  const FusedErrors usual = hidden_errors(fused_with(take, *unhidden, nullptr), take, limbs.judged);
+  const FusedErrors shipped = hidden_errors(fused_with(take, *seen, nullptr), take, limbs.judged);
   const std::string name = fmt::format("fuse-hidden-{}-{}", take.name, limbs.name);
   const double error = mean_of(ours.all);
   const double beside = mean_of(filter.all);
@@ -153,22 +154,23 @@ struct CameraChoice {
 
 Result<void> watch_seen(Report& report, const std::vector<WornTake>& takes,
                         const CameraChoice& choice) {
-  Errors ours, alone;
+  FusedErrors ours, alone;
   for (const WornTake& take : takes) {
-    Errors own, own_alone;
+    FusedErrors own, own_alone;
     for (const auto& cameras : choice.cameras) {
       const auto seen = seen_by(take, cameras);
       if (!seen) return pass(seen);
       const SensorFaults faults;
-      add(own, seen_errors(fused_with(take, *seen, &faults), take, take.judged_from()));
-      add(own_alone, seen_errors(fused_with(take, *seen, nullptr), take, take.judged_from()));
+      add_errors(own, seen_errors(fused_with(take, *seen, &faults), take, take.judged_from()));
+      add_errors(own_alone,
+                 seen_errors(fused_with(take, *seen, nullptr), take, take.judged_from()));
       if (report.quick()) break;
     }
     const std::string name = fmt::format("fuse-seen-{}-{}", choice.name, take.name);
     report.row(name, "mpjpe_mm", to_mm(mean_of(own.all)), "mm", "cameras alone",
                mean_of(own.all) / mean_of(own_alone.all));
-    add(ours, own);
-    add(alone, own_alone);
+    add_errors(ours, own);
+    add_errors(alone, own_alone);
   }
   const std::string name = fmt::format("fuse-seen-{}", choice.name);
   const double ratio = mean_of(ours.all) / mean_of(alone.all);

@@ -96,12 +96,12 @@ struct Company {
   std::array<FusedTake, 2> fused;
 };
 
-struct Found {
+struct FoundWearers {
   double right = 0.0, wrong = 0.0, none = 0.0, in_time = 0.0;
   std::vector<double> times;  ///< [s]
 };
 
-void find_wearer(const Company& company, std::size_t begin, bool still, Found& out) {
+void find_wearer(const Company& company, std::size_t begin, bool still, FoundWearers& out) {
   constexpr std::size_t kLater = 450;   // 15 s
   constexpr std::size_t kSearch = 300;  // 10 s
   const SensorFaults faults{.seed = 1 + begin};
@@ -171,7 +171,7 @@ Result<void> run_suit_of_whom(Report& report) {
     if (!one) return pass(one);
     seen[t] = std::move(*one);
   }
-  Found moving, still;
+  FoundWearers moving, still;
   for (std::size_t t = 0; t < 2; ++t) {
     const Company company{&(*takes)[t],
                           {fused_with((*takes)[t], seen[t], nullptr),

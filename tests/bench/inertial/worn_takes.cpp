@@ -70,12 +70,12 @@ Result<WornTake> read_worn_take(const fs::path& path, const RealTake& real) {
   return take;
 }
 
-struct Worn {
+struct MountAndHeading {
   Eigen::Quaterniond mount;
   double heading;
 };
 
-Worn drawn(std::uint64_t seed, std::size_t sensor) {
+MountAndHeading drawn_mount(std::uint64_t seed, std::size_t sensor) {
   std::mt19937_64 random(1000 * seed + sensor);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> any(-3.14159, 3.14159);
@@ -126,7 +126,7 @@ Result<std::vector<WornTake>> worn_takes() {
 }
 
 double true_heading(const SensorFaults& faults, std::size_t sensor, double time) {
-  return wrap_angle(drawn(faults.seed, sensor).heading + faults.drift * time);
+  return wrap_angle(drawn_mount(faults.seed, sensor).heading + faults.drift * time);
 }
 
 inertial::InertialFrame said(const WornTake& take, const SensorFaults& faults, std::size_t index) {
@@ -136,7 +136,7 @@ inertial::InertialFrame said(const WornTake& take, const SensorFaults& faults, s
   for (std::size_t s = 0; s < take.sensors.size(); ++s) {
     const StandIn& sensor = take.sensors[s];
     if (index >= sensor.world_from_limb.size()) continue;
-    Eigen::Quaterniond mount = drawn(faults.seed, s).mount;
+    Eigen::Quaterniond mount = drawn_mount(faults.seed, s).mount;
     if (faults.slips == sensor.limb && time >= faults.slips_at) {
       const Eigen::Vector3d axis = mount * Eigen::Vector3d(0.6, 0.0, 0.8);
       mount = exp_map(faults.slip * axis) * mount;
