@@ -161,8 +161,10 @@ void InertialLimbs::state(FusedBody& body, const PlacedBody& whole, const Steere
     joint.measurement = Measurement::Point;
     joint.position = whole[j].position + handback_[j];
     FusedJoint stated{joint};
-    state_covariance(stated,
-                     whole[j].covariance + doubt[j] + handback_[j] * handback_[j].transpose());
+    // The sensors were calibrated by the same views, and what these have in common is in neither:
+    // a seen joint's stated error does not shrink.
+    const Eigen::Matrix3d& own = seen[j].placed ? seen[j].covariance : whole[j].covariance;
+    state_covariance(stated, own + doubt[j] + handback_[j] * handback_[j].transpose());
     joint.covariance = stated.joint.covariance;
     body.variance[j] = stated.variance;
   }

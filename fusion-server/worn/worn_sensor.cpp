@@ -19,7 +19,7 @@ constexpr double kImproveEvery = 3.0;   // [s] between attempts at a better one
 constexpr double kImproveFor = 60.0;    // [s] after the first; then the mount stays
 constexpr std::size_t kFitPairs = 80;   // of which a fit uses so many
 constexpr double kLeastAgree = 0.5;     // share of instants that agree with a calibration
-constexpr double kKnowsPose = deg(6);   // about one axis
+constexpr double kKnowsPose = deg(8);   // about one axis
 constexpr double kLeastSkin = deg(3);   // CalibrateOptions::least_sigma
 
 /// What the calibration alone lets the direction of the limb's bone err by about one axis, in the

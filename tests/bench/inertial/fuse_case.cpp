@@ -191,7 +191,7 @@ Result<void> watch_seen(Report& report, const std::vector<WornTake>& takes,
 
 /// One sensor turns by 60 degrees on its limb at 60 % of the take.
 Result<void> let_slip(Report& report, const WornTake& take) {
-  const auto seen = seen_by(take, {0, 2});
+  const auto seen = seen_by(take, {0, 2, 4, 6});
   if (!seen) return pass(seen);
   const FusedTake fine = fused_with(take, *seen, std::make_unique<SensorFaults>().get());
   for (const Limb limb :
