@@ -10,8 +10,8 @@ struct WornConfig {
   /// Whether sensors are calibrated and handed to fusion at all.
   bool enabled = false;
   /// How far a heading may wander in a second, as the standard deviation of a random walk
-  /// [rad / sqrt(s)]: beside limbs that real cameras see this forgets over about 10 s.
-  double heading_walk = deg(0.5);
+  /// [rad / sqrt(s)]: beside limbs that real cameras see this forgets over 5 to 10 s.
+  double heading_walk = deg(1.0);
   /// A lasting turn of a sensor on its limb is a slip if it exceeds this by three times what that
   /// limb usually shows [rad].
   double slip = deg(10);

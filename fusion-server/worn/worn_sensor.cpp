@@ -12,7 +12,7 @@ namespace chorus::worn {
 namespace {
 
 constexpr double kPairEvery = 0.1;      // [s]
-constexpr double kPairSpan = 40.0;      // [s] of pairs that are kept
+constexpr double kPairSpan = 20.0;      // [s] of pairs that are kept
 constexpr double kLeastPairSpan = 2.0;  // [s] before a first attempt
 constexpr double kTryEvery = 1.0;       // [s] between attempts, until one succeeds
 constexpr double kImproveEvery = 3.0;   // [s] between attempts at a better one
