@@ -14,13 +14,14 @@ namespace {
 constexpr double kPairEvery = 0.1;      // [s]
 constexpr double kPairSpan = 20.0;      // [s] of pairs that are kept
 constexpr double kLeastPairSpan = 2.0;  // [s] before a first attempt
-constexpr double kTryEvery = 1.0;       // [s] between attempts, until one succeeds
-constexpr double kImproveEvery = 3.0;   // [s] between attempts at a better one
-constexpr double kImproveFor = 60.0;    // [s] after the first; then the mount stays
-constexpr std::size_t kFitPairs = 80;   // of which a fit uses so many
-constexpr double kLeastAgree = 0.5;     // share of instants that agree with a calibration
-constexpr double kKnowsPose = deg(8);   // about one axis
-constexpr double kLeastSkin = deg(3);   // CalibrateOptions::least_sigma
+constexpr double kTryEvery = 2.0;       // [s] between attempts, until one succeeds
+// [s] until a better one is attempted; each time twice as long
+constexpr double kImproveFirst = 3.0;
+constexpr double kImproveFor = 60.0;   // [s] after the first; then the mount stays
+constexpr std::size_t kFitPairs = 60;  // of which a fit uses so many
+constexpr double kLeastAgree = 0.5;    // share of instants that agree with a calibration
+constexpr double kKnowsPose = deg(8);  // about one axis
+constexpr double kLeastSkin = deg(3);  // CalibrateOptions::least_sigma
 
 /// What the calibration alone lets the direction of the limb's bone err by about one axis, in the
 /// poses in which the limb was seen [rad].  The twist about the bone, which joints seldom show,
@@ -101,6 +102,7 @@ void WornSensor::slipped(double time, double angle) {
   fit_.reset();
   pairs_.clear();
   heading_ = Heading();
+  improved_ = 0;
   refusal_ = "turned on its limb; it is calibrated again while the limb moves";
   tried_ = time;
 }
@@ -108,11 +110,12 @@ void WornSensor::slipped(double time, double angle) {
 bool WornSensor::wants_calibration(double time) const {
   if (pairs_.empty() || pairs_.back().time - pairs_.front().time < kLeastPairSpan) return false;
   if (!fit_) return time - tried_ >= kTryEvery;
-  return time - fitted_ <= kImproveFor && time - tried_ >= kImproveEvery;
+  return time - fitted_ <= kImproveFor && time - tried_ >= std::ldexp(kImproveFirst, improved_);
 }
 
 void WornSensor::calibrate(double time, const WornConfig& config) {
   tried_ = time;
+  if (fit_) ++improved_;
   evaluation::CalibrateOptions options;
   options.most_pairs = kFitPairs;
   const evaluation::OrientationPairs pairs(pairs_.begin(), pairs_.end());

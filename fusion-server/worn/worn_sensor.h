@@ -66,6 +66,7 @@ class WornSensor {
   SlipWatch watch_;
   std::optional<Slip> slip_;
   double direction_sigma_ = 0.0;  ///< What direction_sigma() returns [rad].
+  int improved_ = 0;              ///< Attempts at a better calibration.
 };
 
 }  // namespace chorus::worn
