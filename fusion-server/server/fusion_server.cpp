@@ -54,8 +54,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   core.watch = live.watch;
   core.worn = live.worn;
   for (const client::FollowedService& source : live.inertial) core.inertial.insert(source.id);
-  const bool places_are_given = !settings.at_start.registration_file.empty();
-  if (places_are_given) core.session.automatic = false;
+  if (!settings.at_start.registration_file.empty()) core.session.automatic = false;
   for (const client::FollowedService& sensor : live.sensors) core.sensors.insert(sensor.id);
   return core;
 }
@@ -107,11 +106,10 @@ void report_start(const FusionSettings& settings, std::uint16_t port) {
   log::info("fusion server ready", {{"address", settings.at_start.http.address},
                                     {"port", port},
                                     {"sensors", settings.live.sensors.size()}});
-  if (settings.live.sensors.empty()) {
+  if (settings.live.sensors.empty())
     log::warn("no sensor is polled", {{"advice",
                                        "name them in the section \"sensors\" of a file "
                                        "and start with --config FILE"}});
-  }
 }
 
 }  // namespace
@@ -280,8 +278,7 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
 void FusionServer::Impl::follow(const LiveSettings& live) {
   follow_inertial(live.inertial);
   if (evaluation) evaluation->follow(*followers, config.at_start.evaluation);
-  const auto& all = live.sensors;
-  followers->follow<resource::FrameResource>(client::kFrames, all, [this](FrameArrival arrived) {
+  followers->follow<resource::FrameResource>(client::kFrames, live.sensors, [this](auto arrived) {
     SensorFrame frame = client::place_in_time(arrived);
     tap->raw(raw_frame(arrived, frame));
     sensors->floor(frame.sensor, frame.floor);
@@ -292,9 +289,8 @@ void FusionServer::Impl::follow(const LiveSettings& live) {
 }
 
 void FusionServer::Impl::follow_inertial(const std::vector<client::FollowedService>& sources) {
-  using Arrived = client::Arrived<resource::OrientationsResource>;
   followers->follow<resource::OrientationsResource>(
-      client::kOrientations, sources, [this](Arrived arrived) {
+      client::kOrientations, sources, [this](auto arrived) {
         tap->raw(record::RawOrientations{arrived.source, arrived.document, arrived.received,
                                          clock_model(arrived.clock)});
         for (auto& instant : client::place_in_time(arrived)) loop->give(std::move(instant));
