@@ -81,7 +81,7 @@ void WornSensor::learn(double time, const evaluation::TrackedOrientation& tracke
   const inertial::SensorCalibration now = corrected(time);
   const Eigen::Quaterniond predicted = inertial::predicted_limb(now, inertial_from_sensor);
   const double skin = std::max(fit_->sigma, kLeastSkin);
-  if (const auto sight = heading_sight(tracked, predicted, skin))
+  if (const auto sight = evaluation::heading_sight(tracked, predicted, skin))
     heading_.learn(time, inertial_from_sensor, *sight);
   const evaluation::OrientationPair pair{time, tracked, inertial_from_sensor};
   Eigen::Vector3d error = evaluation::pair_error(now, pair);
@@ -101,7 +101,7 @@ void WornSensor::slipped(double time, double angle) {
   slip_ = Slip{time, angle};
   fit_.reset();
   pairs_.clear();
-  heading_ = Heading();
+  heading_ = evaluation::Heading();
   improved_ = 0;
   refusal_ = "turned on its limb; it is calibrated again while the limb moves";
   tried_ = time;
@@ -135,10 +135,10 @@ void WornSensor::calibrate(double time, const WornConfig& config) {
   // The pairs hold the heading as followed so far, so the fit's is relative to that.
   const double followed = heading_.correction();
   found->calibration.heading = wrap_angle(found->calibration.heading + followed);
-  heading_ = Heading(config.heading_walk);
+  heading_ = evaluation::Heading(config.heading_walk);
   for (auto& pair : pairs_)
     pair.inertial_from_sensor = about_y(-followed) * pair.inertial_from_sensor;
-  watch_ = SlipWatch(found->sigma, config.slip);
+  watch_ = evaluation::SlipWatch(found->sigma, config.slip);
   fit_ = std::move(*found);
   refusal_.clear();
 }

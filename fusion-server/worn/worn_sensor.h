@@ -7,10 +7,10 @@
 #include <string>
 
 #include "common/evaluation/calibrate.h"
+#include "common/evaluation/heading.h"
+#include "common/evaluation/slip.h"
 #include "common/inertial/inertial_frame.h"
 #include "fusion-server/flow/worn_limb.h"
-#include "fusion-server/worn/heading.h"
-#include "fusion-server/worn/slip.h"
 #include "fusion-server/worn/worn_config.h"
 
 namespace chorus::worn {
@@ -62,8 +62,8 @@ class WornSensor {
   double fitted_ = 0.0;  ///< When [s].
   double tried_ = -1e9;
   std::string refusal_;
-  Heading heading_;
-  SlipWatch watch_;
+  evaluation::Heading heading_;
+  evaluation::SlipWatch watch_;
   std::optional<Slip> slip_;
   double direction_sigma_ = 0.0;  ///< What direction_sigma() returns [rad].
   int improved_ = 0;              ///< Attempts at a better calibration.
