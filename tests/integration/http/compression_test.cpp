@@ -94,12 +94,12 @@ TEST(Compression, EventStreamsAreOneGzipFile) {
       "GET /frame HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n"
       "Accept-Encoding: gzip\r\n\r\n");
   const std::string begin =
-      client.hear_until(*long_document(1)->event("application/json", Coding::Gzip));
+      client.hear_until(*long_document(1)->event("application/json", {}, Coding::Gzip));
   EXPECT_THAT(begin, HasSubstr("Content-Encoding: gzip\r\n"));
   EXPECT_THAT(begin,
               HasSubstr("\r\n\r\n" + std::string(gzip_begin()) + gzip_piece("retry: 1000\n\n")));
   service.frame->publish(long_document(2));
-  const std::string piece = *long_document(2)->event("application/json", Coding::Gzip);
+  const std::string piece = *long_document(2)->event("application/json", {}, Coding::Gzip);
   EXPECT_EQ(client.hear_until(piece), piece);
 }
 
