@@ -308,7 +308,7 @@ test('a whole day without a shell: walk, cancel, undo, record, stop, download', 
   await button('Forget all places').click();
   await button('Forget them: are you sure?').click();
   await page.keyboard.press('e');
-  await page.getByLabel('name').fill('walk-1');
+  await page.getByLabel('name', { exact: true }).fill('walk-1');
   await button('Record').click();
   await page.getByText('120 frames, 1.5 MB').waitFor(SOON);
   await picture(page, 'recording');
@@ -329,7 +329,7 @@ test('keys open drawers and dialogs, and stay out of text fields; a phone gets t
   await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, SOON);
   assert.equal(await page.evaluate(() => location.hash), '', 'the token leaves the address bar');
   await page.keyboard.press('e');
-  await page.getByLabel('name').pressSequentially('rw');
+  await page.getByLabel('name', { exact: true }).pressSequentially('rw');
   assert.equal(await page.inputValue('#record-name'), 'rw');
   assert.equal(await page.getAttribute('#tab-record', 'aria-selected'), 'true');
   await page.getByRole('button', { name: 'keys' }).click();

@@ -18,7 +18,7 @@ using testing::Thing;
 
 constexpr std::uint64_t kDrawnHands = 150;
 constexpr std::uint64_t kDrawnThings = 25;  // Of each kind.
-constexpr std::uint64_t kQuickDraws = 4;
+constexpr std::uint64_t kQuickDraws = 2;
 constexpr std::uint64_t kOnSheet = 24;
 constexpr double kSameFinger = 12.0;  // A tip nearer to the true one than this is that finger's.
 

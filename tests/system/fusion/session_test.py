@@ -57,13 +57,13 @@ class Sessions(Rig):
         self.assertEqual((post("/accept"), post("/decline")), (404, 404))
 
         def walked():
-            status, headers, _ = send("POST", fusion.url + "registration", b'{"seconds": 8, "adopt": "when-accepted"}')
+            status, headers, _ = send("POST", fusion.url + "registration", b'{"seconds": 16, "adopt": "when-accepted"}')
             self.assertEqual(status, 202)
             path = fusion.url + headers["Location"].lstrip("/")
             return path, wait_for("it is over", lambda: (s := get_json(path))["state"] == "done" and s)
 
         def proposed():
-            # On a busy machine a walk of 8 s may hold too few frames to place anybody as well as before: then it says so, and one walks again.
+            # On a busy machine a walk may hold too few frames to place anybody as well as before: then it says so, and one walks again.
             for _ in range(4):
                 path, done = walked()
                 if "proposal" in self.registration(fusion):
