@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/base/units.h"
+#include "common/time/clock_estimate.h"
 
 namespace chorus::rest {
 namespace {
@@ -29,6 +30,7 @@ resource::Node inertial_source_node(const client::FollowReport& source, Timestam
   if (source.clock) {
     out.emplace_back("clockOffsetMilliseconds", in_ms(source.clock->ours_minus_theirs));
     out.emplace_back("clockUncertaintyMilliseconds", in_ms(source.clock->uncertainty));
+    out.emplace_back("clockCorrected", correction(source.clock) != Duration{0});
   }
   out.emplace_back("framesReceived", static_cast<std::int64_t>(source.frames));
   out.emplace_back("framesMissed", static_cast<std::int64_t>(source.missed));
@@ -65,7 +67,7 @@ void add_worn(const WornReport& worn, resource::Node& node) {
   std::vector<std::string> limbs;
   for (const WornSensorReport& one : worn.sensors)
     if (one.calibrated) limbs.emplace_back(inertial::name_of(one.limb));
-  if (!limbs.empty()) node.properties.emplace_back("limbs", std::move(limbs));
+  if (!limbs.empty()) node.properties.emplace_back("knownLimbs", std::move(limbs));
   auto sentences = worn_sentences(worn);
   if (!sentences.empty()) node.properties.emplace_back("reasons", std::move(sentences));
 }

@@ -302,7 +302,11 @@ void read_evaluation(ConfigReader reader, const tls::Trust& trust, StartSettings
   client::FollowedService service{SensorId::parse("evaluation").value(), "", "", trust};
   reader.read("url", service.url);
   reader.read("token", service.token);
-  if (service.url.empty()) return;
+  if (service.url.empty()) {
+    if (!service.token.empty())
+      reader.complain("token", "is for the service at evaluation.url, which is empty");
+    return;
+  }
   if (auto url = http::parse_url(service.url); !url) reader.complain("url", url.error().message);
   out.evaluation.push_back(std::move(service));
 }

@@ -83,8 +83,9 @@ class Clients(Rig):
         self.assertGreater(later.sequence, seen.sequence)
         self.assertAlmostEqual(tracker.at(seen.time).time, seen.time, places=6)
         self.assertGreater(tracker.at("now").time, seen.time)
-        self.assertIn("contributors", tracker.at(seen.time, form=None).people[0].raw["joints"]["Head"])
-        self.assertNotIn("contributors", tracker.at(seen.time).people[0].raw["joints"]["Head"])
+        whole, lean = (wait_for("somebody then", lambda: tracker.at(seen.time, form=form).people) for form in (None, "pose"))
+        self.assertIn("contributors", whole[0].raw["joints"]["Head"])
+        self.assertNotIn("contributors", lean[0].raw["joints"]["Head"])
         tracker.name(person.id, "Anna")
         self.assertEqual(tracker.people()[person.id]["name"], "Anna")
         with self.assertRaises(chorus.Refused) as refused:

@@ -147,7 +147,8 @@ class InertialGuide(unittest.TestCase):
                 with self.subTest(line=line):
                     done = subprocess.run(["bash", "-o", "pipefail", "-c", line], cwd=folder, env=paths,
                                           capture_output=True, text=True, timeout=60)
-                    self.assertEqual(done.returncode, 0 if "--most 100" in line else 1, done.stderr + done.stdout)
+                    bad = line.startswith("chorus evaluate") and "--most 100" not in line  # a limb is in error
+                    self.assertEqual(done.returncode, 1 if bad else 0, done.stderr + done.stdout)
             self.judge(json.loads((folder / "judged/evaluation.json").read_text(encoding="utf-8")))
             page = (folder / "scored/evaluation.html").read_text(encoding="utf-8")
             self.assertIn("kappa of both", page)

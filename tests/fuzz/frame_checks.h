@@ -15,7 +15,8 @@ inline void require(bool holds) {
 }
 
 inline void check_joint(const Joint& joint) {
-  require(joint.orientation.coeffs().isZero());
+  const bool turned = !joint.orientation.coeffs().isZero();
+  require(!turned || std::abs(joint.orientation.norm() - 1.0) < 1e-6);
   if (joint.state == JointState::NotTracked) return;
   require(joint.position.allFinite());
   if (joint.measurement == Measurement::Ray) require(std::abs(joint.position.norm() - 1.0) < 1e-6);

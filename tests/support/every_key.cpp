@@ -45,6 +45,7 @@ std::vector<json> other_values(const json& value) {
     others.push_back(json::parse(R"([{"token": "0123456789abcdef", "role": "images"}])"));
     others.push_back(json::parse(R"([{"between": ["s1", "s2"], "m": 4.31}])"));
     others.push_back(json::parse(R"([{"name": "cam01"}])"));
+    others.push_back(json::parse(R"([{"kind": "silence", "limb": "Pelvis", "begin_s": 3}])"));
     others.push_back(json::parse(R"([{"slot": 1, "targets": ["127.0.0.1:7"]}])"));
   }
   std::erase(others, value);  // a factor does not change zero

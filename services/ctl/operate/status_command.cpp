@@ -123,7 +123,7 @@ std::string inertial_report(const nlohmann::json& sources) {
     if (source.contains("wearer"))
       text += fmt::format(", worn by body {}, {} limbs known",
                           shown(client::number_at(source, "wearer"), 0),
-                          lines_at(source, "limbs").size());
+                          lines_at(source, "knownLimbs").size());
     text += "\n";
     const std::string error = client::text_at(source, "lastError", "");
     if (!error.empty()) text += "  " + printable(error) + "\n";

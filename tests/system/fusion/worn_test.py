@@ -33,7 +33,7 @@ class Worn(Rig):
         fusion = self.start(**{"fusion.inertial.enabled": "true"})
         of_suit = lambda: get_json(fusion.url + "inertial/")["inertialSources"]["suit"]
         wait_for("it is known who wears it", lambda: of_suit().get("wearer"))
-        wait_for("four limbs are calibrated", lambda: len(of_suit().get("limbs", [])) >= 4)
+        wait_for("four limbs are calibrated", lambda: len(of_suit().get("knownLimbs", [])) >= 4)
 
         def helped():
             frame = get_json(fusion.url + "frame")

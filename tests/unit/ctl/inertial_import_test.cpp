@@ -59,11 +59,6 @@ TEST_F(ImportedLogs, GiveTheSameBytesAgain) {
   const std::string first = bytes_of(at("rec/w.mcap"));
   ASSERT_EQ(run_chorus(line).code, kExitOk) << "an import may be repeated";
   EXPECT_EQ(bytes_of(at("rec/w.mcap")), first);
-  // And again from the recording itself.
-  const Outcome again =
-      run_chorus({"import", "inertial", at("rec/w.mcap"), "--out", at("more"), "--sensor", "w"});
-  ASSERT_EQ(again.code, kExitOk) << again.error;
-  EXPECT_EQ(bytes_of(at("more/w.mcap")), first);
 }
 
 TEST_F(ImportedLogs, AreRefusedWithWhatToChange) {

@@ -136,7 +136,7 @@ TEST(StatusTable, SaysNothingElseAsJson) {
   EXPECT_EQ(told.code, kExitFailed) << "no sensor is live, in either form";
   EXPECT_EQ(told.error, "");
   const Json json = Json::parse(told.out);
-  EXPECT_EQ(json.size(), 5u) << "sensors, registration, frame, configuration, outputs";
+  EXPECT_EQ(json.size(), 6u) << "sensors, registration, frame, configuration, outputs, inertial";
   EXPECT_TRUE(json.at("frame").at("bodies").empty());
 }
 

@@ -66,7 +66,7 @@ TEST(InertialResources, TellWhoWearsASourceAndWhatIsAmiss) {
   const auto list = nlohmann::json::parse(get(router, "/inertial/").body);
   const auto& suit = list.at("inertialSources").at("suit");
   EXPECT_EQ(suit.at("wearer"), 7);
-  EXPECT_EQ(suit.at("limbs"), nlohmann::json({"ForearmLeft"}));
+  EXPECT_EQ(suit.at("knownLimbs"), nlohmann::json({"ForearmLeft"}));
   EXPECT_EQ(suit.at("reasons").size(), 3U);
   EXPECT_NE(suit.at("reasons").dump().find("left shank has turned on it by 60 degrees"),
             std::string::npos);
