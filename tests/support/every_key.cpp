@@ -21,7 +21,8 @@ constexpr const char* kWords[] = {"s2",          "0.0.0.0",
                                   "ForearmLeft", "239.1.2.3",
                                   "tcp",         "/tmp/x.bvh",
                                   "10.0.0.1",    "tests/unit/learn/head_model.json",
-                                  "network"};
+                                  "network",     "landmarks",
+                                  "mixtures"};
 
 std::vector<json> other_values(const json& value) {
   std::vector<json> others;

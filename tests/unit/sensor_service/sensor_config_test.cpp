@@ -102,6 +102,9 @@ std::string choosing_its_device(const std::string& key, const std::string& text)
     const bool chosen = key.starts_with("device." + kind + ".");
     EXPECT_TRUE(!chosen || root->set("device.kind=" + kind));
   }
+  // How and when a sensor slips counts only if one does.
+  const bool slips = key.starts_with("device.inertial.slips_");
+  EXPECT_TRUE(!slips || root->set("device.inertial.slips=ForearmLeft"));
   return root->text();
 }
 
