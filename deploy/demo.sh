@@ -301,7 +301,7 @@ judge_tracker() {
     [[ -z "$said" ]] || printf 'chorus status: %s\n' "$said"
   done
   wait "$recorder" || { tail -n 3 "$logs/record.log"; return 1; }
-  "$bin/chorus" evaluate --tracking "$logs/judged.mcap" --inertial "$logs/judged.mcap" --most 100 --out "$logs/judged" \
+  "$bin/chorus" evaluate --tracking "$logs/judged.mcap" --inertial "$logs/judged.mcap" --same-clock --most 100 --out "$logs/judged" \
     2> "$logs/evaluate.log" || { tail -n 3 "$logs/evaluate.log"; return 1; }
   echo "report: $logs/judged/evaluation.html"
 }

@@ -39,6 +39,7 @@ bool shows_rate(const TrackedLimb& limb) {
 
 Result<TimeShift> aligned(const TrackedBody& body, const std::vector<JudgeSensor>& sensors,
                           const TimeShiftOptions& options) {
+  if (options.largest <= 0.0) return TimeShift{};  // one clock: nothing is looked for
   std::vector<SignalPair> pairs;
   std::vector<Signal> all_tracked, all_sensed;
   for (const JudgeSensor& sensor : sensors) {

@@ -32,6 +32,7 @@ struct EvaluateArguments {
   double tau_deg = to_deg(evaluation::kPaperTau);
   double most_percent = 5.0;
   bool stated = false;  ///< Orientations that the tracker states, instead of those of its joints.
+  bool same_clock = false;
   bool json = false;
 };
 
@@ -144,6 +145,7 @@ Result<int> run_evaluate(const EvaluateArguments& arguments) {
   if (!inputs) return pass(inputs);
   evaluation::JudgeOptions options;
   options.tau = deg(arguments.tau_deg);
+  if (arguments.same_clock) options.time.largest = 0.0;
   std::vector<inertial::SensorCalibration> calibrations;
   if (!arguments.calibration.empty()) {
     const auto take = load(arguments.calibration, arguments.calibration_inertial, arguments);
@@ -206,6 +208,9 @@ Run add_evaluate(CLI::App& options) {
       ->capture_default_str();
   options.add_flag("--stated", arguments->stated,
                    "Judge the orientations that the tracker states, not its joints");
+  options.add_flag("--same-clock", arguments->same_clock,
+                   "Tracker and sensors were recorded by one clock: no shift is looked for, which "
+                   "needs less movement");
   options.add_option("--out", arguments->out, "Folder of the report")->capture_default_str();
   options.add_flag("--json", arguments->json, "Print the report as JSON");
   return [arguments] { return run_evaluate(*arguments); };
