@@ -101,8 +101,8 @@ struct Coordinate {
 // clang-format off
 constexpr Coordinate kCoordinates[]{
   {"lumbar_extension", 0, 0, 1.0}, {"lumbar_bending", 0, 1, 1.0}, {"lumbar_rotation", 0, 2, 1.0},
-  {"hip_flexion_l", 5, 0, 1.0}, {"hip_adduction_l", 5, 1, 1.0}, {"hip_rotation_l", 5, 2, 1.0},
-  {"hip_flexion_r", 6, 0, 1.0}, {"hip_adduction_r", 6, 1, 1.0}, {"hip_rotation_r", 6, 2, 1.0},
+  {"hip_flexion_l", 5, 0, 1.0}, {"hip_adduction_l", 5, 1, 1.0},
+  {"hip_flexion_r", 6, 0, 1.0}, {"hip_adduction_r", 6, 1, 1.0},
   {"knee_angle_l", 7, 0, -1.0}, {"knee_angle_r", 8, 0, -1.0},
   {"elbow_flex_l", 3, 0, 1.0}, {"elbow_flex_r", 4, 0, 1.0},
 };

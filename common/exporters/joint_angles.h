@@ -18,9 +18,10 @@ namespace chorus::exporters {
 [[nodiscard]] std::string angles_csv_of(const Take& take);
 
 /// The coordinates that OpenSim's full-body models (Rajagopal et al. 2016) have by these names and
-/// signs: pelvis_tilt, _list, _rotation [deg], pelvis_tx, _ty, _tz [m], lumbar_*, hip_*, knee_angle
-/// (positive when bent) and elbow_flex.  World axes: +y up.  Gaps are filled linearly, because
-/// models need a value at every time; before the first and after the last value it is held.
+/// signs: pelvis_tilt, _list, _rotation [deg], pelvis_tx, _ty, _tz [m], lumbar_*, hip_flexion,
+/// hip_adduction (joints do not show a hip's rotation), knee_angle (positive when bent) and
+/// elbow_flex.  World axes: +y up.  Gaps are filled linearly, because models need a value at every
+/// time; before the first and after the last value it is held.
 /// Refused: nobody shows hips and shoulders.
 [[nodiscard]] Result<std::string> mot_of(const PersonTrack& track, double rate_hz);
 
