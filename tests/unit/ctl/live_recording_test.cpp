@@ -157,8 +157,9 @@ class CellWithASuit : public ::testing::Test {
     };
     json("/tracker/", R"({"@type":["Tracker"]})");
     json("/tracker/sensors/", R"({"sensors":{}})");
-    json("/tracker/inertial/",
-         R"({"inertialSources":{"suit":{"clockOffsetMilliseconds":250,"clockUncertaintyMilliseconds":1,"clockCorrected":true,"state":"live"}}})");
+    json(
+        "/tracker/inertial/",
+        R"({"inertialSources":{"suit":{"clockOffsetMilliseconds":250,"clockUncertaintyMilliseconds":1,"clockCorrected":true,"state":"live"}}})");
     json("/suit/", R"({"@type":["Sensor"],"sensorId":"suit","orientations":"orientations"})");
     for (const char* path : {"/tracker/inertial/suit/orientations", "/suit/orientations"}) {
       router->get(path, [this](const http::Request&, const http::PathParams&) { return said(); });
