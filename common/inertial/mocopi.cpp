@@ -163,13 +163,8 @@ std::string encode(const Packet& packet) {
 
 namespace {
 
-struct MocopiRow {
-  std::string_view name;
-  int parent;
-  std::optional<Limb> limb;
-};
 // clang-format off
-constexpr std::array<MocopiRow, 27> kMocopi{{
+constexpr std::array<SegmentRow, 27> kMocopi{{
   {"root", -1, Limb::Pelvis}, {"torso_1", 0, {}}, {"torso_2", 1, {}}, {"torso_3", 2, {}}, {"torso_4", 3, {}}, {"torso_5", 4, {}},
   {"torso_6", 5, {}}, {"torso_7", 6, Limb::Chest}, {"neck_1", 7, {}}, {"neck_2", 8, {}}, {"head", 9, Limb::Head},
   {"l_shoulder", 7, {}}, {"l_up_arm", 11, Limb::UpperArmLeft}, {"l_low_arm", 12, Limb::ForearmLeft}, {"l_hand", 13, Limb::HandLeft},
@@ -180,7 +175,7 @@ constexpr std::array<MocopiRow, 27> kMocopi{{
 
 SegmentPoses mocopi_segments() {
   std::vector<Segment> segments;
-  for (const MocopiRow& row : kMocopi)
+  for (const SegmentRow& row : kMocopi)
     segments.push_back({std::string(row.name), row.parent, row.limb});
   return SegmentPoses(std::move(segments));
 }

@@ -3,12 +3,20 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/result.h"
 #include "common/inertial/inertial_frame.h"
 
 namespace chorus::inertial {
+
+/// A segment as the tables of makers' skeletons have it.
+struct SegmentRow {
+  std::string_view name;
+  int parent;  ///< The row of it; -1: none.
+  std::optional<Limb> limb;
+};
 
 struct Segment {
   std::string name;

@@ -12,28 +12,22 @@
 namespace chorus::inertial {
 namespace {
 
-struct BoneRow {
-  std::string_view name;
-  int parent;
-  std::optional<Limb> limb;
-};
-
 // clang-format off
-constexpr std::array<BoneRow, 22> kBones{{
+constexpr std::array<SegmentRow, 22> kBones{{
   {"Hips", -1, Limb::Pelvis}, {"Spine", 0, {}}, {"Chest", 1, {}}, {"UpperChest", 2, Limb::Chest}, {"Neck", 3, {}}, {"Head", 4, Limb::Head},
   {"LeftShoulder", 3, {}}, {"LeftUpperArm", 6, Limb::UpperArmLeft}, {"LeftLowerArm", 7, Limb::ForearmLeft}, {"LeftHand", 8, Limb::HandLeft},
   {"RightShoulder", 3, {}}, {"RightUpperArm", 10, Limb::UpperArmRight}, {"RightLowerArm", 11, Limb::ForearmRight}, {"RightHand", 12, Limb::HandRight},
   {"LeftUpperLeg", 0, Limb::ThighLeft}, {"LeftLowerLeg", 14, Limb::ShankLeft}, {"LeftFoot", 15, Limb::FootLeft}, {"LeftToes", 16, {}},
   {"RightUpperLeg", 0, Limb::ThighRight}, {"RightLowerLeg", 18, Limb::ShankRight}, {"RightFoot", 19, Limb::FootRight}, {"RightToes", 20, {}}}};
-constexpr std::array<BoneRow, 9> kVrchat{{
+constexpr std::array<SegmentRow, 9> kVrchat{{
   {"1", -1, Limb::Pelvis}, {"2", -1, Limb::FootLeft}, {"3", -1, Limb::FootRight}, {"4", -1, Limb::ThighLeft}, {"5", -1, Limb::ThighRight},
   {"6", -1, Limb::Chest}, {"7", -1, Limb::UpperArmLeft}, {"8", -1, Limb::UpperArmRight}, {"head", -1, Limb::Head}}};
 // clang-format on
 
 template <std::size_t kCount>
-SegmentPoses poses_of(const std::array<BoneRow, kCount>& rows, std::string_view prefix) {
+SegmentPoses poses_of(const std::array<SegmentRow, kCount>& rows, std::string_view prefix) {
   std::vector<Segment> segments;
-  for (const BoneRow& row : rows)
+  for (const SegmentRow& row : rows)
     segments.push_back({std::string(prefix) + std::string(row.name), row.parent, row.limb});
   return SegmentPoses(std::move(segments));
 }
@@ -49,14 +43,20 @@ Result<Eigen::Quaterniond> rotation_of(const OscMessage& message, std::string_vi
   return from_unity(*rotation);
 }
 
+/// Hands each message of a datagram on; ends at the first that is refused.
+template <class Take>
+Result<void> each_message(std::string_view bytes, const Take& take) {
+  const auto messages = parse_osc(bytes);
+  if (!messages) return pass(messages);
+  for (const OscMessage& message : *messages)
+    if (auto ok = take(message); !ok) return ok;
+  return {};
+}
+
 class VmcReader final : public StreamReader {
  public:
   [[nodiscard]] Result<void> take(std::string_view bytes, Timestamp now) override {
-    const auto messages = parse_osc(bytes);
-    if (!messages) return pass(messages);
-    for (const OscMessage& message : *messages)
-      if (auto ok = take_message(message, now); !ok) return ok;
-    return {};
+    return each_message(bytes, [&](const OscMessage& m) { return take_message(m, now); });
   }
 
   [[nodiscard]] std::optional<InertialFrame> instant(Timestamp now) override {
@@ -111,11 +111,7 @@ class VmcReader final : public StreamReader {
 class VrchatReader final : public StreamReader {
  public:
   [[nodiscard]] Result<void> take(std::string_view bytes, Timestamp now) override {
-    const auto messages = parse_osc(bytes);
-    if (!messages) return pass(messages);
-    for (const OscMessage& message : *messages)
-      if (auto ok = take_message(message, now); !ok) return ok;
-    return {};
+    return each_message(bytes, [&](const OscMessage& m) { return take_message(m, now); });
   }
   [[nodiscard]] std::optional<InertialFrame> instant(Timestamp now) override {
     return trackers_.instant(now);

@@ -11,7 +11,7 @@ LOG = """
 1/4 Testing: a/gtest
 1/4 Test: a/gtest
 [ RUN      ] Bvh.Real
-/work/bvh_test.cpp:150: Skipped
+tests/bvh_test.cpp:150: Skipped
 runs where /data is there
 [  SKIPPED ] Bvh.Real (0 ms)
 [  SKIPPED ] 1 test, listed below:
