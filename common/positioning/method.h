@@ -1,4 +1,4 @@
-// The ways to tell where a person in a suit is (issue G 5); all behind one interface, the Tracker.
+// The ways to tell where a person in a suit is; all behind one interface, the Tracker.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Lets inertial sensors that a person wears steer the limbs of the fused body (issue F, point 6).
+// Lets inertial sensors that a person wears steer the limbs of the fused body.
 //
 // A sensor knows the direction of its limb's bone, whatever the views see.  With the bone's length,
 // learned while both ends are seen, that is one more measurement between two joints, and all are
