@@ -91,13 +91,13 @@ struct Difference {
   double rest = 0.0;   ///< Sum of the squared differences from that mean.
 };
 
-Difference difference(const Build& one, const Build& other) {
+Difference difference(const StatedBuild& one, const StatedBuild& other) {
   Difference all;
   std::vector<double> off;
   for (std::size_t i = 0; i < kSpans; ++i) {
-    if (!(one.sight[i] > 0) || !(other.sight[i] > 0)) continue;
+    if (!(one.variance[i] > 0) || !(other.variance[i] > 0)) continue;
     off.push_back(one.mean[i] - other.mean[i]);
-    all.own += variance_of(one, i) + variance_of(other, i);
+    all.own += one.variance[i] + other.variance[i];
   }
   if (off.empty()) return all;
   all.count = static_cast<double>(off.size());
@@ -131,6 +131,17 @@ Spans spans_of(std::span<const PlacedView> views, const Located& met) {
   return spans;
 }
 
+Spans spans_of(const Located& body, double views) {
+  std::array<Mean, kSpans> means;
+  add_lengths(means, body);
+  Spans spans;
+  spans.views = views;
+  for (std::size_t i = 0; i < kSpans; ++i) {
+    if (means[i].count > 0) spans.length[i] = means[i].sum / means[i].count;
+  }
+  return spans;
+}
+
 void Build::add(const Spans& spans, double elapsed) {
   Build now;
   now.views = spans.views;
@@ -158,7 +169,20 @@ double sight_of(const Build& build) {
   return median(std::vector<double>(build.sight.begin(), build.sight.end()));
 }
 
+StatedBuild stated(const Build& build) {
+  StatedBuild all;
+  all.mean = build.mean;
+  for (std::size_t i = 0; i < kSpans; ++i) {
+    if (build.sight[i] > 0) all.variance[i] = variance_of(build, i);
+  }
+  return all;
+}
+
 void Repeatability::learn(const Build& now, const Build& usual) {
+  learn(stated(now), stated(usual));
+}
+
+void Repeatability::learn(const StatedBuild& now, const StatedBuild& usual) {
   const Difference off = difference(now, usual);
   if (off.count < 2.0) return;
   seconds = std::min(seconds + 1.0, kLongMean);
@@ -171,6 +195,11 @@ void Repeatability::learn(const Build& now, const Build& usual) {
 }
 
 double likeness(const Build& one, const Build& other, const Repeatability& repeatability) {
+  return likeness(stated(one), stated(other), repeatability);
+}
+
+double likeness(const StatedBuild& one, const StatedBuild& other,
+                const Repeatability& repeatability) {
   const Difference off = difference(one, other);
   if (!(off.count > 0)) return 0.0;
   const double own_size = repeatability.size * kSizeShare * off.own / off.count;

@@ -28,6 +28,9 @@ struct Spans {
 /// views are ray views, `met` is used: the points at which the rays meet.
 [[nodiscard]] Spans spans_of(std::span<const PlacedView> views, const Located& met);
 
+/// The lengths of one body in which `views` views are fused.
+[[nodiscard]] Spans spans_of(const Located& body, double views);
+
 struct Build {
   std::array<double, kSpans> mean{};   ///< [ln m]
   std::array<double, kSpans> sight{};  ///< How long each length was in view [s]; at most a minute.
@@ -37,6 +40,14 @@ struct Build {
   void add(const Spans& spans, double elapsed);
   void add(const Build& other);
 };
+
+/// A build as it is told to others: each length with its variance, in which the number of views and
+/// the time in view are counted already.
+struct StatedBuild {
+  std::array<double, kSpans> mean{};      ///< [ln m]
+  std::array<double, kSpans> variance{};  ///< [ln^2 m]; not positive: the length is not known.
+};
+[[nodiscard]] StatedBuild stated(const Build& build);
 
 /// How long the person's build was in view [s]: the median over the lengths.
 [[nodiscard]] double sight_of(const Build& build);
@@ -53,11 +64,14 @@ struct Repeatability {
 
   /// Learns from `now`, a second in view of somebody whose build is known to be `usual`.
   void learn(const Build& now, const Build& usual);
+  void learn(const StatedBuild& now, const StatedBuild& usual);
 };
 
 /// Log likelihood ratio: both builds are of one person, against builds of any two people; 0 when
 /// they have no length in common.
 [[nodiscard]] double likeness(const Build& one, const Build& other,
+                              const Repeatability& repeatability);
+[[nodiscard]] double likeness(const StatedBuild& one, const StatedBuild& other,
                               const Repeatability& repeatability);
 
 }  // namespace chorus::associate

@@ -21,6 +21,7 @@ ROWS = [
     ["fusion-server/status", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch", "fusion-server/worn"],
     ["fusion-server/registration"],
+    ["fusion-server/site"],
     ["fusion-server/pipeline", "fusion-server/learn"],
     ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "fusion-server/journal", "services/sensor",
      "services/ergonomics", "services/evaluation"],
@@ -35,7 +36,7 @@ ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 # A header of values that is a room of its own.
 VALUE_HEADERS = {"fusion-server/sink.h"}
 
-STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "worn", "registration")}
+STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "worn", "registration", "site")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
 NO_SOCKET = {"fusion-server/core", "fusion-server/journal", "fusion-server/learn", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
@@ -47,7 +48,8 @@ FORBIDDEN_ROOMS = [
     (FUSION_SERVER | {"common/inertial", "common/evaluation"}, {"common/synthetic"}, "what judges an algorithm must not feed it"),
     (STAGES, {"common/net", "common/http", "common/resource", "common/record", "common/service", "common/rdf"},
      "stages know values, not their wire forms"),
-    (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow only"),
+    (STAGES - {"fusion-server/registration", "fusion-server/site"}, STAGES, "stages meet in flow only"),
+    ({"fusion-server/site"}, STAGES - {"fusion-server/associate", "fusion-server/registration", "fusion-server/site"}, "site may use associate and registration only"),
     ({"fusion-server/registration"}, STAGES - {"fusion-server/align"}, "registration may use align only"),
     (NO_SOCKET, {"common/net", "common/http", "common/client", "common/service"}, "no socket here"),
     (NO_HTTP, {"common/http", "common/client", "common/service"}, "a tracker protocol needs sockets, not HTTP"),
