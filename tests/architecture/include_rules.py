@@ -26,7 +26,7 @@ ROWS = [
     ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "fusion-server/journal", "services/sensor",
      "services/ergonomics", "services/evaluation"],
     ["fusion-server/vrpn", "fusion-server/dtrack", "fusion-server/natnet", "fusion-server/trackd",
-     "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest", "fusion-server/foxglove"],
+     "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest", "fusion-server/foxglove", "fusion-server/nats"],
     ["fusion-server/outputs"],
     ["fusion-server/server"],
     ["services/ctl"],
@@ -41,7 +41,7 @@ FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
 NO_SOCKET = {"fusion-server/core", "fusion-server/journal", "fusion-server/learn", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
 # These rooms implement protocols other than HTTP: they may use sockets, but no HTTP.
-NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
+NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp", "nats")}
 
 # Each entry: the rooms, what they must not include, and why.
 FORBIDDEN_ROOMS = [
@@ -61,6 +61,8 @@ STAGE_HEADERS = re.compile(
     r"<(boost/(asio|beast)|serd|nlohmann/|thread>|mutex>|shared_mutex>|condition_variable>|iostream>|fstream>)")
 STAGE_CLOCKS = re.compile(r"common/time/clock\.h|(system|steady|high_resolution)_clock::now")
 ASIO = re.compile(r"<boost/(asio|beast)")
+NATS = re.compile(r"<nats/")
+NATS_DOOR = "fusion-server/nats/session.cpp"
 POINT_CLOUDS_AND_IMAGES = re.compile(r"<(pcl|opencv2)/")
 ASIO_DOORS = {"common/net/asio.h", "common/net/asio_local.h", "common/http/beast.h", "common/http/websocket_stream.cpp"}
 
@@ -120,6 +122,8 @@ def header_violations(file, text):
             yield Violation(file, f"includes {included}: stages are pure")
         if ASIO.match(included) and file not in ASIO_DOORS:
             yield Violation(file, f"includes {included}: only common/net/asio.h and common/http/beast.h do")
+        if NATS.match(included) and file != NATS_DOOR:
+            yield Violation(file, f"includes {included}: only {NATS_DOOR} does")
         if POINT_CLOUDS_AND_IMAGES.match(included) and file.endswith(".h"):
             yield Violation(file, f"includes {included}: in .cpp files only")
     if own in STAGES and STAGE_CLOCKS.search(text):
