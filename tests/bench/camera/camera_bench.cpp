@@ -14,11 +14,14 @@ struct Case {
   Result<void> (*run)(Report&);
   bool quick;  ///< Part of the smoke test.
 };
-constexpr std::array kCases{
-    Case{"people", simulated_people, true},        Case{"four-views", four_views, true},
-    Case{"distance", placed_people, true},         Case{"four-views-live", live_views, false},
-    Case{"eight-views-vicon", eight_views, false}, Case{"video", runner_speed, false},
-    Case{"calibrate", lens_calibration, false}};
+constexpr std::array kCases{Case{"people", simulated_people, true},
+                            Case{"four-views", four_views, true},
+                            Case{"distance", placed_people, true},
+                            Case{"four-views-live", live_views, false},
+                            Case{"eight-views-vicon", eight_views, false},
+                            Case{"video", runner_speed, false},
+                            Case{"one-left", one_left, false},
+                            Case{"calibrate", lens_calibration, false}};
 
 }  // namespace
 

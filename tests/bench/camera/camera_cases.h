@@ -1,6 +1,7 @@
 // The cases of chorus-bench camera.  All run from the top of the repository.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct Agreement {
 [[nodiscard]] Result<void> four_views(Report& report);
 /// Fuses takes of eight real cameras and compares them with Vicon, where that data is at hand.
 [[nodiscard]] Result<void> eight_views(Report& report);
+/// The folders of those takes; none where that data is not at hand.
+[[nodiscard]] std::vector<std::filesystem::path> eight_view_takes();
+/// Measures where people are put whom one camera of four alone sees for two seconds.
+[[nodiscard]] Result<void> one_left(Report& report);
 /// Fuses the bundled videos with real processes.
 [[nodiscard]] Result<void> live_views(Report& report);
 /// Measures how many pictures a second a runner processes on one core.

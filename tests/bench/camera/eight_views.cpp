@@ -206,13 +206,18 @@ Result<void> measure(Report& report, const std::filesystem::path& path) {
 
 }  // namespace
 
-Result<void> eight_views(Report& report) {
+std::vector<std::filesystem::path> eight_view_takes() {
   std::vector<std::filesystem::path> takes;
   std::error_code missing;
   for (const auto& entry : std::filesystem::directory_iterator(folder(), missing)) {
     if (std::filesystem::exists(entry.path() / "cameras.json")) takes.push_back(entry.path());
   }
   std::ranges::sort(takes);
+  return takes;
+}
+
+Result<void> eight_views(Report& report) {
+  const auto takes = eight_view_takes();
   if (takes.empty())
     report.note(
         fmt::format("eight-views-vicon: left out, {} has no takes; the data may not be "
