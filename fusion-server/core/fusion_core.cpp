@@ -40,7 +40,7 @@ FusionCore::FusionCore(CoreConfig config, Registration registration)
     : config_(with_polled(std::move(config))),
       schedule_(config_.output, config_.first_sequence),
       registrar_(registrar_config(config_), std::move(registration), config_.first_session),
-      hindsight_(config_.output.late_frames) {
+      world_(config_.output.late_frames) {
   memory_.tracks.next_id = config_.first_person;
   wear_.configure(config_.worn, config_.inertial);
 }
@@ -52,32 +52,29 @@ void FusionCore::reconfigure(CoreConfig config) {
   registrar_.reconfigure(registrar_config(config_));
   const auto gone = [&](const auto& entry) { return !config_.sensors.contains(entry.first); };
   std::erase_if(histories_, gone);
-  std::erase_if(frozen_, gone);
-  std::erase_if(displaced_at_, gone);
-  fates_.keep(config_.sensors);
-  shares_.keep(config_.sensors);
+  std::erase_if(sensors_, gone);
   guard_.keep(config_.sensors);
   strays_.keep(config_.sensors);
-  clocks_.keep(config_.sensors);
   wear_.configure(config_.worn, config_.inertial);
-  awaited_by_ = 0;
+  world_.pending.sequence = 0;
 }
 
 void FusionCore::take(SensorFrame frame) {
   if (!config_.sensors.contains(frame.sensor)) return;
   sift(frame);
-  if (!histories_.contains(frame.sensor)) awaited_by_ = 0;  // one more sensor to wait for
+  if (!histories_.contains(frame.sensor))
+    world_.pending.sequence = 0;  // one more sensor to wait for
   const align::PushVerdict verdict = histories_[frame.sensor].push(in_step(frame));
-  if (fates_.count(frame, verdict)) registrar_.take(frame);
+  if (sensors_[frame.sensor].losses.count(frame, verdict)) registrar_.take(frame);
 }
 
 /// The frame with its capture time by the common clock, as far as a walk has determined that;
 /// earlier frames of its sensor are moved to the same clock.  Sessions collect frames uncorrected,
 /// because a solve finds the whole offset.
 SensorFrame FusionCore::in_step(SensorFrame frame) {
-  const Duration change = clocks_.take(frame, registration());
-  histories_[frame.sensor].move_in_time(change);
-  move_in_time(frame, clocks_.added_to(frame.sensor));
+  ClockCorrection& clock = sensors_[frame.sensor].clock;
+  histories_[frame.sensor].move_in_time(clock.take(frame, registration()));
+  move_in_time(frame, clock.added());
   return frame;
 }
 
@@ -90,8 +87,9 @@ void FusionCore::sift(SensorFrame& frame) {
     if (!reason.empty()) why = reason;
     return !reason.empty();
   });
-  if (frozen_[frame.sensor].remove_from(frame, limits) > 0) why = kFrozen;
-  if (!why.empty()) fates_.refuse(frame, why);
+  SensorMemory& own = sensors_[frame.sensor];
+  if (own.frozen.remove_from(frame, limits) > 0) why = kFrozen;
+  if (!why.empty()) own.losses.refuse(frame, why);
 }
 
 std::optional<Snapshot> FusionCore::tick(Timestamp now) {
@@ -102,17 +100,17 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
                     std::exchange(memory_, std::move(step.memory)),
                     {},
                     parts_of(step.snapshot),
-                    awaited_.extension};
+                    world_.pending.awaited.extension};
   reports_ = step.snapshot.reports;
   for (const SensorReport& report : reports_) {
     const bool spoke = report.basis == Basis::Exact || report.basis == Basis::Interpolated;
     if (!spoke && registration().sensors.contains(report.sensor))
       answered.without.push_back(report.sensor);
   }
-  shares_.answered(step.snapshot, last_awaited_);
-  if (answered.without.empty()) shares_.settled(answered.parts);
-  last_awaited_.clear();
-  hindsight_.remember(std::move(answered));
+  note_shares(step.snapshot, world_.pending.still, sensors_);
+  if (answered.without.empty()) note_settled(answered.parts, sensors_);
+  world_.pending.still.clear();
+  world_.hindsight.remember(std::move(answered));
   schedule_.answered(now);
   guard_.look(step.people, tick.instant, config_.watch);
   strays_.look({tick.instant, step.snapshot.reports, step.people, registration()},
@@ -132,11 +130,11 @@ pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
       pipeline::fuse(std::move(seen), in, pipeline::taking_part(registration(), config_.pipeline),
                      config_.pipeline);
   wear_.learn(step.snapshot.bodies, tick.instant);
-  if (before_) {
-    auto was = pipeline::step(in, histories_, *before_, memory_, config_.pipeline).snapshot;
+  if (world_.replaced) {
+    auto was = pipeline::step(in, histories_, *world_.replaced, memory_, config_.pipeline).snapshot;
     fade_.apply(was.bodies, tick.instant);
     fade_.begin(was.bodies, step.snapshot.bodies, tick.instant);
-    before_.reset();
+    world_.replaced.reset();
   }
   fade_.apply(step.snapshot.bodies, tick.instant);
   return step;
@@ -146,9 +144,9 @@ void FusionCore::smooth(const pipeline::Inputs& in, const pipeline::Perceived& s
   const pipeline::PipelineConfig& config = config_.pipeline;
   if (!config.smoothing.live) return;
   auto now = pipeline::perception_of(in, pipeline::taking_part(registration(), config), seen);
-  for (pipeline::Step& step : smoother_.take(std::move(now), config)) {
+  for (pipeline::Step& step : world_.smoother.take(std::move(now), config)) {
     fade_.apply(step.snapshot.bodies, step.snapshot.instant);
-    smoothed_.push_back(std::move(step.snapshot));
+    world_.smoothed.push_back(std::move(step.snapshot));
   }
 }
 
@@ -159,25 +157,21 @@ void FusionCore::displace_moved(Timestamp instant) {
   constexpr Duration kAgain = std::chrono::minutes(30);
   const auto moved = guard_.moved();
   if (!moved) return;
-  const auto last = displaced_at_.find(*moved);
-  if (last != displaced_at_.end() && instant - last->second < kAgain) return;
+  std::optional<Timestamp>& last = sensors_[*moved].displaced;
+  if (last && instant - *last < kAgain) return;
   Registration before = registration();
   if (!registrar_.displace(*moved, reason_of(*moved, *guard_.alarm_of(*moved)))) return;
   guard_.displaced(*moved);
   strays_.forget();
-  displaced_at_[*moved] = instant;
-  before_ = std::move(before);
-  hindsight_.forget();
-  smoother_ = {};
-  awaited_by_ = 0;
-  ++displaced_;
+  last = instant;
+  change_places(std::move(before));
 }
 
 std::optional<Snapshot> FusionCore::amended(Timestamp now) {
-  const auto answered = hindsight_.due(now);
+  const auto answered = world_.hindsight.due(now);
   if (!answered) return std::nullopt;
   if (!improves(*answered, now)) {
-    shares_.settled(answered->parts);
+    note_settled(answered->parts, sensors_);
     return std::nullopt;
   }
   const Tick& tick = answered->tick;
@@ -186,9 +180,9 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
   auto seen = pipeline::perceive(in, histories_, registration(), answered->before, config);
   wear_.dress(seen.people, tick.instant);
   const auto sensors = pipeline::taking_part(registration(), config);
-  if (config.smoothing.live) smoother_.amend(pipeline::perception_of(in, sensors, seen));
+  if (config.smoothing.live) world_.smoother.amend(pipeline::perception_of(in, sensors, seen));
   pipeline::Step step = pipeline::fuse(std::move(seen), in, sensors, config);
-  shares_.settled(parts_of(step.snapshot));
+  note_settled(parts_of(step.snapshot), sensors_);
   fade_.apply(step.snapshot.bodies, tick.instant);
   return std::move(step.snapshot);
 }
@@ -206,16 +200,17 @@ bool FusionCore::improves(const Answered& answered, Timestamp now) const {
 /// Called whenever a frame arrives; the sensors to wait for are computed once per instant.
 Duration FusionCore::idle(Timestamp now) {
   const Tick tick = schedule_.next(now);
-  if (awaited_by_ != tick.sequence) {
-    awaited_ = pipeline::all_awaited(histories_, registration(), config_.pipeline);
-    awaited_by_ = tick.sequence;
-    schedule_.extend(awaited_.extension);
+  PendingInstant& pending = world_.pending;
+  if (pending.sequence != tick.sequence) {
+    pending.awaited = pipeline::all_awaited(histories_, registration(), config_.pipeline);
+    pending.sequence = tick.sequence;
+    schedule_.extend(pending.awaited.extension);
   }
-  std::vector<pipeline::Awaited>& sensors = awaited_.sensors;
+  std::vector<pipeline::Awaited>& sensors = pending.awaited.sensors;
   pipeline::drop_settled(sensors, {tick.instant, now, tick.sequence}, histories_);
   if (!sensors.empty() && now > tick.instant) {
-    last_awaited_.clear();
-    for (const pipeline::Awaited& one : sensors) last_awaited_.push_back(one.sensor);
+    pending.still.clear();
+    for (const pipeline::Awaited& one : sensors) pending.still.push_back(one.sensor);
   }
   return schedule_.wait(now, sensors.empty());
 }
@@ -245,16 +240,16 @@ Result<void> FusionCore::undo() {
     leave_world();
     return done;
   }
-  hindsight_.forget();
-  smoother_ = {};
-  if (!before.sensors.empty()) before_ = std::move(before);
+  change_places(std::move(before));
   return done;
 }
 
 Result<void> FusionCore::accept() {
   Registration before = registration();
   auto done = registrar_.accept();
-  if (done) take_over(std::move(before));
+  if (!done) return done;
+  note_places(before);
+  change_places(std::move(before));
   return done;
 }
 
@@ -264,20 +259,19 @@ void FusionCore::note_places(const Registration& before) {
   strays_.forget();
 }
 
-/// After a change of places in the same world.
-void FusionCore::take_over(Registration before) {
-  hindsight_.forget();  // all earlier answers were given by other places
-  smoother_ = {};
-  note_places(before);
-  if (!before.sensors.empty()) before_ = std::move(before);
+/// After a change of places in the same world: what was decided by the old ones is given up, and
+/// bodies fade from there.
+void FusionCore::change_places(Registration before) {
+  world_ = DecidedWorld(config_.output.late_frames);
+  if (!before.sensors.empty()) world_.replaced = std::move(before);
 }
 
 void FusionCore::forget(PersonId person) {
   associate::forget(person, memory_.tracks);
   memory_.sides.people.erase(person);
   memory_.seating.leave(person);
-  hindsight_.forget();  // earlier answers are not given again with this person
-  smoother_ = {};
+  world_.hindsight.forget();  // earlier answers are not given again with this person
+  world_.smoother = {};
 }
 
 /// Forgets what is remembered about people, because it is in coordinates of the old world.
@@ -285,9 +279,7 @@ void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays
   memory_.seating = {};           // nobody left: whoever is here gets the low slots again
-  hindsight_.forget();
-  smoother_ = {};
-  before_.reset();
+  world_ = DecidedWorld(config_.output.late_frames);
   fade_.stop();
   wear_.leave_world();
 }
@@ -295,8 +287,16 @@ void FusionCore::leave_world() {
 Outcome FusionCore::solved(Solution solution, Timestamp now) {
   Registration before = registration();
   const Outcome outcome = registrar_.solved(std::move(solution), now);
-  if (outcome != Outcome::Nothing) take_over(std::move(before));
+  if (outcome == Outcome::Nothing) return outcome;
+  note_places(before);
+  change_places(std::move(before));
   return outcome;
+}
+
+const SensorMemory& FusionCore::memory_of(const SensorId& sensor) const {
+  static const SensorMemory kUnknown;
+  const auto own = sensors_.find(sensor);
+  return own == sensors_.end() ? kUnknown : own->second;
 }
 
 RegistrationProgress FusionCore::progress(Timestamp now) const {

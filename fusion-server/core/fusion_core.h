@@ -4,25 +4,21 @@
 // out.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "fusion-server/associate/plausible.h"
 #include "fusion-server/core/core_config.h"
 #include "fusion-server/core/cross_fade.h"
-#include "fusion-server/core/fates.h"
+#include "fusion-server/core/decided_world.h"
 #include "fusion-server/core/guard.h"
-#include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registrar.h"
+#include "fusion-server/core/sensor_memory.h"
 #include "fusion-server/core/strays.h"
 #include "fusion-server/core/tick_schedule.h"
-#include "fusion-server/core/walked_clocks.h"
 #include "fusion-server/flow/registration.h"
 #include "fusion-server/flow/snapshot.h"
 #include "fusion-server/pipeline/pipeline.h"
-#include "fusion-server/pipeline/smoother.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/sensor_status.h"
 #include "fusion-server/status/session_status.h"
@@ -46,7 +42,7 @@ class FusionCore {
   [[nodiscard]] std::optional<Snapshot> amended(Timestamp now);
   /// Snapshots of seconds ago, fused again with what has been seen since (pipeline/smoother.h),
   /// each once; none unless SmoothingConfig::live.  Call it after each tick.
-  [[nodiscard]] std::vector<Snapshot> smoothed() { return std::exchange(smoothed_, {}); }
+  [[nodiscard]] std::vector<Snapshot> smoothed() { return std::exchange(world_.smoothed, {}); }
   /// For how long nothing will be due unless a frame arrives.
   [[nodiscard]] Duration idle(Timestamp now);
 
@@ -88,28 +84,25 @@ class FusionCore {
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);
   }
-  /// What became of each sensor's frames.
-  [[nodiscard]] const Fates& fates() const noexcept { return fates_; }
-  [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
+  /// What became of the sensor's frames, and how it contributed; of an unknown one: nothing.
+  [[nodiscard]] const SensorMemory& memory_of(const SensorId& sensor) const;
   /// Which sensors do not stand where they were registered, as far as known.
   [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
   /// The alarm as a sentence for people; empty if there is none.
   [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
-  /// What is added to capture times because a walk showed that a sensor's clock is off.
-  [[nodiscard]] const WalkedClocks& walked_clocks() const noexcept { return clocks_; }
   /// What is known of the inertial sources and who wears them; empty while they are not used.
   [[nodiscard]] std::vector<WornReport> worn(Timestamp now) const { return wear_.reports(now); }
   /// How often a sensor lost its place because it was moved.
-  [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
+  [[nodiscard]] std::uint64_t displaced() const noexcept { return guard_.times_displaced(); }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
   /// All persons so far have lower ids.
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:
+  void change_places(Registration before);
   void leave_world();
-  void note_places(const Registration& before);
   [[nodiscard]] bool is_stray(const SensorId& sensor) const;
-  void take_over(Registration before);
+  void note_places(const Registration& before);
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
   void smooth(const pipeline::Inputs& in, const pipeline::Perceived& seen);
   void displace_moved(Timestamp instant);
@@ -121,26 +114,14 @@ class FusionCore {
   TickSchedule schedule_;
   pipeline::Histories histories_;
   pipeline::Memory memory_;
-  pipeline::Smoother smoother_;
-  std::vector<Snapshot> smoothed_;
+  SensorMemories sensors_;
   Registrar registrar_;
-  WalkedClocks clocks_;
-  Fates fates_;
-  std::map<SensorId, associate::FrozenBodies> frozen_;
-  pipeline::Waiting awaited_;           ///< The sensors to wait for at the pending instant.
-  std::uint64_t awaited_by_ = 0;        ///< Sequence of that instant; zero: none.
-  std::vector<SensorId> last_awaited_;  ///< Sensors that the pending instant was still waiting for.
-  Hindsight hindsight_;
-  Shares shares_;
+  DecidedWorld world_;
+  CrossFade fade_;
   std::vector<SensorReport> reports_;
   Guard guard_;
   Strays strays_;
-  CrossFade fade_;
   worn::Wear wear_;
-  /// The old registration, from which to fade; set until the next instant.
-  std::optional<Registration> before_;
-  std::map<SensorId, Timestamp> displaced_at_;  ///< When each sensor last lost its place.
-  std::uint64_t displaced_ = 0;
 };
 
 }  // namespace chorus::core

@@ -83,6 +83,7 @@ std::optional<SensorAlarm> Guard::alarm_of(const SensorId& sensor) const {
 void Guard::displaced(const SensorId& sensor) {
   if (!finding_ || finding_->sensor != sensor) return;
   displaced_[sensor] = core::alarm_of(*finding_);
+  ++times_displaced_;
   finding_.reset();
   watch_.forget();
 }

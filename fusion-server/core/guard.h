@@ -1,6 +1,7 @@
 // Which sensors no longer stand where they were registered, and how that is reported.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -45,6 +46,8 @@ class Guard {
 
   /// Call this when the sensor has lost its place; its alarm lasts until it has a new one.
   void displaced(const SensorId& sensor);
+  /// How often that happened.
+  [[nodiscard]] std::uint64_t times_displaced() const noexcept { return times_displaced_; }
   /// Drops the current finding, and the alarms of sensors that have a place again; all alarms if no
   /// sensor has a place. If any place has changed, what was learned about shifts is forgotten, too.
   void replaced(const Registration& before, const Registration& now);
@@ -55,6 +58,7 @@ class Guard {
   watch::Watch watch_;
   std::optional<watch::Finding> finding_;
   std::map<SensorId, SensorAlarm> displaced_;
+  std::uint64_t times_displaced_ = 0;
 };
 
 }  // namespace chorus::core

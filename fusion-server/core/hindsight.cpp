@@ -1,15 +1,11 @@
 #include "fusion-server/core/hindsight.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace chorus::core {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 512;  // two seconds at 240 Hz
-constexpr double kBlend = 1.0 / 30.0;
-
-void blend(double& average, double now) { average += kBlend * (now - average); }
 
 }  // namespace
 
@@ -44,27 +40,6 @@ std::optional<Answered> Hindsight::due(Timestamp now) {
   Answered oldest = std::move(waiting_.front());
   waiting_.pop_front();
   return oldest;
-}
-
-void Shares::answered(const Snapshot& snapshot, const std::vector<SensorId>& awaited) {
-  for (const SensorId& sensor : snapshot.sensors) {
-    const bool last = std::find(awaited.begin(), awaited.end(), sensor) != awaited.end();
-    blend(shares_[sensor].awaited, last ? 1.0 : 0.0);
-  }
-  for (const auto& [sensor, part] : parts_of(snapshot)) blend(shares_[sensor].in_time, part);
-}
-
-void Shares::settled(const Parts& parts) {
-  for (const auto& [sensor, part] : parts) blend(shares_[sensor].afterwards, part);
-}
-
-void Shares::keep(const std::set<SensorId>& sensors) {
-  std::erase_if(shares_, [&](const auto& entry) { return !sensors.contains(entry.first); });
-}
-
-Share Shares::of(const SensorId& sensor) const {
-  const auto it = shares_.find(sensor);
-  return it == shares_.end() ? Share{} : it->second;
 }
 
 }  // namespace chorus::core

@@ -4,7 +4,6 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "fusion-server/core/tick_schedule.h"
@@ -39,26 +38,6 @@ class Hindsight {
  private:
   Duration delay_;
   std::deque<Answered> waiting_;
-};
-
-/// A sensor's contribution to the fused bodies; averages over about a second, in [0, 1].
-struct Share {
-  double in_time = 0.0;     ///< Fraction of all joints that it contributed to.
-  double afterwards = 0.0;  ///< The same including its late frames, as /frame?at= shows it.
-  double awaited = 0.0;     ///< Fraction of instants that still waited for it when they were fused.
-};
-
-/// The shares of all sensors, updated at each instant.
-class Shares {
- public:
-  void answered(const Snapshot& snapshot, const std::vector<SensorId>& awaited);
-  /// Takes the final contributions of an instant, when no later frame will improve it.
-  void settled(const Parts& parts);
-  [[nodiscard]] Share of(const SensorId& sensor) const;
-  void keep(const std::set<SensorId>& sensors);  ///< Forgets all other sensors.
-
- private:
-  std::map<SensorId, Share> shares_;
 };
 
 }  // namespace chorus::core

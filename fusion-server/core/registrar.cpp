@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "fusion-server/core/accuracy.h"
+#include "fusion-server/core/adoption.h"
 #include "fusion-server/core/awaited.h"
 #include "fusion-server/core/closure.h"
 #include "fusion-server/core/common_clock.h"
@@ -20,7 +21,7 @@ constexpr std::size_t kSessionsKept = 8;
 
 Registrar::Registrar(RegistrarConfig config, Registration registration, std::uint64_t first_session)
     : config_(std::move(config)),
-      registration_(std::move(registration)),
+      places_(std::move(registration)),
       session_(config_.session),
       next_session_(first_session) {}
 
@@ -39,7 +40,7 @@ void Registrar::take(const SensorFrame& frame) {
 
 void Registrar::begin(Duration target, bool automatic, Timestamp now) {
   session_.start(target);
-  before_.reset();
+  places_.settle();
   SessionStatus status;
   status.id = next_session_++;
   status.state = SessionState::Collecting;
@@ -72,7 +73,7 @@ Result<std::uint64_t> Registrar::start(Duration target, Timestamp now, Adoption 
 Result<void> Registrar::cancel(std::uint64_t session, Timestamp now) {
   if (!busy() || sessions_.front().id != session)
     return fail(ErrorCode::NotFound, "registration", "this session does not run");
-  if (take_back()) {
+  if (places_.take_back()) {
     sessions_.front().reasons = {"cancelled; its provisional registration was withdrawn"};
   } else {
     sessions_.front().reasons = {"cancelled"};
@@ -88,7 +89,7 @@ void Registrar::end_session(SessionState state) {
   show_progress(current);
   current.state = state;
   session_.cancel();
-  before_.reset();
+  places_.settle();
   stop_solve_.request_stop();
 }
 
@@ -96,24 +97,15 @@ void Registrar::show_progress(SessionStatus& session) const {
   session.elapsed = seconds(session_.elapsed());
   if (!session.reached) session.target = seconds(session_.target());
   session.pairs = session_.coverage().pairs();
-  session.cells = session_.coverage().cells(registration_);
+  session.cells = session_.coverage().cells(registration());
 }
 
 void Registrar::forget() {
-  (void)take_back();  // a session's own result is not worth going back to
+  (void)places_.take_back();  // a session's own result is not worth going back to
   end_session(SessionState::Cancelled);
-  if (!registration_.sensors.empty()) forgotten_ = anchors_of(registration_);
   drop_proposal("given up: the registration it was compared with was forgotten");
-  lacks_displaced_ = false;
-  keep_earlier(registration_);
   retries_.clear();
-  const std::uint64_t version = registration_.version;
-  registration_ = Registration{};
-  registration_.version = version;
-}
-
-void Registrar::keep_earlier(const Registration& used) {
-  if (!used.sensors.empty()) earlier_ = used;
+  places_.forget();
 }
 
 Result<void> Registrar::unless_busy(const char* what) const {
@@ -125,66 +117,82 @@ Result<void> Registrar::unless_busy(const char* what) const {
 
 Result<void> Registrar::undo() {
   if (auto idle = unless_busy("registration"); !idle) return pass(idle);
-  if (!earlier_)
-    return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
-  Registration back = *earlier_;
-  keep_configured(back, config_.sensors);
-  if (back.sensors.empty())
-    return fail(ErrorCode::NotFound, "registration", "none of its sensors is configured any more");
-  drop_proposal("given up: the registration before was put into use");
-  earlier_.reset();
-  keep_earlier(registration_);
-  lacks_displaced_ = false;
-  replace(std::move(back));
-  return {};
+  auto done = places_.undo(config_.sensors);
+  if (done) drop_proposal("given up: the registration before was put into use");
+  return done;
 }
 
 bool Registrar::displace(const SensorId& sensor, const std::string& reason) {
   constexpr std::ptrdiff_t kLeastPlaced = 3;
-  const auto placed = std::ranges::count_if(registration_.sensors, [&](const auto& entry) {
+  const auto placed = std::ranges::count_if(registration().sensors, [&](const auto& entry) {
     return config_.sensors.contains(entry.first);
   });
-  if (busy() || placed < kLeastPlaced || !registration_.sensors.contains(sensor)) return false;
+  if (busy() || placed < kLeastPlaced || !registration().sensors.contains(sensor)) return false;
   retries_.forget(sensor);
   drop_proposal("given up: " + reason);
-  if (!std::exchange(lacks_displaced_, true)) keep_earlier(registration_);
-  replace(without(registration_, sensor, reason));
+  places_.displace(sensor, reason);
   return true;
 }
 
 Result<void> Registrar::move_origin(const Origin& origin) {
   if (auto idle = unless_busy("origin"); !idle) return pass(idle);
-  auto next = with_origin(registration_, origin);
-  if (!next) return pass(next);
-  if (proposal_) {
-    if (auto moved = with_origin(proposal_->registration, origin))
-      proposal_->registration = std::move(*moved);
-  }
-  lacks_displaced_ = false;
-  keep_earlier(registration_);
-  replace(std::move(*next));
+  return places_.move_origin(origin);
+}
+
+Result<void> Registrar::accept() {
+  if (auto idle = unless_busy("registration"); !idle) return pass(idle);
+  const auto session = places_.accept(config_.sensors);
+  if (!session) return pass(session);
+  if (SessionStatus* own = find_session(*session)) own->adopted = true;
+  for (const auto& [sensor, place] : registration().sensors) retries_.forget(sensor);
   return {};
 }
 
-/// After forget(), users of the output still rely on the old world, so a new registration is moved
-/// into it.
-Result<Registration> Registrar::successor(const Registration& base, const Registration& candidate,
-                                          SolveKind kind) const {
-  auto next = adopted(base, candidate, kind, sessions_.front().automatic);
-  if (!next || !base.sensors.empty()) return next;
-  return in_world_of(forgotten_, std::move(*next));
+Result<void> Registrar::decline() {
+  if (!proposal())
+    return fail(ErrorCode::NotFound, "registration", "no registration waits to be accepted");
+  drop_proposal("declined; the registration from before stays in use");
+  return {};
+}
+
+SessionStatus* Registrar::find_session(std::uint64_t id) {
+  const auto own = std::ranges::find(sessions_, id, &SessionStatus::id);
+  return own == sessions_.end() ? nullptr : &*own;
+}
+
+/// Forgets the proposal, and adds `reason` to the session that made it, if that is still listed.
+void Registrar::drop_proposal(const std::string& reason) {
+  const auto session = places_.drop_proposal();
+  if (!session) return;
+  if (SessionStatus* own = find_session(*session)) own->reasons.push_back(reason);
+}
+
+bool Registrar::asks_first(const SessionStatus& session) const {
+  return session.adoption == Adoption::WhenAccepted && !places_.settled().sensors.empty();
+}
+
+Outcome Registrar::propose(Registration next, const Registration& candidate, Timestamp now) {
+  // A session that began by itself may have adopted something before a client took it over.
+  const bool withdrawn = places_.take_back();
+  drop_proposal("replaced by another proposal");
+  auto changes = place_changes(registration(), next);
+  places_.propose({sessions_.front().id, std::move(next), std::move(changes)});
+  sessions_.front().adopted = false;
+  back_off(candidate, now);
+  end_session(SessionState::Done);
+  return withdrawn ? Outcome::Withdrawn : Outcome::Nothing;
 }
 
 bool Registrar::waits(const SensorId& sensor, Timestamp now) const {
-  return !registration_.sensors.empty() && retries_.waits(sensor, now);
+  return !registration().sensors.empty() && retries_.waits(sensor, now);
 }
 
 void Registrar::start_by_itself(Timestamp now) {
-  if (!config_.session.automatic || busy() || proposal_ || now < retries_.not_before()) return;
+  if (!config_.session.automatic || busy() || proposal() || now < retries_.not_before()) return;
   const std::set<SensorId> seeing = last_seen_.seeing(now);
   // A single sensor has no partner to be registered with, unless it is the only one there is.
   const bool enough = seeing.size() >= 2 || (seeing.size() == 1 && config_.sensors.size() == 1);
-  std::set<SensorId> missing = unplaced(registration_, seeing);
+  std::set<SensorId> missing = unplaced(registration(), seeing);
   std::erase_if(missing, [&](const SensorId& sensor) { return waits(sensor, now); });
   if (enough && !missing.empty()) begin(config_.session.target, true, now);
 }
@@ -205,32 +213,19 @@ std::optional<SolveJob> Registrar::due_job(Timestamp now) {
   SolveJob job{sessions_.front().id, *kind, session_.walk(), config_.registration,
                stop_solve_.get_token()};
   // The world must not jump from solve to solve: the master stays as long as it takes part.
-  const SensorId& master = registration_.master;
+  const SensorId& master = registration().master;
   const bool walks = std::any_of(job.walk.begin(), job.walk.end(),
                                  [&](const SharedTrack& track) { return track.sensor == master; });
-  if (!job.config.master && walks && registration_.sensors.contains(master)) {
+  if (!job.config.master && walks && registration().sensors.contains(master)) {
     job.config.master = master;
   }
   return job;
 }
 
-void Registrar::replace(Registration next) {
-  const std::uint64_t version = registration_.version + 1;
-  registration_ = std::move(next);
-  registration_.version = version;
-}
-
-bool Registrar::take_back() {
-  if (!before_) return false;
-  replace(std::move(*before_));
-  before_.reset();
-  return true;
-}
-
 std::vector<std::string> Registrar::shortfalls(const Registration& candidate) const {
   std::vector<std::string> reasons = candidate.reasons;
   std::vector<std::string> missing;
-  for (const auto& [sensor, place] : registration_.sensors) {
+  for (const auto& [sensor, place] : registration().sensors) {
     if (!candidate.sensors.contains(sensor)) missing.push_back(sensor.str());
   }
   if (missing.empty()) return reasons;
@@ -251,9 +246,7 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
   session_.solved_in(solution.cost);
   note_closure(solution.registration);
   keep_near_ours(solution.registration);
-  // Places of sensors that are no longer configured must not constrain the new registration.
-  keep_configured(registration_, config_.sensors);
-  if (before_) keep_configured(*before_, config_.sensors);
+  places_.keep(config_.sensors);
   sessions_.front().verdict = solution.registration.verdict;
   sessions_.front().reasons = solution.registration.reasons;
   sessions_.front().accuracy = accuracy_of(solution.registration);
@@ -263,17 +256,17 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
 
 Outcome Registrar::settle_provisional(const Registration& candidate) {
   SessionStatus& current = sessions_.front();
-  if (!current.reached && accurate_enough(candidate, before_ ? *before_ : registration_,
-                                          config_.session.target_radius)) {
+  if (!current.reached &&
+      accurate_enough(candidate, places_.settled(), config_.session.target_radius)) {
     current.reached = true;
     current.target = seconds(session_.target());
     session_.finish();
   }
   if (asks_first(current)) return Outcome::Nothing;
-  auto next = successor(registration_, candidate, SolveKind::Provisional);
+  auto next =
+      places_.successor(registration(), candidate, SolveKind::Provisional, current.automatic);
   if (!next) return Outcome::Nothing;
-  if (!before_) before_ = registration_;
-  replace(std::move(*next));
+  places_.adopt_provisionally(std::move(*next));
   current.adopted = true;
   return Outcome::Adopted;
 }
@@ -282,21 +275,19 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
 /// not count.
 Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   SessionStatus& current = sessions_.front();
-  auto next = successor(before_ ? *before_ : registration_, candidate, SolveKind::Final);
+  auto next = places_.successor(places_.settled(), candidate, SolveKind::Final, current.automatic);
   if (next && asks_first(current)) return propose(std::move(*next), candidate, now);
   current.adopted = next.has_value();
   Outcome outcome = Outcome::Adopted;
   if (next) {
     drop_proposal("replaced by the result of a later session");
-    if (!std::exchange(lacks_displaced_, false)) keep_earlier(before_ ? *before_ : registration_);
-    replace(std::move(*next));
+    places_.adopt(std::move(*next));
   } else {
-    const bool withdrawn = take_back();
+    const bool withdrawn = places_.take_back();
     explain_refusal(candidate, next.error(), withdrawn);
-    if (next.error().message == kContradicted) note_contradiction(registration_);
     outcome = withdrawn ? Outcome::Withdrawn : Outcome::Nothing;
   }
-  note_refusals(registration_, candidate);
+  places_.note(candidate, !next && next.error().message == kContradicted);
   back_off(candidate, now);
   end_session(SessionState::Done);
   return outcome;
@@ -304,7 +295,7 @@ Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
 
 void Registrar::explain_refusal(const Registration& candidate, const Error& why, bool withdrawn) {
   SessionStatus& current = sessions_.front();
-  const bool none = registration_.sensors.empty();
+  const bool none = registration().sensors.empty();
   // An automatic session concerns only the sensors without a place.
   if (current.automatic && !none) current.verdict = Verdict::Refused;
   current.reasons = shortfalls(candidate);
@@ -318,7 +309,7 @@ void Registrar::explain_refusal(const Registration& candidate, const Error& why,
 
 void Registrar::back_off(const Registration& candidate, Timestamp now) {
   for (const auto& [sensor, own] : candidate.verdicts) {
-    if (registration_.sensors.contains(sensor))
+    if (registration().sensors.contains(sensor))
       retries_.forget(sensor);
     else
       retries_.failed(sensor, now);
@@ -334,11 +325,11 @@ std::vector<SessionStatus> Registrar::sessions() const {
 std::vector<std::string> Registrar::awaits(Timestamp now) const {
   const auto all = sessions();
   Situation situation{
-      config_.sensors,           registration_, last_seen_, nullptr,
-      config_.session.automatic, std::nullopt,  now,        config_.registration.good_position};
+      config_.sensors,           registration(), last_seen_, nullptr,
+      config_.session.automatic, std::nullopt,   now,        config_.registration.good_position};
   if (busy()) situation.session = &all.front();
   situation.retry = retry_in(now);
-  situation.proposes = proposal_.has_value();
+  situation.proposes = proposal().has_value();
   return awaited(situation);
 }
 
@@ -346,7 +337,7 @@ std::vector<std::string> Registrar::awaits(Timestamp now) const {
 /// now.
 std::optional<Duration> Registrar::retry_in(Timestamp now) const {
   std::optional<Timestamp> first;
-  for (const SensorId& sensor : unplaced(registration_, last_seen_.seeing(now))) {
+  for (const SensorId& sensor : unplaced(registration(), last_seen_.seeing(now))) {
     const Timestamp at = waits(sensor, now) ? *retries_.waits(sensor, now) : now;
     first = std::min(first.value_or(at), at);
   }

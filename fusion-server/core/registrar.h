@@ -14,12 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "fusion-server/core/adoption.h"
 #include "fusion-server/core/last_seen.h"
+#include "fusion-server/core/places_in_use.h"
 #include "fusion-server/core/registration_session.h"
 #include "fusion-server/core/retries.h"
 #include "fusion-server/core/solve_job.h"
-#include "fusion-server/core/world.h"
 #include "fusion-server/flow/registration.h"
 #include "fusion-server/status/registration_progress.h"
 #include "fusion-server/status/session_status.h"
@@ -57,10 +56,14 @@ class Registrar {
   /// Keeps the registration in use and forgets the proposed one; NotFound when none is proposed.
   [[nodiscard]] Result<void> decline();
   /// No session starts by itself while there is one.
-  [[nodiscard]] const std::optional<Proposal>& proposal() const noexcept { return proposal_; }
+  [[nodiscard]] const std::optional<Proposal>& proposal() const noexcept {
+    return places_.proposal();
+  }
   /// The registration that undo() goes back to; set at the start from what is stored.
-  [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }
-  void set_earlier(Registration registration) { earlier_ = std::move(registration); }
+  [[nodiscard]] const std::optional<Registration>& earlier() const noexcept {
+    return places_.earlier();
+  }
+  void set_earlier(Registration registration) { places_.set_earlier(std::move(registration)); }
 
   /// Removes the place of a sensor that was moved. The others keep theirs, and a session for this
   /// sensor may start at once. False while a session is running, if the sensor has no place, or if
@@ -73,9 +76,9 @@ class Registrar {
   [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now);
   Outcome solved(Solution solution, Timestamp now);
 
-  [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
+  [[nodiscard]] const Registration& registration() const noexcept { return places_.now(); }
   /// Whether that is a provisional one of the running session.
-  [[nodiscard]] bool own_provisional() const noexcept { return before_.has_value(); }
+  [[nodiscard]] bool own_provisional() const noexcept { return places_.provisional(); }
   [[nodiscard]] const LastSeen& last_seen() const noexcept { return last_seen_; }
   /// The last sessions, newest first.
   [[nodiscard]] std::vector<SessionStatus> sessions() const;
@@ -92,14 +95,10 @@ class Registrar {
   void start_by_itself(Timestamp now);
   void end_session(SessionState state);
   void show_progress(SessionStatus& session) const;
-  [[nodiscard]] Result<Registration> successor(const Registration& base,
-                                               const Registration& candidate, SolveKind kind) const;
-  void replace(Registration next);
-  void keep_earlier(const Registration& used);
+  [[nodiscard]] SessionStatus* find_session(std::uint64_t id);
   [[nodiscard]] bool asks_first(const SessionStatus& session) const;
   Outcome propose(Registration next, const Registration& candidate, Timestamp now);
   void drop_proposal(const std::string& reason);
-  [[nodiscard]] bool take_back();
   Outcome settle_provisional(const Registration& candidate);
   Outcome settle_final(const Registration& candidate, Timestamp now);
   void explain_refusal(const Registration& candidate, const Error& why, bool withdrawn);
@@ -109,21 +108,11 @@ class Registrar {
   [[nodiscard]] std::optional<Duration> retry_in(Timestamp now) const;
 
   RegistrarConfig config_;
-  Registration registration_;
+  PlacesInUse places_;
   RegistrationSession session_;
   LastSeen last_seen_;
   std::uint64_t next_session_;
   std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
-  /// The registration from before the session; set while the session's own provisional one is in
-  /// use.
-  std::optional<Registration> before_;
-  /// What undo() goes back to; never a provisional registration of a session.
-  std::optional<Registration> earlier_;
-  std::optional<Proposal> proposal_;
-  /// True if `earlier_` is from before a sensor was displaced; the session that registers the
-  /// sensor again keeps `earlier_`.
-  bool lacks_displaced_ = false;
-  Anchors forgotten_;  ///< Of the last registration that was forgotten.
   bool solving_ = false;
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;

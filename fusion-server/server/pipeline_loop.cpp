@@ -268,26 +268,25 @@ SensorStatus PipelineLoop::status_of(const client::FollowReport& report, Timesta
   SensorStatus status;
   status.id = report.service.id;
   status.url = report.service.url;
-  const auto walked = core_.walked_clocks().of(report.service.id);
-  if (report.newest)
-    status.age = now - *report.newest - core_.walked_clocks().added_to(report.service.id);
+  const core::SensorMemory& memory = core_.memory_of(report.service.id);
+  const auto& walked = memory.clock.walked();
+  if (report.newest) status.age = now - *report.newest - memory.clock.added();
   const bool silent =
       report.state == client::SensorState::Live && status.age && *status.age > kStale;
   status.state = client::name_of(silent ? client::SensorState::Lost : report.state);
   status.last_error = report.last_error;
-  if (status.last_error.empty())
-    status.last_error = core_.fates().complaint(report.service.id, now);
+  if (status.last_error.empty()) status.last_error = memory.losses.complaint(now);
   status.streaming = report.streaming;
   status.rate_hz = report.rate_hz;
   status.frames = report.frames;
   status.missed = report.missed;
   status.failures = report.failures;
-  status.fates = core_.fates().of(report.service.id);
+  status.fates = memory.losses.counts();
   status.fates.early += report.early;
   status.fates.stale += report.stale;
   status.refused = refused(status.fates);
   const bool lost = silent || report.state == client::SensorState::Lost;
-  const core::Share share = lost ? core::Share{} : core_.share(report.service.id);
+  const core::Share share = lost ? core::Share{} : memory.share;
   status.share = share.in_time;
   status.share_afterwards = share.afterwards;
   status.awaited = share.awaited;

@@ -107,7 +107,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
   SensorFrame back = sight(0, milliseconds(300));
   back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
-  EXPECT_EQ(core.fates().of(sensor_id("s1")).backwards, 1u);
+  EXPECT_EQ(core.memory_of(sensor_id("s1")).losses.counts().backwards, 1u);
   SensorFrame stranger = sight(0, milliseconds(600));
   stranger.sensor = sensor_id("s9");
   core.take(stranger);
@@ -214,8 +214,8 @@ TEST(FusionCore, CountsBodiesOfSensorsWithoutAPlace) {
             std::chrono::seconds(4));  // shares are averaged over about one second
   const Timestamp now = kStart + std::chrono::seconds(4);
   for (int i = 0; i < kSensors; ++i) EXPECT_EQ(core.bodies(sensor_id(name(i)), now), 1u);
-  EXPECT_GT(core.share(sensor_id("s1")).in_time, 0.9);
-  EXPECT_EQ(core.share(sensor_id("s3")).in_time, 0.0);
+  EXPECT_GT(core.memory_of(sensor_id("s1")).share.in_time, 0.9);
+  EXPECT_EQ(core.memory_of(sensor_id("s3")).share.in_time, 0.0);
   // A sensor that falls silent no longer has bodies.
   (void)run(core, std::chrono::seconds(4), std::chrono::seconds(3), 1);
   EXPECT_EQ(core.bodies(sensor_id("s2"), kStart + std::chrono::seconds(7)), 0u);
@@ -317,18 +317,18 @@ TEST(FusionCore, OneBadLinkCostsTheOthersAtMostThirtyMillisecondsAndIsUsedAfterw
     used += snapshot->bodies.at(0).contributors[index_of(JointId::Neck)] == 0b111U ? 1 : 0;
   }
   EXPECT_GE(used, 0.95 * all);
-  const Share share = core.share(sensor_id("s3"));
+  const Share share = core.memory_of(sensor_id("s3")).share;
   EXPECT_LT(share.in_time, 0.5);
   EXPECT_GT(share.afterwards, 0.9);
-  EXPECT_GT(core.share(sensor_id("s1")).in_time, 0.9);
+  EXPECT_GT(core.memory_of(sensor_id("s1")).share.in_time, 0.9);
 }
 
 TEST(FusionCore, SaysWhoIsWaitedFor) {
   FusionCore core(config(), ring());
   (void)run_delayed(core, std::chrono::seconds(5),
                     [](std::uint64_t i) { return milliseconds(i * 7919 % 91); });
-  EXPECT_GT(core.share(sensor_id("s3")).awaited, 0.5);
-  EXPECT_LT(core.share(sensor_id("s1")).awaited, 0.5);
+  EXPECT_GT(core.memory_of(sensor_id("s3")).share.awaited, 0.5);
+  EXPECT_LT(core.memory_of(sensor_id("s1")).share.awaited, 0.5);
 }
 
 TEST(FusionCore, WithoutLateFramesNothingIsAmended) {
@@ -341,12 +341,12 @@ TEST(FusionCore, WithoutLateFramesNothingIsAmended) {
 TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, milliseconds(500));
-  EXPECT_EQ(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.memory_of(sensor_id("s1")).losses.complaint(kStart + milliseconds(500)), "");
   SensorFrame back = sight(0, milliseconds(300));
   back.sequence = ~std::uint64_t{0};  // by its number, newer than all other frames
   core.take(back);
-  EXPECT_NE(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
-  EXPECT_EQ(core.fates().complaint(sensor_id("s1"), kStart + std::chrono::seconds(4)), "");
+  EXPECT_NE(core.memory_of(sensor_id("s1")).losses.complaint(kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.memory_of(sensor_id("s1")).losses.complaint(kStart + std::chrono::seconds(4)), "");
 }
 
 TEST(FusionCore, ASensorThatWasTakenOutComesBackWithoutItsPast) {
@@ -355,14 +355,14 @@ TEST(FusionCore, ASensorThatWasTakenOutComesBackWithoutItsPast) {
   SensorFrame back = sight(0, milliseconds(300));
   back.sequence = ~std::uint64_t{0};
   core.take(back);
-  ASSERT_NE(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
-  ASSERT_GT(core.share(sensor_id("s1")).in_time, 0.0);
+  ASSERT_NE(core.memory_of(sensor_id("s1")).losses.complaint(kStart + milliseconds(500)), "");
+  ASSERT_GT(core.memory_of(sensor_id("s1")).share.in_time, 0.0);
   CoreConfig fewer = config();
   fewer.sensors.erase(sensor_id("s1"));
   core.reconfigure(fewer);
   core.reconfigure(config());
-  EXPECT_EQ(core.fates().complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
-  EXPECT_EQ(core.share(sensor_id("s1")).in_time, 0.0);
+  EXPECT_EQ(core.memory_of(sensor_id("s1")).losses.complaint(kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.memory_of(sensor_id("s1")).share.in_time, 0.0);
 }
 
 TEST(FusionCore, BodiesThatNobodyHasAreLeftOutByName) {
@@ -381,10 +381,11 @@ TEST(FusionCore, BodiesThatNobodyHasAreLeftOutByName) {
     }
     while (const auto snapshot = core.tick(kStart + t)) EXPECT_LE(snapshot->bodies.size(), 1u);
   }
-  EXPECT_NE(
-      core.fates().complaint(sensor_id("s1"), kStart + std::chrono::seconds(2)).find("max_range_m"),
-      std::string::npos);
-  EXPECT_EQ(core.fates().complaint(sensor_id("s2"), kStart + std::chrono::seconds(2)), "");
+  EXPECT_NE(core.memory_of(sensor_id("s1"))
+                .losses.complaint(kStart + std::chrono::seconds(2))
+                .find("max_range_m"),
+            std::string::npos);
+  EXPECT_EQ(core.memory_of(sensor_id("s2")).losses.complaint(kStart + std::chrono::seconds(2)), "");
 }
 
 }  // namespace

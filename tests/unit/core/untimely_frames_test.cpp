@@ -43,12 +43,13 @@ TEST(UntimelyFrames, AClockThatAWalkToldIsAddedAndUndoneWithIt) {
   EXPECT_EQ(core.solved({1, SolveKind::Final, walked}, kStart + std::chrono::seconds(3)),
             Outcome::Adopted);
   EXPECT_EQ(feed(std::chrono::seconds(3), std::chrono::seconds(2)), 0b111U);
-  EXPECT_EQ(core.walked_clocks().of(sensor_id("s3"))->added, off);
-  EXPECT_EQ(core.fates().of(sensor_id("s3")), FrameFates{}) << "nothing is lost by the change";
+  EXPECT_EQ(core.memory_of(sensor_id("s3")).clock.walked()->added, off);
+  EXPECT_EQ(core.memory_of(sensor_id("s3")).losses.counts(), FrameFates{})
+      << "nothing is lost by the change";
   ASSERT_TRUE(core.undo());
   EXPECT_EQ(feed(std::chrono::seconds(5), std::chrono::seconds(2)), 0b011U);
-  EXPECT_FALSE(core.walked_clocks().of(sensor_id("s3")));
-  EXPECT_EQ(core.fates().of(sensor_id("s3")), FrameFates{});
+  EXPECT_FALSE(core.memory_of(sensor_id("s3")).clock.walked());
+  EXPECT_EQ(core.memory_of(sensor_id("s3")).losses.counts(), FrameFates{});
 }
 
 TEST(UntimelyFrames, AreCountedByWhatBecameOfThem) {
@@ -68,14 +69,17 @@ TEST(UntimelyFrames, AreCountedByWhatBecameOfThem) {
   send(std::chrono::seconds(1), 5, std::chrono::seconds(3));   // too late to be of use
   FrameFates expected;
   expected.late = expected.doubled = expected.early = expected.stale = 1;
-  EXPECT_EQ(core.fates().of(s1), expected);
-  EXPECT_NE(core.fates().complaint(s1, kStart + std::chrono::seconds(3)).find("holds frames back"),
+  EXPECT_EQ(core.memory_of(s1).losses.counts(), expected);
+  EXPECT_NE(core.memory_of(s1)
+                .losses.complaint(kStart + std::chrono::seconds(3))
+                .find("holds frames back"),
             std::string::npos);
   for (const std::uint64_t sequence : {14U, 15U, 16U})
     send(milliseconds(2600 + 33 * static_cast<int>(sequence - 14)), sequence,
          milliseconds(3000 + 33 * static_cast<int>(sequence - 13)));
-  EXPECT_EQ(core.fates().of(s1).restarts, 1U);
-  EXPECT_EQ(core.fates().of(s1).backwards, 1U) << "the stale one was the first of three";
+  EXPECT_EQ(core.memory_of(s1).losses.counts().restarts, 1U);
+  EXPECT_EQ(core.memory_of(s1).losses.counts().backwards, 1U)
+      << "the stale one was the first of three";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Corrects the capture times of frames by the clock offsets and latencies that a walk has
+// Corrects the capture times of a sensor's frames by the clock offset and latency that a walk has
 // determined.
 //
 // A walk shows by how much each clock was off during the walk. A host that does not answer with its
@@ -10,7 +10,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <optional>
 
 #include "common/sensor/sensor_frame.h"
@@ -58,43 +57,31 @@ struct WalkedClock {
   bool operator==(const WalkedClock&) const = default;
 };
 
-class WalkedClocks {
+class ClockCorrection {
  public:
-  /// Takes a frame as the poller gives it; returns by how much the correction of this sensor's
+  /// Takes a frame of the sensor as the poller gives it; returns by how much the correction of its
   /// capture times has changed.  Frames that were corrected before have to be moved by this
   /// difference.
   Duration take(const SensorFrame& frame, const Registration& registration);
 
-  /// None: no clock offset is added to this sensor's capture times.
-  [[nodiscard]] std::optional<WalkedClock> of(const SensorId& sensor) const;
+  /// None: no clock offset is added to the sensor's capture times.
+  [[nodiscard]] const std::optional<WalkedClock>& walked() const noexcept { return applied_; }
   /// What is added to them: the clock offset, and what takes off the sensor's latency.
-  [[nodiscard]] Duration added_to(const SensorId& sensor) const;
-  /// Forgets sensors that are no longer configured.
-  template <class Sensors>
-  void keep(const Sensors& sensors) {
-    std::erase_if(states_, [&](const auto& entry) { return !sensors.contains(entry.first); });
+  [[nodiscard]] Duration added() const {
+    return latency_ + (applied_ ? applied_->added : Duration{0});
   }
 
  private:
-  struct State {
-    LeastAge least;
-    std::optional<WalkedClock> applied;
-    Duration latency{0};  ///< Added because of the sensor's latency.
-    /// Version of the registration whose offset is no longer added because the host's own estimate
-    /// has become better.
-    std::optional<std::uint64_t> outdone_by;
-
-    [[nodiscard]] Duration added() const {
-      return latency + (applied ? applied->added : Duration{0});
-    }
-  };
-
-  static void follow_clock(State& state, const SensorFrame& frame,
+  void follow_clock(const SensorFrame& frame, const Registration& registration);
+  [[nodiscard]] bool holds(const ClockOffset& clock, const SensorFrame& frame,
                            const Registration& registration);
-  [[nodiscard]] static bool holds(State& state, const ClockOffset& clock, const SensorFrame& frame,
-                                  const Registration& registration);
 
-  std::map<SensorId, State> states_;
+  LeastAge least_;
+  std::optional<WalkedClock> applied_;
+  Duration latency_{0};  ///< Added because of the sensor's latency.
+  /// Version of the registration whose offset is no longer added because the host's own estimate
+  /// has become better.
+  std::optional<std::uint64_t> outdone_by_;
 };
 
 }  // namespace chorus::core

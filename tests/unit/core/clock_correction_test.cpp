@@ -1,6 +1,6 @@
-// The clock offsets that a walk found are added to capture times, and are followed while clocks
+// The clock offsets that a walk found are added to capture times, and are followed while clock
 // drift.
-#include "fusion-server/core/walked_clocks.h"
+#include "fusion-server/core/clock_correction.h"
 
 #include <gtest/gtest.h>
 
@@ -34,82 +34,82 @@ Registration walked() {
   return registration;
 }
 
-Duration added(const WalkedClocks& clocks) {
-  const auto own = clocks.of(sensor_id("s2"));
+Duration added(const ClockCorrection& clock) {
+  const auto& own = clock.walked();
   return own ? own->added : Duration{0};
 }
 
 /// Takes frames from `from` on for `length`; returns the sum of the moves that take() asked for.
 template <class Behind>
-Duration run(WalkedClocks& clocks, const Registration& registration, Duration from, Duration length,
-             const Behind& behind) {
+Duration run(ClockCorrection& clock, const Registration& registration, Duration from,
+             Duration length, const Behind& behind) {
   Duration moved{0};
   for (Duration t = from; t < from + length; t += kFrame)
-    moved += clocks.take(frame_at(t, behind(t)), registration);
+    moved += clock.take(frame_at(t, behind(t)), registration);
   return moved;
 }
 
 constexpr auto kAsWalked = [](Duration) { return kOff; };
 
-TEST(WalkedClocks, TheFirstFrameIsMovedAndTheRestStays) {
-  WalkedClocks clocks;
-  EXPECT_EQ(clocks.take(frame_at(Duration{0}, kOff), walked()), kOff);
-  EXPECT_EQ(run(clocks, walked(), kFrame, std::chrono::seconds(60), kAsWalked), Duration{0});
-  EXPECT_EQ(added(clocks), kOff);
+TEST(ClockCorrection, TheFirstFrameIsMovedAndTheRestStays) {
+  ClockCorrection clock;
+  EXPECT_EQ(clock.take(frame_at(Duration{0}, kOff), walked()), kOff);
+  EXPECT_EQ(run(clock, walked(), kFrame, std::chrono::seconds(60), kAsWalked), Duration{0});
+  EXPECT_EQ(added(clock), kOff);
 }
 
-TEST(WalkedClocks, WithoutTheRegistrationEverythingIsAsBefore) {
-  WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);
-  EXPECT_EQ(clocks.take(frame_at(std::chrono::seconds(5), kOff), ring()), -kOff);
-  EXPECT_FALSE(clocks.of(sensor_id("s2")));
+TEST(ClockCorrection, WithoutTheRegistrationEverythingIsAsBefore) {
+  ClockCorrection clock;
+  (void)run(clock, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);
+  EXPECT_EQ(clock.take(frame_at(std::chrono::seconds(5), kOff), ring()), -kOff);
+  EXPECT_FALSE(clock.walked());
 }
 
-TEST(WalkedClocks, LatenciesAreTakenOffWhateverTheClock) {
+TEST(ClockCorrection, LatenciesAreTakenOffWhateverTheClock) {
   Registration registration = walked();
   registration.latencies[sensor_id("s2")] = {milliseconds(40), milliseconds(2), true};
-  WalkedClocks clocks;
-  EXPECT_EQ(clocks.take(frame_at(Duration{0}, kOff), registration), kOff - milliseconds(40));
-  EXPECT_EQ(clocks.added_to(sensor_id("s2")), kOff - milliseconds(40));
-  EXPECT_EQ(added(clocks), kOff) << "the clock's own part";
+  ClockCorrection clock;
+  EXPECT_EQ(clock.take(frame_at(Duration{0}, kOff), registration), kOff - milliseconds(40));
+  EXPECT_EQ(clock.added(), kOff - milliseconds(40));
+  EXPECT_EQ(added(clock), kOff) << "the clock's own part";
   SensorFrame exact = frame_at(kFrame, Duration{0});
   exact.clock_sigma = 1e-4;
-  EXPECT_EQ(clocks.take(exact, registration), -kOff) << "the clock is known now";
+  EXPECT_EQ(clock.take(exact, registration), -kOff) << "the clock is known now";
   registration.latencies.at(sensor_id("s2")).applied = false;
-  EXPECT_EQ(clocks.take(exact, registration), milliseconds(40)) << "only told";
-  EXPECT_EQ(clocks.added_to(sensor_id("s2")), Duration{0});
+  EXPECT_EQ(clock.take(exact, registration), milliseconds(40)) << "only told";
+  EXPECT_EQ(clock.added(), Duration{0});
 }
 
-TEST(WalkedClocks, AHostThatBeginsToAnswerWithItsTimeIsBelievedInstead) {
-  WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);
+TEST(ClockCorrection, AHostThatBeginsToAnswerWithItsTimeIsBelievedInstead) {
+  ClockCorrection clock;
+  (void)run(clock, walked(), Duration{0}, std::chrono::seconds(5), kAsWalked);
   SensorFrame corrected = frame_at(std::chrono::seconds(5), Duration{0});
   corrected.clock_sigma =
       0.02;  // less precise than what the walk found, but it is for these very stamps
-  EXPECT_EQ(clocks.take(corrected, walked()), -kOff);
+  EXPECT_EQ(clock.take(corrected, walked()), -kOff);
 }
 
-TEST(WalkedClocks, WhatAWalkAddedToAnsweredTimesHoldsUntilTheAnswersKnowBetter) {
+TEST(ClockCorrection, WhatAWalkAddedToAnsweredTimesHoldsUntilTheAnswersKnowBetter) {
   Registration registration = walked();
   registration.clocks.at(sensor_id("s2")).stated = milliseconds(20);
-  WalkedClocks clocks;
+  ClockCorrection clock;
   SensorFrame frame = frame_at(Duration{0}, Duration{0});
   frame.clock_sigma = 0.02;
-  EXPECT_EQ(clocks.take(frame, registration), kOff);
+  EXPECT_EQ(clock.take(frame, registration), kOff);
   frame.captured += kFrame;
   frame.clock_sigma = 0.003;
-  EXPECT_EQ(clocks.take(frame, registration), -kOff);
+  EXPECT_EQ(clock.take(frame, registration), -kOff);
 }
 
-TEST(WalkedClocks, AnEstimateThatHasImprovedHasMovedAwayFromTheWalk) {
+TEST(ClockCorrection, AnEstimateThatHasImprovedHasMovedAwayFromTheWalk) {
   Registration registration = walked();  // sigma 4 ms
   registration.clocks.at(sensor_id("s2")).stated = milliseconds(20);
-  WalkedClocks clocks;
+  ClockCorrection clock;
   SensorFrame frame = frame_at(Duration{0}, Duration{0});
   const auto take = [&](double sigma) {
     frame.captured += kFrame;
     frame.clock_sigma = sigma;
-    return clocks.take(frame, registration);
+    return clock.take(frame, registration);
   };
   EXPECT_EQ(take(0.020), kOff);
   EXPECT_EQ(take(0.016), Duration{0});
@@ -122,57 +122,56 @@ TEST(WalkedClocks, AnEstimateThatHasImprovedHasMovedAwayFromTheWalk) {
   EXPECT_EQ(take(0.020), kOff) << "another walk";
 }
 
-TEST(WalkedClocks, AfterASilenceOneLateFrameSetsNoClock) {
-  WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+TEST(ClockCorrection, AfterASilenceOneLateFrameSetsNoClock) {
+  ClockCorrection clock;
+  (void)run(clock, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
   const Duration later = std::chrono::seconds(55);
-  EXPECT_EQ(clocks.take(frame_at(later, kOff, milliseconds(900)), walked()), Duration{0});
-  EXPECT_EQ(run(clocks, walked(), later + kFrame, std::chrono::seconds(10), kAsWalked),
-            Duration{0});
-  EXPECT_EQ(added(clocks), kOff);
+  EXPECT_EQ(clock.take(frame_at(later, kOff, milliseconds(900)), walked()), Duration{0});
+  EXPECT_EQ(run(clock, walked(), later + kFrame, std::chrono::seconds(10), kAsWalked), Duration{0});
+  EXPECT_EQ(added(clock), kOff);
   // A clock that was set during a silence is followed after it.
-  (void)run(clocks, walked(), std::chrono::seconds(120), std::chrono::seconds(4),
+  (void)run(clock, walked(), std::chrono::seconds(120), std::chrono::seconds(4),
             [](Duration) { return milliseconds(500); });
-  EXPECT_EQ(added(clocks), milliseconds(500));
+  EXPECT_EQ(added(clock), milliseconds(500));
 }
 
-TEST(WalkedClocks, ADriftingClockIsFollowed) {
-  WalkedClocks clocks;
+TEST(ClockCorrection, ADriftingClockIsFollowed) {
+  ClockCorrection clock;
   const auto drifting = [](Duration t) { return kOff + t / 10'000; };  // 100 ppm
-  (void)run(clocks, walked(), Duration{0}, std::chrono::minutes(20), drifting);
-  EXPECT_NEAR(chorus::seconds(added(clocks)), 0.200 + 0.120, 0.008);
+  (void)run(clock, walked(), Duration{0}, std::chrono::minutes(20), drifting);
+  EXPECT_NEAR(chorus::seconds(added(clock)), 0.200 + 0.120, 0.008);
 }
 
-TEST(WalkedClocks, ASetClockIsFollowedWithinSeconds) {
-  WalkedClocks ahead;
+TEST(ClockCorrection, ASetClockIsFollowedWithinSeconds) {
+  ClockCorrection ahead;
   (void)run(ahead, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
   (void)run(ahead, walked(), std::chrono::seconds(10), 4 * kFrame,
             [](Duration) { return milliseconds(-300); });
   EXPECT_EQ(added(ahead), milliseconds(-300));
-  WalkedClocks back;
+  ClockCorrection back;
   (void)run(back, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
   (void)run(back, walked(), std::chrono::seconds(10), std::chrono::seconds(4),
             [](Duration) { return milliseconds(900); });
   EXPECT_EQ(added(back), milliseconds(900));
 }
 
-TEST(WalkedClocks, ALinkThatHasBecomeSlowerIsNoClock) {
-  WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+TEST(ClockCorrection, ALinkThatHasBecomeSlowerIsNoClock) {
+  ClockCorrection clock;
+  (void)run(clock, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
   for (Duration t = std::chrono::seconds(10); t < std::chrono::seconds(40); t += kFrame)
-    (void)clocks.take(frame_at(t, kOff, milliseconds(260)), walked());
-  EXPECT_EQ(added(clocks), kOff);
+    (void)clock.take(frame_at(t, kOff, milliseconds(260)), walked());
+  EXPECT_EQ(added(clock), kOff);
 }
 
-TEST(WalkedClocks, OddFramesAndABusyLinkChangeNothing) {
-  WalkedClocks clocks;
-  (void)run(clocks, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
-  (void)clocks.take(frame_at(std::chrono::seconds(10), milliseconds(-500)),
-                    walked());  // one from the future
-  EXPECT_EQ(added(clocks), kOff);
+TEST(ClockCorrection, OddFramesAndABusyLinkChangeNothing) {
+  ClockCorrection clock;
+  (void)run(clock, walked(), Duration{0}, std::chrono::seconds(10), kAsWalked);
+  (void)clock.take(frame_at(std::chrono::seconds(10), milliseconds(-500)),
+                   walked());  // one from the future
+  EXPECT_EQ(added(clock), kOff);
   for (Duration t = std::chrono::seconds(10) + kFrame; t < std::chrono::seconds(30); t += kFrame)
-    (void)clocks.take(frame_at(t, kOff, milliseconds(60)), walked());
-  EXPECT_EQ(added(clocks), kOff);
+    (void)clock.take(frame_at(t, kOff, milliseconds(60)), walked());
+  EXPECT_EQ(added(clock), kOff);
 }
 
 }  // namespace

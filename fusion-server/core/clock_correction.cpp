@@ -1,4 +1,4 @@
-#include "fusion-server/core/walked_clocks.h"
+#include "fusion-server/core/clock_correction.h"
 
 #include <algorithm>
 
@@ -71,47 +71,34 @@ void LeastAge::add(Timestamp received, Duration age) {
 /// Whether the offset is added to this frame.  Once the host's own estimate has been better, the
 /// offset stays off for this registration: it does not improve when the estimate gets worse again,
 /// and frames must not move to and fro.
-bool WalkedClocks::holds(State& state, const ClockOffset& clock, const SensorFrame& frame,
-                         const Registration& registration) {
-  if (state.outdone_by == registration.version) return false;
+bool ClockCorrection::holds(const ClockOffset& clock, const SensorFrame& frame,
+                            const Registration& registration) {
+  if (outdone_by_ == registration.version) return false;
   if (!outdone(clock, frame.clock_sigma)) return holds_for(clock, frame.clock_sigma);
-  state.outdone_by = registration.version;
+  outdone_by_ = registration.version;
   return false;
 }
 
-void WalkedClocks::follow_clock(State& state, const SensorFrame& frame,
-                                const Registration& registration) {
+void ClockCorrection::follow_clock(const SensorFrame& frame, const Registration& registration) {
   const auto found = registration.clocks.find(frame.sensor);
-  if (found == registration.clocks.end() || !holds(state, found->second, frame, registration)) {
-    state.applied.reset();
+  if (found == registration.clocks.end() || !holds(found->second, frame, registration)) {
+    applied_.reset();
     return;
   }
   const ClockOffset& clock = found->second;
-  const Duration before = state.applied ? state.applied->added : Duration{0};
-  const Duration wanted = followed(clock, state.least.value());
-  const bool same = state.applied && std::chrono::abs(wanted - before) < kWorthIt;
-  state.applied = WalkedClock{same ? before : wanted, clock.sigma};
+  const Duration before = applied_ ? applied_->added : Duration{0};
+  const Duration wanted = followed(clock, least_.value());
+  const bool same = applied_ && std::chrono::abs(wanted - before) < kWorthIt;
+  applied_ = WalkedClock{same ? before : wanted, clock.sigma};
 }
 
-Duration WalkedClocks::take(const SensorFrame& frame, const Registration& registration) {
-  State& state = states_[frame.sensor];
-  if (frame.received != Timestamp{})
-    state.least.add(frame.received, frame.received - frame.captured);
-  const Duration before = state.added();
-  follow_clock(state, frame, registration);
+Duration ClockCorrection::take(const SensorFrame& frame, const Registration& registration) {
+  if (frame.received != Timestamp{}) least_.add(frame.received, frame.received - frame.captured);
+  const Duration before = added();
+  follow_clock(frame, registration);
   const auto latency = registration.latencies.find(frame.sensor);
-  state.latency = latency == registration.latencies.end() ? Duration{0} : latency->second.added();
-  return state.added() - before;
-}
-
-std::optional<WalkedClock> WalkedClocks::of(const SensorId& sensor) const {
-  const auto state = states_.find(sensor);
-  return state == states_.end() ? std::nullopt : state->second.applied;
-}
-
-Duration WalkedClocks::added_to(const SensorId& sensor) const {
-  const auto state = states_.find(sensor);
-  return state == states_.end() ? Duration{0} : state->second.added();
+  latency_ = latency == registration.latencies.end() ? Duration{0} : latency->second.added();
+  return added() - before;
 }
 
 }  // namespace chorus::core
