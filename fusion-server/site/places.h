@@ -34,7 +34,7 @@ struct CellLink {
   CellId first;
   CellId second;
   double rms = 0.0;                 ///< [m]
-  double seconds = 0.0;             ///< For how long both saw the walk.
+  std::size_t points = 0;           ///< Joints, or marks, that both saw at one instant.
   std::optional<double> loop = {};  ///< The worst closure error of a loop through this link [m].
 };
 

@@ -95,7 +95,7 @@ struct CellState {
 class Site {
  public:
   /// `boot`: see CellPeople; the rim takes the time at which the process started.
-  Site(CellId own, std::uint64_t boot, SiteConfig config = {});
+  Site(const CellId& own, std::uint64_t boot, const SiteConfig& config = {});
   ~Site();
   Site(Site&&) noexcept;
   Site& operator=(Site&&) noexcept;
@@ -108,6 +108,8 @@ class Site {
   /// A record of the store, as it changed.
   void take(const Claim& claim, Timestamp now);
   void take(const ClaimResult& result, Timestamp now);
+  /// What `teller` publishes of two ids; refused unless the older one is kept.
+  void take(const SameAs& joined, const CellId& teller, Timestamp now);
 
   /// Call it after each message of our own cell.
   [[nodiscard]] Decision decide(Timestamp now);

@@ -1,0 +1,47 @@
+// Where everybody was last seen, whichever cell saw them: whom a newcomer may be.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fusion-server/site/heard_cell.h"
+
+namespace chorus::site {
+
+/// The last sight of a person; in the site, by our clock.
+struct LastSight {
+  CellId cell;
+  Timestamp at;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  associate::StatedBuild lengths;
+};
+
+using LastSights = std::map<SiteId, LastSight>;
+
+/// Somebody whose id is not known yet: their first sight, and what has been learned since.
+struct Newcomer {
+  Timestamp at;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< Site [m].
+  associate::StatedBuild lengths;
+};
+
+/// Keeps the newer sight; those of before `oldest` are forgotten.
+void remember(LastSights& sights, const SiteId& id, const LastSight& sight);
+void forget_before(LastSights& sights, Timestamp oldest);
+
+/// Log likelihood ratio that the newcomer is the person who was last seen there, against somebody
+/// whom no cell has seen; none: too far away to have walked.
+[[nodiscard]] std::optional<double> return_odds(const LastSight& missing, const Newcomer& newcomer,
+                                                const associate::Repeatability& repeatability);
+
+/// One row per newcomer, one column per missing person: probabilities, each missing person being at
+/// most one of the newcomers.
+[[nodiscard]] JointMatch match_returning(std::span<const Newcomer> newcomers,
+                                         std::span<const LastSight> missing,
+                                         const associate::Repeatability& repeatability);
+
+}  // namespace chorus::site

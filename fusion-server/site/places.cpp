@@ -1,0 +1,185 @@
+#include "fusion-server/site/places.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "common/base/units.h"
+#include "common/geometry/error_radius.h"
+#include "common/time/clock_estimate.h"
+#include "fusion-server/site/loops.h"
+
+namespace chorus::site {
+namespace {
+
+using registration::WalkTrack;
+
+// The solver expects a floor below its sensors; a cell's world has its origin on the floor.
+constexpr double kEye = 2.0;  // [m] by which the space of a cell is taken to be above its floor
+// The origin stands where it stands; a covariance of zero would mean that nothing is known.
+constexpr double kExactPlace = 1e-3;  // [m]
+constexpr double kExactYaw = deg(0.01);
+constexpr double kAnywhere = 1e6;  // [m]
+
+SensorFrame frame_of(const CellPeople& people) {
+  SensorFrame frame;
+  frame.sensor = people.cell;
+  frame.sequence = people.sequence;
+  frame.captured = frame.received = people.at;
+  frame.floor = FloorPlane{Eigen::Vector3d::UnitY(), kEye};
+  frame.clock_sigma = kUnknownClock;
+  for (const Person& person : people.people) {
+    if (person.carried && *person.carried > Duration{0}) continue;
+    BodyFrame body{BodyId{person.body.value}, people.at, {}};
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      if (!person.joints[i]) continue;
+      body.skeleton.joints[i].position = *person.joints[i] - kEye * Eigen::Vector3d::UnitY();
+      body.skeleton.joints[i].state = JointState::Tracked;
+    }
+    frame.bodies.push_back(body);
+  }
+  return frame;
+}
+
+registration::RegistrationConfig solver_config(const PlacesConfig& config) {
+  registration::RegistrationConfig solver;
+  solver.along_ratio = 1.0;  // a cell has no line of sight
+  solver.min_distance = 0.0;
+  solver.max_distance = kAnywhere;
+  solver.max_position = config.max_radius;
+  solver.good_position = config.max_radius;
+  solver.find_large_bias = false;
+  solver.latency_sigma = Duration{0};
+  solver.master = config.origin;
+  return solver;
+}
+
+Eigen::Matrix<double, 6, 6> exact() {
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  covariance.diagonal() << kExactYaw * kExactYaw, kExactYaw * kExactYaw, kExactYaw * kExactYaw,
+      kExactPlace * kExactPlace, kExactPlace * kExactPlace, kExactPlace * kExactPlace;
+  return covariance;
+}
+
+Eigen::Isometry3d world_from_cell(const Extrinsics& place) {
+  return place.world_from_sensor * Eigen::Translation3d(0, -kEye, 0);
+}
+
+/// A covariance about the solver's origin of a cell, two metres above the cell's own.
+Eigen::Matrix<double, 6, 6> covariance_of(const Extrinsics& place, const CellId& cell,
+                                          const CellId& origin) {
+  if (cell == origin) return exact();
+  const Eigen::Vector3d down = place.world_from_sensor.linear() * Eigen::Vector3d(0, -kEye, 0);
+  Eigen::Matrix3d cross;
+  cross << 0, -down.z(), down.y(), down.z(), 0, -down.x(), -down.y(), down.x(), 0;
+  Eigen::Matrix<double, 6, 6> moved = Eigen::Matrix<double, 6, 6>::Identity();
+  moved.bottomLeftCorner<3, 3>() = -cross;
+  return moved * place.covariance * moved.transpose() + exact();
+}
+
+/// Each link with the worst loop that goes through it.
+std::vector<CellLink> links_of(const std::vector<PairwiseRegistration>& edges) {
+  const std::vector<CellLoop> loops = loops_of(edges);
+  std::vector<CellLink> links;
+  for (const PairwiseRegistration& edge : edges) {
+    CellLink link{edge.target, edge.source, edge.rms, edge.pairs, {}};
+    for (const CellLoop& loop : loops) {
+      const bool through = std::ranges::count(loop.cells, edge.target) > 0 &&
+                           std::ranges::count(loop.cells, edge.source) > 0;
+      if (through) link.loop = std::max(link.loop.value_or(0.0), loop.closure);
+    }
+    links.push_back(link);
+  }
+  return links;
+}
+
+CellPlace place_of(const Registration& found, const CellId& cell) {
+  const Extrinsics& place = found.sensors.at(cell);
+  const Eigen::Isometry3d site_from_world =
+      world_from_cell(found.sensors.at(found.master)).inverse();
+  CellPlace out{cell, site_from_world * world_from_cell(place)};
+  Eigen::Matrix<double, 6, 6> turned = Eigen::Matrix<double, 6, 6>::Zero();
+  turned.topLeftCorner<3, 3>() = turned.bottomRightCorner<3, 3>() = site_from_world.linear();
+  out.covariance = turned * covariance_of(place, cell, found.master) * turned.transpose();
+  const auto own = found.clocks.find(cell);
+  const auto origin = found.clocks.find(found.master);
+  if (own != found.clocks.end() && origin != found.clocks.end()) {
+    out.clock_added = own->second.added - origin->second.added;
+    out.clock_sigma = std::max<Duration>(own->second.sigma, std::chrono::milliseconds(1));
+  }
+  out.version = 1;
+  return out;
+}
+
+SitePlaces places_of(const Registration& found) {
+  SitePlaces places;
+  places.origin = found.master;
+  for (const auto& [cell, place] : found.sensors) {
+    places.cells.push_back(place_of(found, cell));
+    places.radius.push_back(radius_on_floor(places.cells.back().covariance));
+  }
+  places.links = links_of(found.edges);
+  for (const auto& [cell, verdict] : found.verdicts) {
+    if (found.sensors.contains(cell)) continue;
+    std::string reason = verdict.reasons.empty()
+                             ? "nobody was seen by it and another cell at once: walk from one to "
+                               "the other and back"
+                             : fmt::format("{}", fmt::join(verdict.reasons, "; "));
+    places.refused.push_back({cell, std::move(reason)});
+  }
+  return places;
+}
+
+std::string names_of(const std::vector<CellId>& cells) {
+  std::string text;
+  for (const CellId& cell : cells) text += (text.empty() ? "" : "-") + cell.str();
+  return text;
+}
+
+CellRefusal refusal(const Misfit& misfit) {
+  return {misfit.cell,
+          fmt::format("it does not fit: the loop {} ends {:.2f} m from where it began, and closes "
+                      "without this cell{}",
+                      names_of(misfit.worst.cells), misfit.worst.closure,
+                      misfit.alone ? ""
+                                   : ", or without another one of the loop; was one moved "
+                                     "during the walk?")};
+}
+
+}  // namespace
+
+Result<SitePlaces> places_from_walks(const std::vector<CellWalk>& walks,
+                                     const PlacesConfig& config) {
+  std::vector<WalkTrack> tracks;
+  Timestamp last;
+  for (const CellWalk& walk : walks) {
+    WalkTrack track{walk.cell, {}};
+    for (const CellPeople& each : walk.seen) track.frames.push_back(frame_of(each));
+    if (!walk.seen.empty()) last = std::max(last, walk.seen.back().at);
+    tracks.push_back(std::move(track));
+  }
+  std::vector<CellRefusal> misfits;
+  while (tracks.size() > 1) {
+    const Registration found = registration::solve(tracks, last, solver_config(config));
+    if (found.sensors.size() < 2) {
+      return fail(
+          ErrorCode::NotFound, "site",
+          fmt::format("no two cells saw the walk together ({}): walk through the overlap of "
+                      "each two neighbours, to and fro",
+                      fmt::join(found.reasons, "; ")));
+    }
+    const auto misfit = misfit_of(found.edges, {config.loop_sigmas, config.least_loop});
+    if (!misfit) {
+      SitePlaces places = places_of(found);
+      places.refused.insert(places.refused.end(), misfits.begin(), misfits.end());
+      return places;
+    }
+    misfits.push_back(refusal(*misfit));
+    std::erase_if(tracks, [&](const WalkTrack& each) { return each.sensor == misfit->cell; });
+  }
+  return fail(ErrorCode::NotFound, "site", "two cells at least are wanted");
+}
+
+}  // namespace chorus::site

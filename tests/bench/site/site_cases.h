@@ -1,0 +1,16 @@
+// The cases of `chorus-bench site` that need no process: identities across cells and places of
+// cells, simulated at the level of what cells publish.
+#pragma once
+
+#include "tests/bench/report/report.h"
+
+namespace chorus::bench {
+
+/// Eight cells, twelve people; beside `cascade` and `cells-alone`.
+void run_hall_case(Report& report);
+/// What must be true for a hand-over: two people, and what is wrong of places, clocks and sight.
+void run_hand_over_case(Report& report);
+/// Places and clocks of eight cells from one person who walks through all of them.
+[[nodiscard]] Result<void> run_places_case(Report& report);
+
+}  // namespace chorus::bench

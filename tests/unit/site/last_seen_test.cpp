@@ -1,0 +1,74 @@
+#include "fusion-server/site/last_seen.h"
+
+#include <gtest/gtest.h>
+
+namespace chorus::site {
+namespace {
+
+constexpr Timestamp kLastSight = from_unix_ns(1'795'000'000'000'000'000);
+
+associate::StatedBuild build(double larger, double sigma = 0.02) {
+  associate::StatedBuild all;
+  all.mean.fill(larger);
+  all.variance.fill(sigma * sigma);
+  return all;
+}
+
+LastSight walker(double z, double larger) {
+  LastSight sight;
+  sight.at = kLastSight;
+  sight.place = {0, 1, z};
+  sight.velocity = {1.2, 0, 0};
+  sight.lengths = build(larger);
+  return sight;
+}
+
+Newcomer newcomer(double x, double z, double larger) {
+  return {kLastSight + std::chrono::seconds(2), {x, 1, z}, build(larger)};
+}
+
+TEST(Returning, PeopleAreLookedForWhereTheyWereGoing) {
+  const auto ahead = return_odds(walker(0, 0), newcomer(1.6, 0, 0), {});
+  const auto behind = return_odds(walker(0, 0), newcomer(-1.6, 0, 0), {});
+  ASSERT_TRUE(ahead && behind);
+  EXPECT_GT(*ahead, 0.0);
+  EXPECT_GT(*ahead, *behind + 2.0);
+}
+
+TEST(Returning, NobodyComesBackFromFartherThanTheyCanWalk) {
+  EXPECT_FALSE(return_odds(walker(0, 0), newcomer(8, 0, 0), {}));
+}
+
+TEST(Returning, LengthsTellTwoApartWhoLeftSideBySide) {
+  const std::vector<LastSight> missing{walker(0, 0.06), walker(0.6, -0.06)};
+  // They have changed places out of sight.
+  const std::vector<Newcomer> come{newcomer(1.7, 0.6, 0.06), newcomer(1.7, 0, -0.06)};
+  associate::Repeatability good;
+  good.size = good.lengths = 1.0;
+  const JointMatch match = match_returning(come, missing, good);
+  EXPECT_GT(match.at(0, 0), 0.8);
+  EXPECT_GT(match.at(1, 1), 0.8);
+}
+
+TEST(Returning, IsDoubtfulForTwoAlike) {
+  const std::vector<LastSight> missing{walker(0, 0), walker(0.6, 0)};
+  const std::vector<Newcomer> come{newcomer(1.7, 0.3, 0)};
+  const JointMatch match = match_returning(come, missing, {});
+  EXPECT_NEAR(match.at(0, 0), match.at(0, 1), 0.05);
+  EXPECT_LT(match.at(0, 0), 0.6);
+}
+
+TEST(Returning, SightsAreKeptForAsLongAsAsked) {
+  LastSights sights;
+  const SiteId id = *SiteId::parse("a");
+  remember(sights, id, walker(0, 0));
+  LastSight older = walker(5, 0);
+  older.at = kLastSight - std::chrono::seconds(1);
+  remember(sights, id, older);
+  EXPECT_DOUBLE_EQ(sights.at(id).place.z(), 0.0);
+  forget_before(sights, kLastSight + std::chrono::seconds(1));
+  EXPECT_TRUE(sights.empty());
+}
+
+}  // namespace
+}  // namespace chorus::site
