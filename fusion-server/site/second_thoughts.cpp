@@ -116,7 +116,7 @@ void Names::dispute(const Hearing& hearing, PersonId body, OwnName& name) {
       tell(hearing, {SiteEventKind::Renamed, {}, {}, wrong, each.cell->id});
       return;
     }
-    if (each.body->named - name.held > 3 * kTie) each.cell->contradicting = true;
+    if (each.body->named - name.held > 2 * kTie) each.cell->contradicting = true;
   }
   if (!contradicted) name.disputed.reset();
 }

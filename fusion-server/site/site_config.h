@@ -11,8 +11,9 @@ namespace chorus::site {
 struct SiteConfig {
   /// Nobody is named, joined or taken over before there is evidence for this long.
   Duration evidence = std::chrono::milliseconds(500);
-  /// How long a person waits for the name that a neighbour, who saw them first, is about to give.
-  Duration wait_for_name = std::chrono::milliseconds(300);
+  /// How long a person waits beyond that for a neighbour who saw them first and is about to name
+  /// them, or whose word takes its time.
+  Duration wait_for_name = std::chrono::milliseconds(600);
   /// How long a person whom no cell sees can be found again under the same id; 0: not at all.
   Duration remember = std::chrono::seconds(60);
   /// A cell that has said nothing for this long has no say, and whom it held may be claimed.

@@ -59,12 +59,12 @@ TEST(Loops, ThatDoNotCloseNameTheCell) {
   EXPECT_GT(std::ranges::count(misfit->worst.cells, misfit->cell), 0);
 }
 
-TEST(Loops, OfACellWhoseLinksAllDisagreeNameThatCellAlone) {
+TEST(Loops, ThatAreAllOpenNameACellOfAllOfThem) {
   std::vector<PairwiseRegistration> links = grid(0.6);
   links[6] = link("b", "e", -0.8);
   const auto misfit = misfit_of(links, {});
   ASSERT_TRUE(misfit);
-  EXPECT_EQ(misfit->cell, cell("e"));
+  EXPECT_TRUE(misfit->cell == cell("b") || misfit->cell == cell("e"));
 }
 
 TEST(Loops, AreAllowedWhatTheirLinksDoNotKnow) {
