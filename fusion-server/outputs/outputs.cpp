@@ -28,6 +28,7 @@ void for_each_output(Config& config, const Visitor& visit) {
   visit("vrchat", config.vrchat);
   visit("vrpn", config.vrpn);
   visit("natnet", config.natnet);
+  visit("mqtt", config.mqtt);
 }
 
 /// open_outlet() is found in the protocol's namespace, by argument-dependent lookup.

@@ -14,6 +14,7 @@
 #include "common/base/result.h"
 #include "common/time/clock.h"
 #include "fusion-server/dtrack/dtrack_outlet.h"
+#include "fusion-server/mqtt/mqtt_outlet.h"
 #include "fusion-server/mxtp/mxtp_outlet.h"
 #include "fusion-server/natnet/natnet_outlet.h"
 #include "fusion-server/osc/vmc_outlet.h"
@@ -49,6 +50,7 @@ struct OutputsConfig {
   Output<vrchat::Settings> vrchat;
   Output<vrpn::Settings> vrpn;
   Output<natnet::Settings> natnet;
+  Output<mqtt::Settings> mqtt;
 
   bool operator==(const OutputsConfig&) const = default;
 };

@@ -26,7 +26,7 @@ ROWS = [
     ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "fusion-server/journal", "services/sensor",
      "services/ergonomics", "services/evaluation"],
     ["fusion-server/vrpn", "fusion-server/dtrack", "fusion-server/natnet", "fusion-server/trackd",
-     "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest", "fusion-server/foxglove", "fusion-server/nats"],
+     "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest", "fusion-server/foxglove", "fusion-server/nats", "fusion-server/mqtt"],
     ["fusion-server/outputs"],
     ["fusion-server/server"],
     ["services/ctl"],
@@ -41,7 +41,7 @@ FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # These rooms are usable without a network: they must not include or link it, not even indirectly.
 NO_SOCKET = {"fusion-server/core", "fusion-server/journal", "fusion-server/learn", "fusion-server/pipeline", "fusion-server/flow", "fusion-server/status"} | VALUE_HEADERS | STAGES
 # These rooms implement protocols other than HTTP: they may use sockets, but no HTTP.
-NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
+NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp", "mqtt")}
 
 # Each entry: the rooms, what they must not include, and why.
 FORBIDDEN_ROOMS = [

@@ -21,7 +21,7 @@ namespace chorus::ctl {
 namespace {
 
 /// How clients get an output's data.
-enum class Manner { Serves, Sends, Shares };
+enum class Manner { Serves, Sends, Publishes, Shares };
 struct KnownOutput {
   std::string_view name;
   Manner manner;
@@ -34,6 +34,7 @@ constexpr std::array kOutputs{
     KnownOutput{"mxtp", Manner::Sends, "Xsens MVN network streaming"},
     KnownOutput{"vmc", Manner::Sends, "VMC protocol (OSC)"},
     KnownOutput{"vrchat", Manner::Sends, "VRChat OSC trackers"},
+    KnownOutput{"mqtt", Manner::Publishes, "MQTT 3.1.1, people as JSON to a broker"},
     KnownOutput{"trackd", Manner::Shares, "trackd / CAVELib shared memory of this host"}};
 
 const KnownOutput* known(std::string_view name) {
@@ -184,6 +185,11 @@ std::string output_text(const OutputWish& wish) {
     keys = fmt::format(", \"address\": \"0.0.0.0\", \"allow\": {}", list(wish.peers));
   } else if (output.manner == Manner::Sends) {
     keys = fmt::format(", \"targets\": {}", list(wish.peers));
+  } else if (output.manner == Manner::Publishes) {
+    const std::string& broker = wish.peers.front();
+    const std::size_t colon = broker.rfind(':');
+    keys = fmt::format(", \"server\": {}, \"port\": {}", quoted(broker.substr(0, colon)),
+                       broker.substr(colon + 1));
   }
   return fmt::format("\n    // {}\n    {}: {{ \"enabled\": true{} }}", output.comment,
                      quoted(wish.name), keys);
@@ -246,7 +252,7 @@ Result<OutputWish> output_wish(std::string_view text) {
   const KnownOutput* const output = known(wish.name);
   if (output == nullptr) {
     return fail(ErrorCode::InvalidArgument, wish.name,
-                "is no output; there are vrpn, natnet, dtrack, mxtp, vmc, vrchat and trackd");
+                "is no output; there are vrpn, natnet, dtrack, mxtp, vmc, vrchat, mqtt and trackd");
   }
   if (wish.peers.empty() && output->manner == Manner::Serves) {
     return fail(ErrorCode::InvalidArgument, wish.name,
@@ -255,12 +261,16 @@ Result<OutputWish> output_wish(std::string_view text) {
   if (output->manner == Manner::Serves) {
     if (const auto list = net::AllowList::parse(wish.peers); !list) return pass(list);
   }
-  if (wish.peers.empty() && output->manner == Manner::Sends) {
+  const bool sends = output->manner == Manner::Sends || output->manner == Manner::Publishes;
+  if (output->manner == Manner::Publishes && wish.peers.size() > 1) {
+    return fail(ErrorCode::InvalidArgument, wish.name, "name one broker, HOST:PORT");
+  }
+  if (wish.peers.empty() && sends) {
     return fail(ErrorCode::InvalidArgument, wish.name,
                 "say where to send: " + wish.name + "=10.0.0.20:PORT");
   }
   for (const std::string& peer : wish.peers) {
-    if (output->manner == Manner::Sends && !has_port(peer)) {
+    if (sends && !has_port(peer)) {
       return fail(ErrorCode::InvalidArgument, wish.name,
                   "\"" + peer + "\" names no port: write " + wish.name + "=" + peer + ":PORT");
     }
