@@ -59,6 +59,7 @@ struct Entry {
 struct Watch {
   std::string bucket;
   std::function<void(const Entry&)> handler;
+  Duration forget{0};  ///< How long a bucket that we make keeps a value; zero: for ever.
 };
 
 /// What is heard on a connection.

@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostText = 512;
+constexpr const char* kSameAs = "SameAs";
 constexpr std::size_t kMostPlacesBytes = 1 << 20;
 constexpr std::size_t kPoseTerms = 36;
 /// A quaternion of another length is a mistake of whoever wrote it.
@@ -161,6 +162,22 @@ std::string write_event(const site::SiteEvent& event) {
   if (!event.other.empty()) out["other"] = event.other.str();
   if (!event.cell.str().empty()) out["cell"] = event.cell.str();
   return out.dump();
+}
+
+std::string write_same_as(const site::SameAs& joined) {
+  return json{{"event", kSameAs}, {"siteId", joined.kept.str()}, {"other", joined.joined.str()}}
+      .dump();
+}
+
+std::optional<site::SameAs> read_same_as(std::string_view bytes) {
+  const auto parsed = parse_json(bytes, {kMostRecordBytes, 4});
+  if (!parsed) return std::nullopt;
+  JsonFields fields(*parsed, "");
+  if (fields.text("event", kMostText) != kSameAs) return std::nullopt;
+  const auto kept = fields.maybe_site_id("siteId");
+  const auto joined = fields.maybe_site_id("other");
+  if (!kept || !joined) return std::nullopt;
+  return site::SameAs{*kept, *joined};
 }
 
 Result<std::vector<site::CellPlace>> read_places(std::string_view text) {

@@ -40,6 +40,11 @@ struct CellCard {
 /// "cell": ".."}; what is empty is left out.
 [[nodiscard]] std::string write_event(const site::SiteEvent& event);
 [[nodiscard]] std::string_view name_of(site::SiteEventKind kind);
+/// The same subject: {"event": "SameAs", "siteId": "..", "other": ".."}: `other` is not used any
+/// more.
+[[nodiscard]] std::string write_same_as(const site::SameAs& joined);
+/// None: it is another event, or none at all.
+[[nodiscard]] std::optional<site::SameAs> read_same_as(std::string_view bytes);
 
 /// The file of `site.places`: {"cells": {"a": {"x": ..}, ..}}; keys as in "place" above, of which
 /// x, y, z and the quaternion must be there.

@@ -83,6 +83,16 @@ void on_message(natsConnection* /*connection*/, natsSubscription* /*subscription
 
 void on_complete(void* closure) { delete static_cast<Listener*>(closure); }
 
+/// The host of "tls://name:4222"; empty if it is an address.
+std::string name_in(const std::string& server) {
+  const std::size_t scheme = server.find("://");
+  std::string host = server.substr(scheme == std::string::npos ? 0 : scheme + 3);
+  host = host.substr(0, host.rfind(':'));
+  const bool address = host.find(':') != std::string::npos ||
+                       host.find_first_not_of("0123456789.") == std::string::npos;
+  return address ? std::string() : host;
+}
+
 natsStatus set_connection(natsOptions* options, const BrokerConfig& config) {
   std::vector<const char*> servers;
   for (const std::string& server : config.servers) servers.push_back(server.c_str());
@@ -93,6 +103,10 @@ natsStatus set_connection(natsOptions* options, const BrokerConfig& config) {
   if (s == NATS_OK && !config.ca_file.empty()) {
     s = natsOptions_SetSecure(options, true);
     if (s == NATS_OK) s = natsOptions_LoadCATrustedCertificates(options, config.ca_file.c_str());
+    // libnats compares names, not addresses, and one for all servers.
+    const std::string name = name_in(config.servers.front());
+    if (s == NATS_OK && config.servers.size() == 1 && !name.empty())
+      s = natsOptions_SetExpectedHostname(options, name.c_str());
   }
   return s;
 }
@@ -182,6 +196,8 @@ Result<kvStore*> Session::State::store(const std::string& bucket) {
     config.Bucket = bucket.c_str();
     config.MaxValueSize = kValueBytes;
     config.MaxBytes = kBucketBytes;
+    for (const Watch& watch : ear->listening.buckets)
+      if (watch.bucket == bucket) config.TTL = watch.forget.count();
     s = js_CreateKeyValue(&opened, stream.get(), &config);
     if (s != NATS_OK) s = js_KeyValue(&opened, stream.get(), bucket.c_str());
   }

@@ -16,6 +16,7 @@
 #include "common/service/common_resources.h"
 #include "common/service/http_config.h"
 #include "fusion-server/foxglove/viewer_dialogue.h"
+#include "fusion-server/nats/cell_link.h"
 #include "fusion-server/outputs/output_bank.h"
 #include "fusion-server/rest/evaluation_relay.h"
 #include "fusion-server/rest/frame_sink.h"
@@ -25,6 +26,7 @@
 #include "fusion-server/rest/prop_resources.h"
 #include "fusion-server/rest/registration_resources.h"
 #include "fusion-server/rest/sensor_resources.h"
+#include "fusion-server/rest/site_resources.h"
 #include "fusion-server/rest/tracker_description.h"
 #include "fusion-server/server/fusion_concerns.h"
 #include "fusion-server/server/health.h"
@@ -32,6 +34,7 @@
 #include "fusion-server/server/lookout.h"
 #include "fusion-server/server/pipeline_loop.h"
 #include "fusion-server/server/recording_tap.h"
+#include "fusion-server/server/start_report.h"
 #include "fusion-server/server/state_folder.h"
 
 namespace chorus::server {
@@ -66,52 +69,6 @@ std::uint64_t first_person(const RegistrationStore& store) {
   return 1;
 }
 
-/// Logs for each unusable folder what is wrong with it; the server runs without that folder.
-/// Returns what is wrong with the state folder; empty if nothing is.
-std::string probe_folders(const StartSettings& config, const std::string& state_folder) {
-  const auto told = [](const char* what, const Result<void>& probe) {
-    if (!probe) log::error(what, {{"reason", to_string(probe.error())}});
-    return probe ? std::string() : to_string(probe.error());
-  };
-  if (!config.viewer_dir.empty())
-    told("viewer cannot be served", probe_viewer(viewer_folder(config.viewer_dir)));
-  if (!config.recording.folder.empty())
-    told("nothing can be recorded", probe_folder(config.recording.folder));
-  if (state_folder.empty()) {
-    log::warn(
-        config.state_dir.empty()
-            ? "state_dir is empty: registration and ids of people are forgotten at the end"
-            : "state_dir is \"auto\", but HOME and XDG_STATE_HOME are not set, or http.port is "
-              "0: registration and ids of people are forgotten at the end");
-    return {};
-  }
-  const std::string trouble = told("state cannot be kept", probe_folder(state_folder));
-  if (trouble.empty()) log::info("state is kept", {{"folder", state_folder}});
-  return trouble;
-}
-
-service::RecordingsOptions recordings_options(const StartSettings& config,
-                                              const service::Serving& serving,
-                                              std::shared_ptr<const Clock> clock) {
-  service::RecordingsOptions options;
-  options.config = config.recording;
-  options.head.metadata["title"] = config.title;
-  options.has_fused = true;
-  options.serving = serving;
-  options.clock = std::move(clock);
-  return options;
-}
-
-void report_start(const FusionSettings& settings, std::uint16_t port) {
-  log::info("fusion server ready", {{"address", settings.at_start.http.address},
-                                    {"port", port},
-                                    {"sensors", settings.live.sensors.size()}});
-  if (settings.live.sensors.empty())
-    log::warn("no sensor is polled", {{"advice",
-                                       "name them in the section \"sensors\" of a file "
-                                       "and start with --config FILE"}});
-}
-
 }  // namespace
 
 struct FusionServer::Impl {
@@ -127,6 +84,8 @@ struct FusionServer::Impl {
   void follow(const LiveSettings& live);
   void follow_inertial(const std::vector<client::FollowedService>& sources);
   void take_status(const Status& next);
+  void meet_the_site();
+  [[nodiscard]] std::vector<OutputStatus> output_states() const;
   LookoutOptions lookout_options();
   [[nodiscard]] Status status_now() const {
     const std::scoped_lock lock(mutex);
@@ -154,14 +113,37 @@ struct FusionServer::Impl {
   std::optional<rest::PropResources> props;
   std::optional<rest::EvaluationRelay> evaluation;  ///< Where one judges this tracker.
   std::optional<rest::RegistrationResources> registration;
+  std::optional<rest::SiteResources> site;  ///< Only in a site.
   std::optional<service::Recordings> recordings;
   std::optional<RecordingTap> tap;
   std::optional<Lookout> lookout;
   foxglove::Desk desk;
   std::unique_ptr<http::Server> http;
+  std::unique_ptr<nats::CellLink> link;  ///< To the other cells; null: there are none.
   std::unique_ptr<PipelineLoop> loop;
   std::unique_ptr<client::Followers> followers;
 };
+
+/// Other cells are met last and left first: nothing here waits for them.
+void FusionServer::Impl::meet_the_site() {
+  const SiteSettings& settings = config.at_start.site;
+  if (settings.link.site.empty()) return;
+  link = std::make_unique<nats::CellLink>(
+      settings.link, clock, [this, feed = settings.outputs_show](const site::SiteView& view) {
+        if (feed) outputs->publish(view.snapshot);
+        site->show(std::make_shared<const site::SiteView>(view));
+      });
+}
+
+/// With the connection to the other cells, if there are any.
+std::vector<OutputStatus> FusionServer::Impl::output_states() const {
+  std::vector<OutputStatus> all = outputs->states();
+  if (!link) return all;
+  const SinkCounters counters = link->counters();
+  all.push_back(
+      {std::string(link->name()), counters.clients == 0 ? counters.last_failure : "", counters});
+  return all;
+}
 
 LookoutOptions FusionServer::Impl::lookout_options() {
   LookoutOptions options;
@@ -170,7 +152,7 @@ LookoutOptions FusionServer::Impl::lookout_options() {
   options.remember = config.live.pipeline.association.remember;
   options.recording = config.at_start.recording;
   options.forget = [this](PersonId person) { loop->ask(ForgetPerson{person}); };
-  options.outputs = [this] { return outputs->states(); };
+  options.outputs = [this] { return output_states(); };
   options.newest_recording = [this] { return recordings->newest(); };
   return options;
 }
@@ -214,15 +196,16 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   inertial->add_routes(*router);
   props->add_routes(*router);
   if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run, *router);
+  if (!config.at_start.site.link.site.empty()) site.emplace(serving).add_routes(*router);
   registration->add_routes(*router);
   const auto self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty(),
                                   evaluation.has_value());
   rest::add_description_routes(*router, serving, self, viewer_folder(config.at_start.viewer_dir));
   service::CommonResources common;
   common.clock = clock;
-  common.health = [this] { return with_outputs(health_of(status_now()), outputs->states()); };
+  common.health = [this] { return with_outputs(health_of(status_now()), output_states()); };
   common.metrics = [this] {
-    return rest::metrics_text(status_now(), outputs->states(), http->counters()) +
+    return rest::metrics_text(status_now(), output_states(), http->counters()) +
            recordings->metrics_text();
   };
   common.self = [self] { return self; };
@@ -230,7 +213,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
     const std::scoped_lock lock(mutex);
     return configuration;
   };
-  rest::add_output_routes(*router, serving, [this] { return outputs->states(); });
+  rest::add_output_routes(*router, serving, [this] { return output_states(); });
   service::add_routes(*router, common);
   return router;
 }
@@ -264,7 +247,8 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   options.sinks.push_back(&*frame_sink);
   options.sinks.push_back(&*props);
   options.sinks.push_back(&*tap);
-  options.sinks.push_back(&*outputs);
+  if (link) options.sinks.push_back(link.get());
+  if (!link || !config.at_start.site.outputs_show) options.sinks.push_back(&*outputs);
   options.sinks.push_back(lookout->people());
   options.sinks.push_back(&desk);
   options.on_status = [this](const Status& next) { take_status(next); };
@@ -335,6 +319,7 @@ Result<void> FusionServer::start() {
   http.clock = s.clock;
   http.policy = resource::answer_policy();
   s.http = std::make_unique<http::Server>(http, s.make_router());
+  s.meet_the_site();
   s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*initial)));
   if (auto bound = s.http->start(); !bound) return bound;
   s.followers = std::make_unique<client::Followers>(
@@ -375,6 +360,7 @@ void FusionServer::stop() {
   if (s.http) s.http->stop();
   if (s.followers) s.followers->stop();
   s.loop.reset();
+  s.link.reset();
   s.outputs.reset();
 }
 

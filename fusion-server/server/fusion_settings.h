@@ -16,6 +16,7 @@
 #include "fusion-server/outputs/outputs.h"
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/registration/registration.h"
+#include "fusion-server/server/site_settings.h"
 #include "fusion-server/watch/watch_config.h"
 #include "fusion-server/worn/worn_config.h"
 
@@ -56,6 +57,7 @@ struct StartSettings {
   std::vector<workplace::Prop> props;  ///< Things that people take up and put down.
   /// The folder of the static files of /viewer/; "auto": see viewer_folder(); empty: no viewer.
   std::string viewer_dir;
+  SiteSettings site;
   std::vector<client::FollowedService> evaluation;  ///< Who judges this tracker; at most one.
 
   bool operator==(const StartSettings&) const = default;

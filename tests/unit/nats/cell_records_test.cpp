@@ -110,6 +110,17 @@ TEST(ASubject, NamesItsCellWithinTheSite) {
   EXPECT_FALSE(cell_of("chorus.hall..people", "hall"));
 }
 
+TEST(ASameAs, ComesBackAndIsToldFromOtherEvents) {
+  const site::SameAs joined{site::SiteId::parse("k0").value(), site::SiteId::parse("k1").value()};
+  const auto back = read_same_as(write_same_as(joined));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->kept, joined.kept);
+  EXPECT_EQ(back->joined, joined.joined);
+  EXPECT_FALSE(read_same_as(R"({"event":"Joined","siteId":"k0","other":"k1"})"));
+  EXPECT_FALSE(read_same_as(R"({"event":"SameAs","siteId":"k0"})"));
+  EXPECT_FALSE(read_same_as("SameAs"));
+}
+
 TEST(AnEvent, IsNamedAndLeavesOutWhatIsEmpty) {
   site::SiteEvent event;
   event.kind = site::SiteEventKind::CellMistrusted;

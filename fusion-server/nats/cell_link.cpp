@@ -1,0 +1,332 @@
+#include "fusion-server/nats/cell_link.h"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "common/base/handover.h"
+#include "common/base/log.h"
+#include "common/base/rate_report.h"
+#include "common/base/version.h"
+#include "fusion-server/nats/frame_desk.h"
+#include "fusion-server/nats/inbox.h"
+#include "fusion-server/nats/ledger.h"
+#include "fusion-server/nats/people_message.h"
+#include "fusion-server/nats/site_snapshot.h"
+#include "fusion-server/nats/subjects.h"
+#include "fusion-server/site/teller.h"
+
+namespace chorus::nats {
+namespace {
+
+/// At most so often are neighbours told: 30 Hz, with room for a tick that comes early.
+constexpr Duration kBetweenMessages = std::chrono::milliseconds(30);
+constexpr Duration kBetweenCards = std::chrono::seconds(1);
+constexpr std::chrono::milliseconds kLinkPatience{100};
+constexpr std::size_t kSnapshots = 2;
+constexpr std::size_t kNews = 256;
+constexpr std::size_t kEventsKept = 50;
+/// Records of people who were given their ids before this are of no use to anybody.
+constexpr Duration kForgetPeople = std::chrono::hours(1);
+
+void append_newest(std::vector<site::SiteEvent>& all, const std::vector<site::SiteEvent>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+  if (all.size() > kEventsKept)
+    all.erase(all.begin(), all.end() - static_cast<std::ptrdiff_t>(kEventsKept));
+}
+
+void log_event(const site::SiteEvent& event) {
+  log::info("site", {{"event", name_of(event.kind)},
+                     {"id", event.id.str()},
+                     {"other", event.other.str()},
+                     {"cell", event.cell.str()}});
+}
+
+}  // namespace
+
+bool LinkConfig::operator==(const LinkConfig& other) const {
+  // Places by their text, which has all that is used.
+  return site == other.site && cell == other.cell && broker == other.broker && url == other.url &&
+         decisions == other.decisions && write_places(places) == write_places(other.places);
+}
+
+struct CellLink::State {
+  State(LinkConfig c, std::shared_ptr<const Clock> k,
+        std::function<void(const site::SiteView&)> view);
+  ~State();
+
+  [[nodiscard]] std::string subject(std::string_view kind) const {
+    return subject_of(config.site, config.cell.str(), kind);
+  }
+  Listening listening();
+  void hear_people(const Message& message);
+  void hear_card(std::string_view bytes, std::optional<site::CellId> from);
+  void hear_event(const Message& message);
+  void hear_claim(const Entry& entry);
+  void refuse(const std::string& why);
+
+  void run();
+  void take_news();
+  void take_people();
+  void step(const std::shared_ptr<const Snapshot>& snapshot);
+  void carry_out(const site::Decision& decision);
+  void look(const site::Decision& decision, const Snapshot& snapshot, Timestamp now);
+  [[nodiscard]] site::SiteConnection connection() const;
+  void tell_card();
+  void set_place(const site::CellPlace& place);
+  [[nodiscard]] CellCard card() const {
+    return {config.cell, boot, config.url, std::string(version()), own_place};
+  }
+
+  const LinkConfig config;
+  const std::shared_ptr<const Clock> clock;
+  const std::function<void(const site::SiteView&)> on_view;
+  const std::uint64_t boot;
+
+  // Filled by other threads.
+  Handover<std::shared_ptr<const Snapshot>> snapshots{kSnapshots};
+  Inbox inbox;
+  Handover<std::function<void(Timestamp)>> news{kNews};  ///< What the core is told next.
+  FrameDesk frames;
+  std::atomic<std::uint64_t> refused = 0;
+  RateReport refusals{"a message of another cell was refused"};
+
+  // Only of the link's thread.
+  site::Site site;
+  site::Teller teller;
+  SiteSeats seats;
+  std::optional<site::CellPlace> own_place;
+  std::map<site::CellId, CellCard> cards;
+  std::vector<site::SiteEvent> events;
+  Timestamp told{};
+  SteadyTime card_told{};
+
+  // In this order: the ledger uses the broker, and handlers of the broker use the rest.
+  std::unique_ptr<Broker> broker;
+  std::unique_ptr<Ledger> ledger;
+  std::jthread thread;
+};
+
+CellLink::State::State(LinkConfig c, std::shared_ptr<const Clock> k,
+                       std::function<void(const site::SiteView&)> view)
+    : config(std::move(c)),
+      clock(std::move(k)),
+      on_view(std::move(view)),
+      boot(static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000)),
+      site(config.cell, boot, config.decisions),
+      teller(config.cell, boot) {
+  const auto own = std::ranges::find(config.places, config.cell, &site::CellPlace::cell);
+  if (own != config.places.end()) set_place(*own);
+  broker = std::make_unique<Broker>(config.broker, listening());
+  frames.open(*broker, subject(kFrame));
+  ledger = std::make_unique<Ledger>(*broker, [this](site::ClaimResult result) {
+    news.give([this, result = std::move(result)](Timestamp now) { site.take(result, now); });
+  });
+  thread = std::jthread([this] { run(); });
+}
+
+CellLink::State::~State() {
+  snapshots.close();
+  if (thread.joinable()) thread.join();
+  ledger.reset();
+  broker.reset();
+}
+
+Listening CellLink::State::listening() {
+  const auto all = [this](std::string_view kind) { return subject_of(config.site, "*", kind); };
+  Listening out;
+  out.subjects.push_back({all(kPeople), [this](const Message& m) { hear_people(m); }});
+  for (const std::string_view kind : {kStatus, kRegistration})
+    out.subjects.push_back({all(kind), [this](const Message& m) {
+                              const auto from = cell_of(m.subject, config.site);
+                              if (from) hear_card(m.bytes, from);
+                            }});
+  out.subjects.push_back({all(kEvents), [this](const Message& m) { hear_event(m); }});
+  out.subjects.push_back({subject(kAskFrame), [this](const Message& m) { frames.answer(m); }});
+  out.subjects.push_back({subject(kWantFrames), [this](const Message&) { frames.want(); }});
+  out.buckets.push_back({kCellsBucket, [this](const Entry& e) {
+                           if (auto from = site::CellId::parse(e.key)) hear_card(e.value, *from);
+                         }});
+  out.buckets.push_back({kPeopleBucket, [this](const Entry& e) { hear_claim(e); }, kForgetPeople});
+  return out;
+}
+
+void CellLink::State::refuse(const std::string& why) {
+  ++refused;
+  refusals.hit(why);
+}
+
+void CellLink::State::hear_people(const Message& message) {
+  const auto from = cell_of(message.subject, config.site);
+  auto people = read_people(message.bytes);
+  if (!people) return refuse(std::string(message.subject) + ": " + to_string(people.error()));
+  // The server lets each cell publish under its own name only.
+  if (!from || people->cell != *from)
+    return refuse(std::string(message.subject) + ": is by another cell, " + people->cell.str());
+  if (people->cell == config.cell && people->boot == boot) return;  // our own words
+  inbox.give({std::move(*people), clock->now()});
+}
+
+void CellLink::State::hear_card(std::string_view bytes, std::optional<site::CellId> from) {
+  auto read = read_card(bytes);
+  if (!read) return refuse("card: " + to_string(read.error()));
+  if (!from || read->cell != *from) return refuse("card: is by another cell, " + read->cell.str());
+  if (read->cell == config.cell) return;
+  news.give([this, heard = std::move(*read)](Timestamp now) {
+    if (cards.size() == Inbox::kCells && !cards.contains(heard.cell))
+      return refuse("card: there are too many cells");
+    if (heard.place) {
+      if (auto ok = site.take(*heard.place, now); !ok) refuse("card: " + to_string(ok.error()));
+    }
+    cards[heard.cell] = heard;
+  });
+}
+
+void CellLink::State::hear_event(const Message& message) {
+  const auto from = cell_of(message.subject, config.site);
+  const auto joined = read_same_as(message.bytes);
+  if (!from || *from == config.cell || !joined) return;
+  news.give([this, joined = *joined, teller_of_it = *from](Timestamp now) {
+    site.take(joined, teller_of_it, now);
+  });
+}
+
+void CellLink::State::hear_claim(const Entry& entry) {
+  auto read = read_claim(entry.key, entry.value, entry.revision);
+  if (!read) return refuse(to_string(read.error()));
+  news.give([this, heard = std::move(*read)](Timestamp now) { site.take(heard, now); });
+}
+
+void CellLink::State::take_news() {
+  const Timestamp now = clock->now();
+  for (const auto& each : news.take(Duration{0})) each(now);
+}
+
+void CellLink::State::take_people() {
+  for (const HeardPeople& heard : inbox.take())
+    if (auto ok = site.take(heard.people, heard.came); !ok) refuse(to_string(ok.error()));
+}
+
+void CellLink::State::carry_out(const site::Decision& decision) {
+  for (const site::ClaimRequest& request : decision.claims) ledger->ask(request);
+  for (const site::SiteEvent& event : decision.events) {
+    log_event(event);
+    broker->publish(subject(kEvents), write_event(event));
+  }
+  for (const site::SameAs& joined : decision.same_as)
+    broker->publish(subject(kEvents), write_same_as(joined));
+  append_newest(events, decision.events);
+}
+
+site::SiteConnection CellLink::State::connection() const {
+  const BrokerStatus status = broker->status();
+  return {status.connected,
+          status.server,
+          status.trouble,
+          status.published,
+          status.dropped + snapshots.dropped() + inbox.dropped() + news.dropped(),
+          refused,
+          refusals.last()};
+}
+
+void CellLink::State::look(const site::Decision& decision, const Snapshot& snapshot,
+                           Timestamp now) {
+  site::SiteView view;
+  view.site = config.site;
+  view.own = config.cell;
+  view.at = now;
+  view.people = site.everybody(now);
+  view.ours = decision.people;
+  for (const site::CellState& state : site.cells(now)) {
+    const auto known = cards.find(state.cell);
+    const CellCard told_of = state.cell == config.cell ? card()
+                             : known == cards.end()    ? CellCard{}
+                                                       : known->second;
+    view.cells.push_back({state, told_of.url, told_of.software, told_of.place});
+  }
+  view.events = events;
+  view.snapshot = std::make_shared<const Snapshot>(
+      site_snapshot({view.people, config.cell, own_place}, snapshot, seats));
+  view.connection = connection();
+  on_view(view);
+}
+
+void CellLink::State::step(const std::shared_ptr<const Snapshot>& snapshot) {
+  const Duration since = snapshot->instant - told;
+  if (since >= Duration{0} && since < kBetweenMessages) return;
+  told = snapshot->instant;
+  const Timestamp now = clock->now();
+  take_people();
+  site::CellPeople people = teller.tell(*snapshot);
+  if (auto ok = site.take(people, now); !ok) refuse("our own: " + to_string(ok.error()));
+  const site::Decision decision = site.decide(now);
+  site::name(people, decision);
+  broker->publish(subject(kPeople), write_people(people));
+  frames.show(snapshot, now);
+  carry_out(decision);
+  look(decision, *snapshot, now);
+}
+
+void CellLink::State::tell_card() {
+  const SteadyTime now = std::chrono::steady_clock::now();
+  if (card_told != SteadyTime{} && now - card_told < kBetweenCards) return;
+  card_told = now;
+  const std::string text = write_card(card());
+  broker->publish(subject(kStatus), text);
+  ledger->card(config.cell.str(), text);
+}
+
+void CellLink::State::set_place(const site::CellPlace& place) {
+  if (auto ok = site.take(place, clock->now()); !ok)
+    return refuse("our own place: " + to_string(ok.error()));
+  own_place = place;
+}
+
+void CellLink::State::run() {
+  while (!snapshots.closed()) {
+    const auto waiting = snapshots.take(kLinkPatience);
+    take_news();
+    if (!waiting.empty()) step(waiting.back());
+    tell_card();
+  }
+}
+
+CellLink::CellLink(LinkConfig config, std::shared_ptr<const Clock> clock,
+                   std::function<void(const site::SiteView&)> on_view)
+    : state_(std::make_unique<State>(std::move(config), std::move(clock), std::move(on_view))) {}
+
+CellLink::~CellLink() = default;
+
+void CellLink::publish(std::shared_ptr<const Snapshot> snapshot) {
+  state_->snapshots.give(std::move(snapshot));
+}
+
+SinkCounters CellLink::counters() const {
+  const site::SiteConnection now = state_->connection();
+  SinkCounters counters;
+  counters.frames = now.published;
+  counters.dropped = now.dropped;
+  counters.refused = now.refused;
+  counters.clients = now.connected ? 1 : 0;
+  counters.last_refusal = now.last_refusal;
+  counters.last_failure = now.trouble;
+  return counters;
+}
+
+ClaimCounters CellLink::claims() const {
+  return {state_->ledger->accepted(), state_->ledger->lost()};
+}
+
+void CellLink::place(const site::CellPlace& place) {
+  state_->news.give([s = state_.get(), place](Timestamp) {
+    s->set_place(place);
+    s->broker->publish(s->subject(kRegistration), write_card(s->card()));
+    s->card_told = {};
+  });
+}
+
+}  // namespace chorus::nats

@@ -1,0 +1,59 @@
+// Our cell in its site: tells the neighbours of our people, listens to theirs, and has the pure
+// core (fusion-server/site) decide who is who.
+//
+// A sink: publish() only puts the snapshot into a short queue.  A thread of its own does the rest,
+// another one writes to the store.  Nothing here is waited for by the pipeline: without a server,
+// with a slow one, or with neighbours that talk nonsense, the cell works as it does without a site.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/time/clock.h"
+#include "fusion-server/nats/broker.h"
+#include "fusion-server/nats/cell_records.h"
+#include "fusion-server/sink.h"
+#include "fusion-server/site/site_view.h"
+
+namespace chorus::nats {
+
+struct LinkConfig {
+  std::string site;   ///< The hall's name; empty: there is no site.
+  site::CellId cell;  ///< Our own name in it.
+  BrokerConfig broker;
+  std::string url;  ///< Where our cell answers, for the neighbours; may be empty.
+  std::vector<site::CellPlace> places;  ///< Only that of our own cell is used.
+  site::SiteConfig decisions;
+
+  bool operator==(const LinkConfig& other) const;
+};
+
+/// Records of the store that we wrote, and those that somebody else wrote first.
+struct ClaimCounters {
+  std::uint64_t accepted = 0;
+  std::uint64_t lost = 0;
+};
+
+class CellLink final : public Sink {
+ public:
+  /// `on_view` runs on the link's thread after each of our messages; must not wait.
+  CellLink(LinkConfig config, std::shared_ptr<const Clock> clock,
+           std::function<void(const site::SiteView&)> on_view);
+  ~CellLink() override;
+
+  [[nodiscard]] std::string_view name() const override { return "site"; }
+  void publish(std::shared_ptr<const Snapshot> snapshot) override;
+  [[nodiscard]] SinkCounters counters() const override;
+  [[nodiscard]] ClaimCounters claims() const;
+
+  /// Our own cell stands elsewhere; the neighbours are told at once.
+  void place(const site::CellPlace& place);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace chorus::nats

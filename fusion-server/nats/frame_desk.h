@@ -1,0 +1,42 @@
+// Frames of our cell for whoever asks over NATS: one of a past instant, or all for a while.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "fusion-server/flow/snapshot.h"
+#include "fusion-server/nats/broker.h"
+
+namespace chorus::nats {
+
+/// Thread-safe.
+class FrameDesk {
+ public:
+  /// How long frames are published after somebody wanted them, and how far back they are kept.
+  static constexpr std::chrono::seconds kWanted{5};
+  static constexpr Duration kKept = std::chrono::seconds(10);
+
+  /// Call it before show() and answer(); the broker must outlive them.
+  void open(Broker& broker, std::string subject);
+  /// Keeps the snapshot; publishes it as JSON while frames are wanted.
+  void show(const std::shared_ptr<const Snapshot>& snapshot, Timestamp now);
+  void want();
+  /// {"at": "NANOSECONDS"}: the answer is the frame of that instant, or the last one before, as
+  /// /frame?at= has it in JSON; {"error": "..."} if there is none.  Without a time: the newest.
+  void answer(const Message& message);
+
+  /// What answer() sends; empty if nothing is kept.
+  [[nodiscard]] std::string frame_at(std::string_view request) const;
+
+ private:
+  mutable std::mutex mutex_;
+  Broker* broker_ = nullptr;  ///< These are guarded by mutex_.
+  std::string subject_;
+  std::deque<std::shared_ptr<const Snapshot>> kept_;
+  SteadyTime wanted_{};
+  bool ever_wanted_ = false;
+};
+
+}  // namespace chorus::nats
