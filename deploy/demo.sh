@@ -16,6 +16,8 @@
 #   --inertial                      the person exercises and wears thirteen simulated trackers, one of which slips after 20 s:
 #                                   chorus-evaluation judges the fused tracker by them (port 21 after the fusion server's), `chorus
 #                                   status` and the viewer say which limb is off, and `chorus evaluate` writes a report of the take
+#   --site                          two cells of three simulated sensors each, the NATS server by which they meet, and somebody who
+#                                   walks from one into the other and back: /site/people/ shows one id (docs/guide/hall.md)
 #   --until-good                    with --seconds: stops earlier, as soon as the places are good and it delivers
 #   --register                      with --recording: finds the extrinsics from the person alone
 #   --port N                        the fusion server's port (8080); the sensors use the ports after it, live posture scores
@@ -40,7 +42,7 @@ usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 step() { printf '\n== %s\n' "$*"; }
 fail() { printf '\ndemo: %s\n' "$*" >&2; exit 1; }
 
-sheet='' seconds='' until_good='' recording='' cameras='' suit='' inertial='' register='' port=8080 overrides=() bin=build/release/bin build=yes
+sheet='' seconds='' until_good='' recording='' cameras='' suit='' inertial='' site='' register='' port=8080 overrides=() bin=build/release/bin build=yes
 read_arguments() {
   while (( $# > 0 )); do
     case $1 in
@@ -51,6 +53,7 @@ read_arguments() {
       --cameras) cameras=yes ;;
       --suit) suit=yes ;;
       --inertial) inertial=yes ;;
+      --site) site=yes ;;
       --sheet) sheet=${2:?--sheet needs a file}; shift ;;
       --register) register=yes ;;
       --until-good) until_good=yes ;;
@@ -71,6 +74,7 @@ read_arguments() {
   [[ -z "$recording" || -z "$cameras" ]] || fail "--cameras and --recording are two demos: choose one"
   [[ -z "$suit" || -z "$recording$cameras" ]] || fail "--suit is a demo of its own: leave out --cameras and --recording"
   [[ -z "$inertial" || -z "$recording$cameras$suit" ]] || fail "--inertial simulates its sensors: leave out --recording, --cameras and --suit"
+  [[ -z "$site" || -z "$recording$cameras$suit$inertial$sheet$until_good" ]] || fail "--site is a demo of its own: it goes with --port and --seconds"
   [[ -n "$recording" || -z "$register" ]] || fail "--register goes with --recording"
   [[ -z "$sheet" || -n "$seconds" ]] || fail "--sheet goes with --seconds"
   [[ -z "$sheet" || "$sheet" = /* ]] || sheet=$called_from/$sheet
@@ -326,8 +330,14 @@ mkdir -p "$logs"
 rm -f "$logs"/*.log "$logs"/*.out "$logs"/registration.json
 rm -rf "$logs/state"  # each demo registers its sensors anew
 # How many sensors a recording has is only known when it is played; each of them complains if its port is taken.
-if [[ -n "$recording$suit" ]]; then need_free_ports 1; else need_free_ports $(( sensor_count + 1 )); fi
+if [[ -n "$recording$suit" ]]; then need_free_ports 1; elif [[ -n "$site" ]]; then need_free_ports 8; else need_free_ports $(( sensor_count + 1 )); fi
 [[ -z "$build" ]] || build
+if [[ -n "$site" ]]; then
+  command -v nats-server >/dev/null || PATH+=:/usr/sbin
+  command -v nats-server >/dev/null || { step "nats-server"; deploy/install-packages.sh site; }
+  rm -rf "$logs/site" && mkdir -p "$logs/site"
+  exec python3 -B deploy/demo_site.py --bin "$bin" --port "$port" --folder "$logs/site" ${seconds:+--seconds "$seconds"}
+fi
 
 trap stop_all EXIT
 trap 'exit 130' INT

@@ -17,7 +17,10 @@ constexpr std::array kHostCommands{
         "  chorus init fusion --out -             only shows it\n"
         "  chorus init ca                         an authority for the hosts of a workshop\n"
         "  chorus init certificate s1.local 10.0.0.11 --out s1   for one of them, into folder s1\n"
-        "An existing file is never overwritten.  Then: systemctl restart chorus-SERVICE.",
+        "  chorus init site --name hall --cell a --cell b   a server by which cells meet\n"
+        "  chorus init site --join a.json         this fusion server becomes cell a\n"
+        "An existing file is never overwritten, but --join adds to one.  Then: systemctl restart "
+        "chorus-SERVICE.",
         &add_init},
     Command{"discover", "Lists the sensors that announce themselves in this network",
             "Examples:\n"

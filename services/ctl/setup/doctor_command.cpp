@@ -15,6 +15,7 @@
 #include "services/ctl/line/server_option.h"
 #include "services/ctl/operate/running_findings.h"
 #include "services/ctl/setup/findings.h"
+#include "services/ctl/setup/site_findings.h"
 
 namespace chorus::ctl {
 namespace {
@@ -43,6 +44,7 @@ void examine(const std::string& kind, const std::string& file, Findings& all) {
   append(all, disk_findings(*service));
   append(all, sensor_findings(*service));
   append(all, followed_findings(*service));
+  append(all, site_findings(*service));
 }
 
 Findings examine_all(const std::string& folder) {

@@ -16,6 +16,8 @@
 #include "services/ctl/line/new_file.h"
 #include "services/ctl/setup/discovery.h"
 #include "services/ctl/setup/init_checks.h"
+#include "services/ctl/setup/init_site.h"
+#include "services/ctl/setup/phone_page.h"
 #include "services/ctl/setup/written_certificates.h"
 #include "services/ctl/setup/written_config.h"
 
@@ -45,6 +47,7 @@ struct InitArguments {
   bool no_tls = false;
   AuthorityWishes authority;
   CertificateWishes certificate;
+  InitSite site;
 };
 
 /// The name of this host as an id, in which characters that an id does not allow become "-"; "s1"
@@ -87,10 +90,6 @@ void ask_for(InitArguments& arguments) {
   ask("Listen on (127.0.0.1: this host alone)", arguments.address);
 }
 
-bool is_loopback(const std::string& address) {
-  return address.starts_with("127.") || address == "::1";
-}
-
 /// The folder of this host's certificate; empty: without TLS.
 std::string tls_folder(const InitArguments& arguments) {
   if (arguments.no_tls) return {};
@@ -119,33 +118,6 @@ std::string shown_host(const std::string& tls) {
   const std::string name = tls.empty() ? own : certified_name(tls, own);
   if (name.empty()) return "HOST";
   return name.find(':') == std::string::npos ? name : "[" + name + "]";
-}
-
-/// A token may contain any character, but in a link "+" stands for a blank, and "&" and "%" have a
-/// meaning.
-std::string percent_encoded(const std::string& text) {
-  std::string encoded;
-  for (const unsigned char c : text) {
-    const bool plain = c < 128 && (std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.');
-    encoded += plain ? std::string(1, static_cast<char>(c)) : fmt::format("%{:02X}", c);
-  }
-  return encoded;
-}
-
-/// Prints the page to open.  A browser allows camera access over https, and on its own host over
-/// http as well.
-void tell_phone(const ServiceWishes& wishes, const std::string& url) {
-  if (is_loopback(wishes.address)) {
-    std::cerr << "On this computer, whose own camera it can be (a phone needs --listen 0.0.0.0):\n"
-              << "  " << url << "capture/\n";
-    return;
-  }
-  std::cerr << "On the phone, which needs ca.crt:\n  " << url << "capture/"
-            << (wishes.token.empty() ? "" : "#token=" + percent_encoded(wishes.token)) << "\n";
-  if (wishes.tls.empty()) {
-    std::cerr << "Without a certificate no browser gives it a camera: chorus init ca and chorus "
-                 "init certificate, then this again.\n";
-  }
 }
 
 void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
@@ -290,9 +262,21 @@ Result<int> run_init_certificate(const InitArguments& arguments) {
   return kExitOk;
 }
 
+/// With what other services take from the same options.
+InitSite site_of(const InitArguments& arguments) {
+  InitSite site = arguments.site;
+  site.wishes.name = arguments.authority.name;
+  site.wishes.listen = arguments.address;
+  site.wishes.tls = tls_folder(arguments);
+  if (arguments.port != 0) site.wishes.port = arguments.port;
+  if (site.wishes.address.empty()) site.wishes.address = shown_host(site.wishes.tls);
+  return site;
+}
+
 Result<int> run_init(InitArguments& arguments) {
   if (arguments.service == "ca") return run_init_ca(arguments);
   if (arguments.service == "certificate") return run_init_certificate(arguments);
+  if (arguments.service == "site") return run_init_site(site_of(arguments), arguments.out);
   if (!arguments.certificate.hosts.empty()) {
     return fail(ErrorCode::InvalidArgument, arguments.certificate.hosts.front(),
                 "is not understood after \"" + arguments.service + "\"; see chorus init --help");
@@ -331,7 +315,8 @@ void add_tls_options(CLI::App& options, InitArguments& arguments) {
   options.add_option("--authority", certificate.authority, "certificate: the folder of `init ca`")
       ->capture_default_str();
   options.add_flag("--renew", certificate.renew, "certificate: replaces the one that is there");
-  options.add_option("--name", arguments.authority.name, "ca: what browsers call it");
+  options.add_option("--name", arguments.authority.name,
+                     "ca: what browsers call it; site: the hall's name");
   constexpr int kLongest = 36500;
   options
       .add_option_function<int>(
@@ -375,17 +360,18 @@ Run add_init(CLI::App& options) {
   const auto arguments = std::make_shared<InitArguments>();
   options
       .add_option("service", arguments->service,
-                  "sensor, fusion, ca (an authority of one's own) or certificate")
+                  "sensor, fusion, ca (an authority of one's own), certificate or site")
       ->required()
-      ->check(CLI::IsMember({"sensor", "fusion", "ca", "certificate"}));
-  options.add_option("--out", arguments->out,
-                     "File; default: /etc/chorus/SERVICE.json; -: standard output; ca, "
-                     "certificate: a folder, default /etc/chorus/ca, /etc/chorus/tls");
+      ->check(CLI::IsMember({"sensor", "fusion", "ca", "certificate", "site"}));
+  options.add_option(
+      "--out", arguments->out,
+      "File; default: /etc/chorus/SERVICE.json; -: standard output; ca, "
+      "certificate, site: a folder, default /etc/chorus/ca, /etc/chorus/tls, /etc/chorus/site");
   options.add_flag("--ask", arguments->ask, "Ask for what matters");
   options.add_option("--listen", arguments->address, "Address; 127.0.0.1: this host alone")
       ->capture_default_str();
   options
-      .add_option("--port", arguments->port, "Port; default: 8081 for a sensor, 8080 for fusion")
+      .add_option("--port", arguments->port, "Port; default: sensor 8081, fusion 8080, site 4222")
       ->check(CLI::Range(1, 65535));
   options.add_option(
       "--token", arguments->token,
@@ -394,6 +380,7 @@ Run add_init(CLI::App& options) {
   add_fusion_options(options, *arguments);
   add_discovery_options(options, *arguments);
   add_tls_options(options, *arguments);
+  add_site_options(options, arguments->site);
   return [arguments] { return told_as_usage("chorus init", run_init(*arguments)); };
 }
 

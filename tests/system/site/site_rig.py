@@ -1,0 +1,128 @@
+"""A hall for tests: Debian's nats-server, cells of simulated sensors, and a raw NATS connection of a stranger."""
+import json
+import pathlib
+import shutil
+import socket
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "deploy"), str(ROOT / "tests/system/fusion")]
+import demo_hall  # noqa: E402
+from rig import BIN, Process, Rig, free_port, get_json, wait_for  # noqa: E402
+
+SERVER = shutil.which("nats-server", path="/usr/sbin:/usr/bin:/usr/local/bin:/sbin")
+
+
+class Hall(Rig):
+    """Without TLS, so that the stranger can speak plainly; deploy/demo.sh --site is the test of TLS."""
+
+    def setUp(self):
+        super().setUp()
+        self.place = pathlib.Path(self.folder.name)
+        demo_hall.write(self.place)
+        self.server_port = free_port()
+        self.server = None
+        self.addCleanup(self.stop_server)
+
+    def init(self, *words):
+        done = subprocess.run([BIN / "chorus", "init", "site", *map(str, words)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def write_site(self, *cells):
+        self.init("--name", demo_hall.SITE, *[word for cell in cells for word in ("--cell", cell)], "--address", "127.0.0.1",
+                  "--listen", "127.0.0.1", "--port", self.server_port, "--no-tls", "--store", self.place / "store",
+                  "--out", self.place / "site")
+
+    def start_server(self):
+        log = open(self.place / "nats.log", "a")
+        self.addCleanup(log.close)
+        self.server = subprocess.Popen([SERVER, "-c", self.place / "site/nats-server.conf"], stdout=log, stderr=log)
+        wait_for("the server answers", lambda: socket.create_connection(("127.0.0.1", self.server_port), 1).close() or True)
+
+    def stop_server(self):
+        if self.server is None:
+            return
+        self.server.kill()
+        self.server.wait()
+        self.server = None
+
+    def start_sensors(self, cell):
+        ports = {}
+        for i in range(demo_hall.SENSORS_PER_CELL):
+            name, port = f"{cell}{i + 1}", free_port()
+            process = Process("chorus-sensor", *demo_hall.sensor_arguments(name, port, self.place))
+            self.processes.append(process)
+            ports[name] = port
+        return ports
+
+    def start_cell(self, cell, sensors, **more):
+        config = self.place / f"{cell}.fusion.json"
+        if not config.exists():
+            config.write_text("{}\n")
+            self.init("--join", self.place / f"site/{cell}.json", "--out", config)
+        port = free_port()
+        arguments = demo_hall.fusion_arguments(cell, port, sensors, self.place)
+        extra = [word for key, value in more.items() for word in ("--set", f"{key}={value}")]
+        process = Process("chorus-fusion", "--config", str(config), *arguments, *extra)
+        process.url = f"http://127.0.0.1:{port}/"
+        self.processes.append(process)
+        return process
+
+    def cells(self, of):
+        return get_json(of.url + "site/cells/")
+
+    def states(self, of):
+        return {name: cell["state"] for name, cell in self.cells(of)["siteCells"].items()}
+
+    def people(self, of):
+        return get_json(of.url + "site/people/")["sitePeople"]
+
+    def frames_in(self, of, seconds):
+        """How many frames the cell makes in a second."""
+        first, began = get_json(of.url + "frame"), time.monotonic()
+        time.sleep(seconds)
+        last = get_json(of.url + "frame")
+        return (last["sequence"] - first["sequence"]) / (time.monotonic() - began)
+
+
+class Stranger:
+    """A client that speaks NATS by hand: it may say anything."""
+
+    def __init__(self, port, user, password):
+        self.socket = socket.create_connection(("127.0.0.1", port), 10)
+        self.socket.settimeout(10)
+        self.file = self.socket.makefile("rb")
+        self.file.readline()  # INFO
+        connect = {"verbose": False, "pedantic": False, "user": user, "pass": password, "lang": "by hand", "version": "1"}
+        self.send(f"CONNECT {json.dumps(connect)}\r\nPING\r\n".encode())
+        self.answer = self.line()
+
+    def send(self, data):
+        self.socket.sendall(data)
+
+    def line(self):
+        return self.file.readline().decode().strip()
+
+    def publish(self, subject, data):
+        """What the server says of it: PONG, or an error."""
+        self.send(f"PUB {subject} {len(data)}\r\n".encode() + data + b"\r\nPING\r\n")
+        return self.line()
+
+    def subscribe(self, subject):
+        self.send(f"SUB {subject} 1\r\n".encode())
+
+    def message(self):
+        """(subject, bytes) of the next message."""
+        while True:
+            words = self.line().split()
+            if words and words[0] == "MSG":
+                data = self.file.read(int(words[-1]) + 2)[:-2]
+                return words[1], data
+            if not words:
+                raise ConnectionError("the server closed the connection")
+
+    def close(self):
+        self.file.close()
+        self.socket.close()

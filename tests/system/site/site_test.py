@@ -1,0 +1,135 @@
+"""Two cells that meet on a real nats-server: without it, with it, with strangers and liars on it, and after it was killed."""
+import json
+import time
+import unittest
+
+from site_rig import Hall, Stranger, demo_hall, get_json, wait_for
+
+ENOUGH_HZ = 15  # of 30; a busy machine
+
+
+class Site(Hall):
+    def test_cells_work_alone_meet_and_survive_the_server(self):
+        self.write_site("a", "b", "c")
+        sensors = {cell: self.start_sensors(cell) for cell in demo_hall.CELLS}
+        a, b = (self.start_cell(cell, sensors[cell]) for cell in demo_hall.CELLS)
+        self.alone(a, b)
+        self.start_server()
+        ids = self.meet(a, b)
+        self.strangers(a, b)
+        self.lies(a, b)
+        self.a_wrong_password()
+        self.two_of_one_name(a, sensors["b"])
+        self.a_killed_server(a, b, ids)
+
+    def alone(self, a, b):
+        """There is no server at all."""
+        for cell in (a, b):
+            wait_for("the cell answers", lambda cell=cell: self.cells(cell))
+            self.assertFalse(self.cells(cell)["connected"])
+            self.assertGreater(self.frames_in(cell, 1), ENOUGH_HZ)
+        wait_for("one of them names whom it sees", lambda: self.people(a) or self.people(b))
+
+    def meet(self, a, b):
+        for cell, other in ((a, "b"), (b, "a")):
+            wait_for("the other cell is heard", lambda cell=cell, other=other: self.states(cell).get(other) == "heard")
+            self.assertTrue(self.cells(cell)["siteCells"][other]["placed"])
+        # Whom each named alone is one person: the ids are joined the first time that both see them.
+        wait_for("both know one person under one id", lambda: self.one_id(a, b))
+        ids, owners = set(), set()
+        deadline = time.monotonic() + 18  # one lap takes 15.7 s
+        while time.monotonic() < deadline:
+            for cell in (a, b):
+                for name, person in self.people(cell).items():
+                    ids.add(name)
+                    owners.add(person["cell"])
+            time.sleep(0.1)
+        self.assertEqual(len(ids), 1, "a whole lap through both cells, and one id")
+        self.assertEqual(owners, {"a", "b"}, "each cell has answered for the person")
+        self.frames_agree(a)
+        return ids
+
+    def one_id(self, a, b):
+        here, there = self.people(a), self.people(b)
+        return len(here) == 1 and here.keys() == there.keys()
+
+    def frames_agree(self, a):
+        """/site/frame has the person under the number that /site/people/ says, where it says."""
+        frame = get_json(a.url + "site/frame")
+        self.assertEqual(frame["source"], "site")
+        self.assertEqual(len(frame["bodies"]), 1)
+        people = self.people(a)
+        self.assertEqual([p["bodyId"] for p in people.values()], [frame["bodies"][0]["bodyId"]])
+        self.assertIn(frame["sensors"][0], demo_hall.CELLS)
+
+    def password(self, cell):
+        return json.loads((self.place / f"site/{cell}.json").read_text())["site"]["password"]
+
+    def strangers(self, a, b):
+        nobody = Stranger(self.server_port, "a", "wrong")
+        self.assertIn("Authorization Violation", nobody.answer)
+        nobody.close()
+        as_b = Stranger(self.server_port, "b", self.password("b"))
+        self.addCleanup(as_b.close)
+        self.assertEqual(as_b.answer, "PONG")
+        self.assertIn("Permissions Violation", as_b.publish("chorus.hall.a.people", b"{}"), "b may not speak as a")
+        self.assertEqual(as_b.line(), "PONG")
+        reader = Stranger(self.server_port, "reader", json.loads((self.place / "site/reader.json").read_text())["password"])
+        self.addCleanup(reader.close)
+        self.assertIn("Permissions Violation", reader.publish("chorus.hall.b.people", b"{}"), "who reads may not speak")
+        self.assertEqual(reader.line(), "PONG")
+        reader.subscribe("chorus.hall.*.people")
+        seen = wait_for("the reader gets people", lambda: self.people_in(reader.message()))
+        near = self.people(a) or self.people(b)
+        self.assertIn(seen["siteId"], near)
+
+    @staticmethod
+    def people_in(message):
+        people = json.loads(message[1])["people"]
+        return people[0] if people and "siteId" in people[0] else None
+
+    def lies(self, a, b):
+        """What b's host may say, it may say wrong."""
+        before = self.people(a).keys()
+        refused = self.cells(a)["refused"]
+        as_b = Stranger(self.server_port, "b", self.password("b"))
+        self.addCleanup(as_b.close)
+        far_ahead = {"version": 1, "cell": "b", "boot": 2**62, "sequence": 1, "at": str(time.time_ns() + 3600 * 10**9), "people": []}
+        many = {**far_ahead, "people": [{"id": i} for i in range(10_000)]}
+        for data in (b"", b"garbage", b"[" * 1000, b"\xff" * 5000, b"{}", json.dumps(far_ahead).encode(), json.dumps(many).encode(),
+                     json.dumps({**far_ahead, "cell": "a"}).encode()):
+            self.assertEqual(as_b.publish("chorus.hall.b.people", data), "PONG")
+            self.assertEqual(as_b.publish("chorus.hall.b.status", data), "PONG")
+        wait_for("they are refused and counted", lambda: self.cells(a)["refused"] >= refused + 10)
+        self.assertGreater(self.frames_in(a, 1), ENOUGH_HZ)
+        self.assertEqual(self.people(a).keys() | self.people(b).keys(), before | self.people(b).keys())
+        wait_for("b itself is heard all the same", lambda: self.states(a).get("b") == "heard")
+
+    def a_wrong_password(self):
+        c = self.start_cell("c", {}, **{"site.password": "wrong"})
+        wait_for("it says so", lambda: "refuses the user or the password" in self.cells(c).get("trouble", ""))
+        self.assertFalse(self.cells(c)["connected"])
+        self.assertTrue(c.alive())
+        c.stop()
+
+    def two_of_one_name(self, a, sensors):
+        twin = self.start_cell("b", sensors, state_dir="")
+        wait_for("the twin is connected", lambda: self.cells(twin)["connected"])
+        wait_for("a notices", lambda: "CellTwice" in a.text())
+        wait_for("the first b is heard all the same", lambda: self.states(a).get("b") == "heard")
+        twin.stop()
+
+    def a_killed_server(self, a, b, ids):
+        self.stop_server()
+        for cell in (a, b):
+            wait_for("it notices", lambda cell=cell: not self.cells(cell)["connected"])
+            self.assertGreater(self.frames_in(cell, 1), ENOUGH_HZ, "frames come as before")
+        self.start_server()
+        for cell, other in ((a, "b"), (b, "a")):
+            wait_for("they hear one another again", lambda cell=cell, other=other: self.states(cell).get(other) == "heard")
+        wait_for("one person under one id again", lambda: self.one_id(a, b))
+        self.assertEqual(self.people(a).keys(), ids, "and it is the id from before")
+
+
+if __name__ == "__main__":
+    unittest.main()
