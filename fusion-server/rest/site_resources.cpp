@@ -14,12 +14,11 @@ using resource::Node;
 using ViewPtr = std::shared_ptr<const site::SiteView>;
 
 /// Places to a hundredth of a millimetre, as cells tell them one another.
-constexpr int kPlaceDigits = 5;
+constexpr int kSiteDigits = 5;
 
 void add_vector(Node& node, const std::array<const char*, 3>& keys, const Eigen::Vector3d& value) {
   for (Eigen::Index i = 0; i < 3; ++i)
-    node.properties.emplace_back(keys[static_cast<std::size_t>(i)],
-                                 Decimal{value[i], kPlaceDigits});
+    node.properties.emplace_back(keys[static_cast<std::size_t>(i)], Decimal{value[i], kSiteDigits});
 }
 
 std::string_view state_of(const site::KnownCell& cell, const site::CellId& own) {

@@ -7,20 +7,20 @@
 namespace chorus::ctl {
 namespace {
 
-std::string member(const nlohmann::json& object, const char* key) {
+std::string text_at(const nlohmann::json& object, const char* key) {
   const auto it = object.is_object() ? object.find(key) : object.end();
   return it != object.end() && it->is_string() ? it->get<std::string>() : std::string();
 }
 
-bool truth(const nlohmann::json& object, const char* key) {
+bool flag_at(const nlohmann::json& object, const char* key) {
   const auto it = object.is_object() ? object.find(key) : object.end();
   return it != object.end() && it->is_boolean() && it->get<bool>();
 }
 
 Finding cell_finding(const std::string& name, const nlohmann::json& cell) {
   const std::string subject = "cell " + name;
-  const std::string state = member(cell, "state");
-  if (!truth(cell, "placed"))
+  const std::string state = text_at(cell, "state");
+  if (!flag_at(cell, "placed"))
     return {false, subject, "has no place in the site, so nobody of it is recognised elsewhere",
             "name the file of places (site.places) in its fusion.json; docs/guide/hall.md"};
   if (state == "silent")
@@ -34,15 +34,15 @@ Finding cell_finding(const std::string& name, const nlohmann::json& cell) {
 }  // namespace
 
 Findings site_findings_of(const nlohmann::json& cells) {
-  const std::string subject = "site " + member(cells, "siteName");
-  if (!truth(cells, "connected")) {
-    const std::string trouble = member(cells, "trouble");
+  const std::string subject = "site " + text_at(cells, "siteName");
+  if (!flag_at(cells, "connected")) {
+    const std::string trouble = text_at(cells, "trouble");
     return {{false, subject,
              "is not connected: " + (trouble.empty() ? "no server answers" : trouble),
              "systemctl status chorus-site on the server's host; site.servers, user, password and "
              "ca in fusion.json"}};
   }
-  Findings all{{true, subject, "is connected by " + member(cells, "server")}};
+  Findings all{{true, subject, "is connected by " + text_at(cells, "server")}};
   const auto list = cells.find("siteCells");
   if (list == cells.end() || !list->is_object()) return all;
   for (const auto& [name, cell] : list->items()) all.push_back(cell_finding(name, cell));
@@ -52,9 +52,9 @@ Findings site_findings_of(const nlohmann::json& cells) {
 Findings site_findings(const ExaminedService& service) {
   const auto section = service.config.find("site");
   if (service.kind != "fusion" || section == service.config.end() ||
-      member(*section, "name").empty())
+      text_at(*section, "name").empty())
     return {};
-  const std::string subject = "site " + member(*section, "name");
+  const std::string subject = "site " + text_at(*section, "name");
   const auto answer = ask_service(service, "site/cells/");
   if (!answer) return {};  // health_finding() says that the service does not answer.
   if (answer->status == http::status::kNotFound)

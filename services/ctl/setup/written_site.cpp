@@ -20,7 +20,7 @@ namespace {
 constexpr unsigned long kBcryptCost = 10;
 constexpr const char* kReader = "reader";
 
-std::string text_of(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string as_json(const std::string& text) { return nlohmann::json(text).dump(); }
 
 std::string bcrypt_of(const std::string& password) {
   char* salt = crypt_gensalt_ra("$2b$", kBcryptCost, nullptr, 0);
@@ -52,13 +52,13 @@ std::string cell_user(const SiteWishes& wishes, const std::string& cell,
       "          subscribe: [\"chorus.{2}.>\", \"_INBOX.>\"]\n"
       "          allow_responses: true\n"
       "        }} }}\n",
-      text_of(cell), text_of(bcrypt_of(password)), wishes.name, cell);
+      as_json(cell), as_json(bcrypt_of(password)), wishes.name, cell);
 }
 
 std::string tls_section(const std::string& folder) {
   if (folder.empty()) return {};
   return fmt::format("tls {{ cert_file: {}, key_file: {}, timeout: 5 }}\n",
-                     text_of(folder + "/host.crt"), text_of(folder + "/host.key"));
+                     as_json(folder + "/host.crt"), as_json(folder + "/host.key"));
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ std::string server_config(const SiteWishes& wishes, const std::vector<std::strin
       "      {{ user: {}, password: {}\n"
       "        permissions: {{ publish: [\"chorus.{}.*.ask.>\"], subscribe: [\"chorus.{}.>\", "
       "\"_INBOX.>\"] }} }}\n",
-      text_of(kReader), text_of(bcrypt_of(passwords.back())), wishes.name, wishes.name);
+      as_json(kReader), as_json(bcrypt_of(passwords.back())), wishes.name, wishes.name);
   return fmt::format(
       "# The server by which the cells of \"{0}\" meet, written by chorus init site.  A new cell: "
       "chorus init site\n"
@@ -110,8 +110,8 @@ std::string server_config(const SiteWishes& wishes, const std::vector<std::strin
       "    ]\n"
       "  }}\n"
       "}}\n",
-      wishes.name, text_of(fmt::format("{}:{}", wishes.listen, wishes.port)), text_of(wishes.name),
-      tls_section(wishes.tls), text_of(wishes.store), users);
+      wishes.name, as_json(fmt::format("{}:{}", wishes.listen, wishes.port)), as_json(wishes.name),
+      tls_section(wishes.tls), as_json(wishes.store), users);
 }
 
 std::string cell_config(const SiteWishes& wishes, const std::string& cell,
