@@ -23,12 +23,6 @@ struct AssociationConfig {
   Duration slow_down = std::chrono::seconds(2);
   /// How long a person who left can be recognised by their build; 0: not at all.
   Duration remember = std::chrono::seconds(60);
-  /// How long a newcomer is usually observed before it is decided which missing person, if any,
-  /// they are.
-  Duration recognise = std::chrono::seconds(1);
-  /// The build of a person who was unseen for longer than this is compared with the build from
-  /// before.
-  Duration question = std::chrono::milliseconds(200);
   /// Two published tracks merge after this many consecutive instants at the same spot without a
   /// common sensor.
   int merge_frames = 15;

@@ -13,17 +13,26 @@ constexpr double kMostSight = 60.0;  // [s]; older measurements fade.
 struct Span {
   std::array<JointId, 2> left;
   std::array<JointId, 2> right;  ///< Equal to `left` for a length without sides.
+  /// Weight in the size of the body: the length [m], because a joint's error is the same for short
+  /// and long bones, and neighbouring bones have it with opposite signs, so that it cancels in
+  /// their sum.  Less for the shoulders, whose width is seen from the front only.
+  double weight;
 };
 
 constexpr std::array<Span, kSpans> kSpanTable{{
-    {{JointId::SpineBase, JointId::SpineShoulder}, {JointId::SpineBase, JointId::SpineShoulder}},
-    {{JointId::SpineShoulder, JointId::Head}, {JointId::SpineShoulder, JointId::Head}},
+    {{JointId::SpineBase, JointId::SpineShoulder},
+     {JointId::SpineBase, JointId::SpineShoulder},
+     0.5},
+    {{JointId::SpineShoulder, JointId::Head}, {JointId::SpineShoulder, JointId::Head}, 0.25},
     {{JointId::ShoulderLeft, JointId::ShoulderRight},
-     {JointId::ShoulderLeft, JointId::ShoulderRight}},
-    {{JointId::ShoulderLeft, JointId::ElbowLeft}, {JointId::ShoulderRight, JointId::ElbowRight}},
-    {{JointId::ElbowLeft, JointId::WristLeft}, {JointId::ElbowRight, JointId::WristRight}},
-    {{JointId::HipLeft, JointId::KneeLeft}, {JointId::HipRight, JointId::KneeRight}},
-    {{JointId::KneeLeft, JointId::AnkleLeft}, {JointId::KneeRight, JointId::AnkleRight}},
+     {JointId::ShoulderLeft, JointId::ShoulderRight},
+     0.12},
+    {{JointId::ShoulderLeft, JointId::ElbowLeft},
+     {JointId::ShoulderRight, JointId::ElbowRight},
+     0.28},
+    {{JointId::ElbowLeft, JointId::WristLeft}, {JointId::ElbowRight, JointId::WristRight}, 0.25},
+    {{JointId::HipLeft, JointId::KneeLeft}, {JointId::HipRight, JointId::KneeRight}, 0.4},
+    {{JointId::KneeLeft, JointId::AnkleLeft}, {JointId::KneeRight, JointId::AnkleRight}, 0.35},
 }};
 
 // Standard deviations [ln m], fitted on simulated sensors with seeds from 1001 on.  Repeatability
@@ -37,12 +46,17 @@ constexpr double kOwnInOneView = 0.036;
 constexpr double kOthersSize = 0.050;
 // Of the lengths of different people of the same size.
 constexpr double kOthersLength = 0.020;
-// Variance of the mean over all lengths, relative to its value if the errors were independent.
+// Variance of the size, relative to that of a mean of as many independent errors.
 constexpr double kSizeShare = 0.5;
 constexpr double kLongMean = 60.0;  // [s] of a Repeatability
 constexpr double kMostOff = 50.0;   // A second that is farther off counts as this much.
-// A length that was in view for this time only [s] has twice the variance.
-constexpr double kSlowly = 0.3;
+// The mean of a length over a time in view varies less the longer that is: its variance is the sum
+// of these shares; errors last for kErrorTime [s], except for those that stay, and those of a
+// frame.
+constexpr double kLastingShare = 0.35;
+constexpr double kSlowShare = 1.7;
+constexpr double kErrorTime = 1.5;
+constexpr double kFrameShare = 0.1;  // [s]
 
 double squared(double value) { return value * value; }
 
@@ -81,29 +95,39 @@ Located tracked_points(const Skeleton<WorldSpace>& body) {
 
 double variance_of(const Build& build, std::size_t span) {
   const double by_views = squared(kOwnInOneView) / std::max(1.0, build.views);
-  return (squared(kOwnLength) + by_views) * (1.0 + kSlowly / build.sight[span]);
+  const double time = build.sight[span];
+  const double by_time =
+      kLastingShare + kSlowShare / (1.0 + time / kErrorTime) + kFrameShare / time;
+  return (squared(kOwnLength) + by_views) * by_time;
 }
 
 struct Difference {
   double count = 0.0;  ///< Number of lengths that both have.
   double own = 0.0;    ///< Variance of the difference of a length if the two are one person.
-  double size = 0.0;   ///< Mean over the lengths [ln m].
+  double size = 0.0;   ///< Weighted mean over the lengths [ln m].
   double rest = 0.0;   ///< Sum of the squared differences from that mean.
 };
 
+bool in_both(const StatedBuild& one, const StatedBuild& other, std::size_t span) {
+  return one.variance[span] > 0 && other.variance[span] > 0;
+}
+
 Difference difference(const StatedBuild& one, const StatedBuild& other) {
   Difference all;
-  std::vector<double> off;
+  double weights = 0.0;
   for (std::size_t i = 0; i < kSpans; ++i) {
-    if (!(one.variance[i] > 0) || !(other.variance[i] > 0)) continue;
-    off.push_back(one.mean[i] - other.mean[i]);
+    if (!in_both(one, other, i)) continue;
+    all.count += 1.0;
     all.own += one.variance[i] + other.variance[i];
+    all.size += kSpanTable[i].weight * (one.mean[i] - other.mean[i]);
+    weights += kSpanTable[i].weight;
   }
-  if (off.empty()) return all;
-  all.count = static_cast<double>(off.size());
+  if (all.count == 0.0) return all;
   all.own /= all.count;
-  for (const double each : off) all.size += each / all.count;
-  for (const double each : off) all.rest += squared(each - all.size);
+  all.size /= weights;
+  for (std::size_t i = 0; i < kSpans; ++i) {
+    if (in_both(one, other, i)) all.rest += squared(one.mean[i] - other.mean[i] - all.size);
+  }
   return all;
 }
 

@@ -71,10 +71,9 @@ double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vect
   const PlacedView& body = loose.view;
   if (!body.rays) {
     const Track& track = candidate.track;
-    const Build& known = track.before ? *track.before : track.build;
     return std::hypot(
                horizontal_distance(body.core, place, body.error + track.error, candidate.gate),
-               kSizeReach * size_difference(loose.spans, known)) /
+               kSizeReach * size_difference(loose.spans, track.usual)) /
                candidate.gate +
            (candidate.track.admitted ? 0.0 : kDoubtful);
   }

@@ -48,7 +48,7 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
   std::vector<Candidate> candidates;
   for (const Track& track : tracks.people) {
     const Duration age = std::chrono::abs(instant - track.seen);
-    const Duration coast = (track.named || track.before) && is_settled(track, config)
+    const Duration coast = track.named && is_settled(track, config)
                                ? config.coast
                                : std::min(config.coast, kCoastUnknown);
     if (age <= coast) {
@@ -169,7 +169,8 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
     const Track& track = candidate.track;
     // `seen` is unchanged by a single ray body, which does not determine a position.
     const bool placed = instant - track.seen <= config.carry;
-    if (placed && track.named && is_settled(track, config)) people.push_back(person_of(candidate));
+    const bool shown = track.named && !track.withheld && is_settled(track, config);
+    if (placed && shown) people.push_back(person_of(candidate));
   }
   keep_the_best(people);
   return people;
@@ -222,7 +223,7 @@ std::vector<Candidate> newcomers(std::vector<PlacedView> views,
 
 Grouping group(Scene scene, const Tracks& before, const AssociationConfig& config) {
   const Timestamp instant = scene.instant;
-  Grouping grouping{{}, before};
+  Grouping grouping{{}, before, {}};
   Tracks& tracks = grouping.tracks;
   tracks.next_id = std::max<std::uint64_t>(tracks.next_id, 1);
   if (before.instant == Timestamp{}) tracks.began = instant;
@@ -231,11 +232,11 @@ Grouping group(Scene scene, const Tracks& before, const AssociationConfig& confi
   for (Candidate& each : newcomers(std::move(leftovers), candidates, tracks.next_id, config)) {
     if (candidates.size() < kMaxTracks) candidates.push_back(std::move(each));
   }
-  for (Candidate& candidate : candidates) update(candidate, instant, config);
+  for (Candidate& candidate : candidates) update(candidate, instant);
   merge_doubles(candidates, config);
   const Duration elapsed = std::clamp(instant - before.instant, Duration{0}, config.coast);
   admit(candidates, scene.observers, elapsed, tracks, config);
-  recognise(candidates, tracks, config);
+  grouping.corrections = recognise(candidates, tracks, instant, config);
   std::ranges::sort(candidates, {}, [](const Candidate& one) { return one.track.id; });
   grouping.people = published(candidates, instant, config);
   tracks.people.clear();

@@ -15,6 +15,7 @@
 
 #include "fusion-server/associate/association_config.h"
 #include "fusion-server/associate/track.h"
+#include "fusion-server/flow/correction.h"
 #include "fusion-server/flow/person.h"
 
 namespace chorus::associate {
@@ -24,6 +25,8 @@ struct Grouping {
   /// a frame holds; if there are more, those whom several sensors see are preferred.
   std::vector<Person> people;
   Tracks tracks;
+  /// Who was published under another's id until now.
+  std::vector<Correction> corrections = {};
 };
 
 /// A registered sensor that has delivered a frame for the instant, even if it saw nobody.

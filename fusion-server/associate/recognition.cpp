@@ -1,133 +1,264 @@
 #include "fusion-server/associate/recognition.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
+
+#include "fusion-server/associate/assignment.h"
 
 namespace chorus::associate {
 namespace {
 
 constexpr std::size_t kMostMissingTracks = 64;
-// Time in view [s], summed over the views, after which builds can exclude people.
-constexpr double kGlance = 1.5;
-// With n times as many views as this, a fraction 1/n of the time is enough to recognise somebody.
+// Time in view [s] after which it is decided who somebody is.  With n times as many views as
+// kManyViews, a fraction 1/n of it is enough.
+constexpr double kLook = 1.0;
 constexpr double kManyViews = 4.0;
-constexpr double kUsual = 2.0;        // [s] in view after which a build is the person's usual one
-constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
-// Prior log odds that a person found after a gap, at the expected place, is the one from before it.
-constexpr double kContinuity = 1.5;
-// Log odds below which a person found after a gap is not published while the builds are compared.
+// Time in view [s], summed over two views at most, after which builds can exclude people.
+constexpr double kGlance = 0.5;
+constexpr double kSettled = 1.0;  // [s] in view after which somebody can be recognised
+constexpr double kUsual = 2.0;    // [s] in view after which a build is the person's usual one
+constexpr double kSure = 5.0;     // Log odds by which the likeliest answer is certain.
+constexpr double kInQuestion =
+    2.0;                       // Log odds of being the same below which a track is questioned.
+constexpr double kTurn = 2.0;  // The same by which another answer is likelier than the id in use.
+// Log odds, against the likeliest other answer, below which an id is withheld.
 constexpr double kUnlikely = -0.5;
-// A newcomer not recognised within this time plus config.recognise is taken for a new person.
-constexpr Duration kNoBones = std::chrono::seconds(2);
+// Prior log odds that somebody is a person who is expected at that place, and that somebody who was
+// recognised is still the same.
+constexpr double kExpected = 1.5;
+constexpr double kRecognised = 1.0;
+// A newcomer not recognised within this time is taken for a new person.
+constexpr Duration kNoBones = std::chrono::seconds(3);
+// Two people change places within this time.
+constexpr Duration kExchange = std::chrono::seconds(1);
+constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// True if the candidate's person is missing.  A candidate without an id passed it on in become(),
-/// and is about to be erased.
-bool has_left(const Candidate& candidate) {
-  return candidate.track.id != PersonId{} && candidate.sights.empty() &&
-         (candidate.track.named || candidate.track.before);
-}
+bool can_be_missing(const Build& build) { return sight_of(build) >= kSettled; }
 
-Missing missing_of(const Track& track) {
-  return {track.id, track.before ? track.lost : track.seen, track.before.value_or(track.build)};
-}
-
-/// The people who were already missing at `found`, when a track was found that may be one of them.
-std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate>& candidates,
-                                    const Tracks& tracks) {
-  std::vector<Missing> all = tracks.missing;
-  for (const Candidate& each : candidates) {
-    if (has_left(each)) all.push_back(missing_of(each.track));
-  }
-  std::erase_if(all, [&](const Missing& each) { return each.seen > found; });
-  return all;
-}
-
-/// True if the build was seen long enough to decide whether two people are the same.
-bool is_looked_at(const Build& build, const AssociationConfig& config) {
-  return sight_of(build) * std::max(1.0, build.views / kManyViews) >= seconds(config.recognise);
-}
-
-bool is_glance(const Build& build) { return sight_of(build) * build.views >= kGlance; }
-
-/// The person that a build most likely belongs to; `odds` are log odds.
-struct Likeliest {
-  std::optional<PersonId> id;
-  double odds = 0.0;
+/// Somebody who may be the person of a track.
+struct Known {
+  PersonId id;
+  Timestamp seen;
+  Build build;
+  const Candidate* unseen = nullptr;  ///< The track that expects the person somewhere.
 };
 
-Likeliest likeliest_of(const Build& build, const std::vector<Missing>& missing,
-                       const Repeatability& repeatability) {
-  Likeliest best;
-  for (const Missing& each : missing) {
-    const double odds = likeness(build, each.build, repeatability);
-    if (!best.id || odds > best.odds) best = {each.id, odds};
+/// Somebody of whom it is asked who they are.
+struct Question {
+  Candidate* candidate = nullptr;
+  Timestamp since;                      ///< From when on it is the person in question.
+  Build build;                          ///< Since then.
+  std::optional<Doubt> doubt = {};      ///< Of a track with an id: that the person changed.
+  std::optional<std::size_t> own = {};  ///< Who had the id before, as an index of the known people.
+};
+
+struct Answer {
+  std::optional<std::size_t> known;  ///< None: somebody new.
+  bool decided = false;
+};
+
+Track& track_of(const Question& question) { return question.candidate->track; }
+
+/// What is remembered of a track that ends: if its person probably changed, the one before.
+Missing missing_of(const Track& track, const Repeatability& repeatability) {
+  const auto doubt = track.build.doubt(repeatability);
+  if (!doubt || doubt->odds >= 0) return {track.id, track.seen, track.build.whole()};
+  return {track.id, track.build.all()[doubt->cut - 1].end, track.build.before(doubt->cut)};
+}
+
+std::vector<Question> questions_of(std::vector<Candidate>& candidates, const Tracks& tracks,
+                                   Timestamp instant, const AssociationConfig& config) {
+  std::vector<Question> questions;
+  for (Candidate& each : candidates) {
+    const Track& track = each.track;
+    if (track.seen != instant || track.hits < config.confirm_frames) continue;
+    if (!track.named) {
+      questions.push_back({&each, track.found, track.build.whole()});
+      continue;
+    }
+    const auto doubt = track.build.doubt(tracks.repeatability);
+    if (!doubt || doubt->odds > kInQuestion) continue;
+    const Timestamp since = track.build.all()[doubt->cut].begin;
+    questions.push_back({&each, since, track.build.after(doubt->cut), doubt});
   }
-  return best;
+  return questions;
+}
+
+/// Everybody who may be one of those in question; sets Question::own.
+std::vector<Known> known_people(std::vector<Question>& questions,
+                                const std::vector<Candidate>& candidates, const Tracks& tracks,
+                                Timestamp instant) {
+  std::vector<Known> known;
+  for (const Missing& each : tracks.missing) known.push_back({each.id, each.seen, each.build});
+  for (const Candidate& each : candidates) {
+    if (!each.track.named || !each.track.admitted || each.track.seen == instant) continue;
+    Missing gone = missing_of(each.track, tracks.repeatability);
+    if (can_be_missing(gone.build)) known.push_back({gone.id, gone.seen, gone.build, &each});
+  }
+  for (Question& question : questions) {
+    if (!question.doubt) continue;
+    const Track& track = track_of(question);
+    question.own = known.size();
+    known.push_back({track.id, track.build.all()[question.doubt->cut - 1].end,
+                     track.build.before(question.doubt->cut)});
+  }
+  return known;
+}
+
+/// Log odds that the person in question is the known one, against somebody new.
+double odds_of(const Question& question, const Known& known, const Repeatability& repeatability) {
+  if (question.own && known.id == track_of(question).id) return question.doubt->odds;
+  const Duration late = question.doubt ? kExchange : Duration{0};
+  if (known.seen > question.since + late || !can_be_missing(known.build)) return kNever;
+  const double odds = likeness(question.build, known.build, repeatability);
+  const bool expected =
+      known.unseen &&
+      horizontal_distance(track_of(question).core, known.unseen->predicted) <= known.unseen->gate;
+  return odds + (expected ? kExpected : 0.0);
+}
+
+/// The log odds of all pairs, row by row.
+CostTable odds_table(const std::vector<Question>& questions, const std::vector<Known>& known,
+                     const Repeatability& repeatability) {
+  CostTable table{questions.size(), known.size(), {}, 0.0, 0.0};
+  for (const Question& question : questions) {
+    for (const Known& each : known) table.cost.push_back(-odds_of(question, each, repeatability));
+  }
+  return table;
+}
+
+bool is_looked_at(const Build& build) {
+  return sight_of(build) * std::max(1.0, build.views / kManyViews) >= kLook;
+}
+
+bool is_glance(const Build& build) {
+  return sight_of(build) * std::min(build.views, 2.0) >= kGlance;
+}
+
+/// True if it can be said now that the answer in column `known`, or somebody new, is right.
+bool is_decided(const Question& question, const CostTable& table, std::size_t row,
+                std::optional<std::size_t> known, Timestamp instant) {
+  double best = 0.0;
+  double rival = known ? 0.0 : kNever;
+  bool anybody = false;
+  for (std::size_t i = 0; i < table.columns; ++i) {
+    const double odds = -table.at(row, i);
+    anybody = anybody || odds > kNever;
+    (i == known ? best : rival) = i == known ? odds : std::max(rival, odds);
+  }
+  if (!anybody) return true;
+  // An id in use is given up for a reason only: what is not clear yet may become so.
+  if (question.doubt && known != question.own && best - (-table.at(row, *question.own)) < kTurn)
+    return false;
+  if (is_looked_at(question.build)) return true;
+  if (!question.doubt && instant - question.since > kNoBones) return true;
+  return is_glance(question.build) && best - rival > kSure;
+}
+
+/// The answers that together are likeliest.
+std::vector<Answer> answers_of(const std::vector<Question>& questions, const CostTable& table,
+                               Timestamp instant) {
+  const auto chosen = assign(table);
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < questions.size(); ++i)
+    answers.push_back({chosen[i], is_decided(questions[i], table, i, chosen[i], instant)});
+  // Whoever gives up an id to somebody else does so at the same time.
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    for (std::size_t k = 0; k < answers.size(); ++k) {
+      if (!answers[k].decided || !answers[k].known || answers[k].known == questions[k].own)
+        continue;
+      if (answers[k].known == questions[i].own) answers[i].decided = true;
+    }
+  }
+  return answers;
+}
+
+/// Publishes nobody under the id for as long as it takes to look, if it is probably somebody
+/// else's.
+void withhold(const Question& question, const CostTable& table, std::size_t row) {
+  double best = 0.0;
+  for (std::size_t i = 0; i < table.columns; ++i) {
+    if (i != question.own) best = std::max(best, -table.at(row, i));
+  }
+  track_of(question).withheld = is_glance(question.build) && !is_looked_at(question.build) &&
+                                question.doubt->odds < best + kUnlikely;
+}
+
+void add_missing(Missing missing, Tracks& tracks) {
+  if (!can_be_missing(missing.build)) return;
+  tracks.missing.push_back(std::move(missing));
+  if (tracks.missing.size() > kMostMissingTracks) tracks.missing.erase(tracks.missing.begin());
+}
+
+/// Splits the track: its past becomes missing, and its present has no id yet.
+void split(const Question& question, Tracks& tracks) {
+  Track& track = track_of(question);
+  const std::size_t cut = question.doubt->cut;
+  if (track.admitted)
+    add_missing({track.id, track.build.all()[cut - 1].end, track.build.before(cut)}, tracks);
+  track.build.keep_after(cut);
+  track.found = question.since;
+  track.named = false;
+  track.withheld = false;
 }
 
 /// Gives a missing person's id to the track.
 void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Tracks& tracks) {
-  for (Missing& each : tracks.missing) {
-    if (each.id == id) track.build.add(each.build);
-  }
-  std::erase_if(tracks.missing, [&](const Missing& each) { return each.id == id; });
   for (Candidate& each : candidates) {
-    if (each.track.id != id || !has_left(each)) continue;
-    track.build.add(missing_of(each.track).build);
+    if (each.track.id != id || &each.track == &track || !each.track.named) continue;
+    miss(each.track, tracks);
     each.track.id = PersonId{};  // This candidate is removed later.
   }
   track.id = id;
-}
-
-/// Gives a newcomer the id of the missing person whom the build shows them to be.  True once it is
-/// decided who they are: recognised, new to all, or taken for new after a time.
-bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& tracks,
-          const AssociationConfig& config) {
-  Track& track = candidate.track;
-  const auto missing = missing_before(track.found, candidates, tracks);
-  if (missing.empty()) return true;
-  const Likeliest best = likeliest_of(track.build, missing, tracks.repeatability);
-  const bool looked_at = is_looked_at(track.build, config);
-  if (looked_at && best.odds > 0) {
-    become(track, *best.id, candidates, tracks);
-    return true;
-  }
-  const bool new_to_all = is_glance(track.build) && best.odds < kImpossible;
-  return looked_at || new_to_all || track.seen - track.found > kNoBones + config.recognise;
-}
-
-/// Compares the builds from before and after the gap, of a person who was found again.
-void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
-  const double odds = kContinuity + likeness(*track.before, track.build, tracks.repeatability);
-  const bool looked_at = is_looked_at(track.build, config);
-  track.named = !is_glance(track.build) || odds > kUnlikely;
-  if ((is_glance(track.build) && odds < kImpossible) || (looked_at && odds < 0)) {
-    miss(track, tracks);
-    track.id = PersonId{tracks.next_id++};
-    track.before.reset();
-    track.named = false;
-    track.found = track.lost;
-  } else if (looked_at) {
-    track.build.add(*std::exchange(track.before, std::nullopt));
-    track.named = true;
-  }
+  const auto missing = std::ranges::find(tracks.missing, id, &Missing::id);
+  if (missing == tracks.missing.end()) return;
+  track.build.precede(missing->build, missing->seen, kRecognised);
+  tracks.missing.erase(missing);
 }
 
 /// Learns from a person who stays in view how well the sensors repeat a build.
-void compare_seconds(Track& track, Repeatability& repeatability) {
-  if (sight_of(track.second) < 1.0) return;
-  if (!track.before && sight_of(track.build) >= kUsual)
-    repeatability.learn(track.second, track.build);
-  track.second = {};
+void learn(const Track& track, Repeatability& repeatability) {
+  const auto all = track.build.all();
+  if (!track.named || all.empty() || sight_of(all.back().build) < 1.0) return;
+  const Build usual = track.build.before(all.size() - 1);
+  const auto doubt = track.build.doubt(repeatability);
+  if (sight_of(usual) >= kUsual && (!doubt || doubt->odds > kInQuestion))
+    repeatability.learn(all.back().build, usual);
+}
+
+/// Names those for whom it is decided.
+std::vector<Correction> apply(const std::vector<Question>& questions,
+                              const std::vector<Answer>& answers, const std::vector<Known>& known,
+                              std::vector<Candidate>& candidates, Tracks& tracks) {
+  std::vector<std::size_t> changed;
+  std::vector<PersonId> before;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!answers[i].decided || (questions[i].own && answers[i].known == questions[i].own)) continue;
+    changed.push_back(i);
+    before.push_back(questions[i].doubt ? track_of(questions[i]).id : PersonId{});
+    if (questions[i].doubt) split(questions[i], tracks);
+  }
+  std::vector<Correction> corrections;
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const Question& question = questions[changed[i]];
+    Track& track = track_of(question);
+    if (const auto who = answers[changed[i]].known) {
+      become(track, known[*who].id, candidates, tracks);
+    } else if (question.doubt) {
+      track.id = PersonId{tracks.next_id++};
+    }
+    track.named = true;
+    if (question.doubt) corrections.push_back({before[i], track.id, question.since, track.seen});
+  }
+  return corrections;
 }
 
 }  // namespace
 
 void miss(const Track& track, Tracks& tracks) {
-  if (!(track.named || track.before) || !track.admitted) return;
-  tracks.missing.push_back(missing_of(track));
-  if (tracks.missing.size() > kMostMissingTracks) tracks.missing.erase(tracks.missing.begin());
+  if (track.named && track.admitted) add_missing(missing_of(track, tracks.repeatability), tracks);
 }
 
 void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config) {
@@ -142,16 +273,26 @@ void forget(PersonId person, Tracks& tracks) {
   std::erase_if(tracks.missing, is_this);
 }
 
-void recognise(std::vector<Candidate>& candidates, Tracks& tracks,
-               const AssociationConfig& config) {
-  for (Candidate& each : candidates) {
-    if (each.sights.empty()) continue;
-    compare_seconds(each.track, tracks.repeatability);
-    if (each.track.before) question(each.track, tracks, config);
-    if (!each.track.named && !each.track.before && each.track.hits >= config.confirm_frames)
-      each.track.named = name(each, candidates, tracks, config);
+std::vector<Correction> recognise(std::vector<Candidate>& candidates, Tracks& tracks,
+                                  Timestamp instant, const AssociationConfig& config) {
+  for (const Candidate& each : candidates) {
+    if (each.track.seen == instant) learn(each.track, tracks.repeatability);
   }
+  std::vector<Question> questions = questions_of(candidates, tracks, instant, config);
+  const std::vector<Known> known = known_people(questions, candidates, tracks, instant);
+  const CostTable table = odds_table(questions, known, tracks.repeatability);
+  const std::vector<Answer> answers = answers_of(questions, table, instant);
+  for (Candidate& each : candidates) {
+    if (each.track.seen == instant) each.track.withheld = false;
+  }
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (questions[i].doubt) withhold(questions[i], table, i);
+  }
+  auto corrections = apply(questions, answers, known, candidates, tracks);
   std::erase_if(candidates, [](const Candidate& each) { return each.track.id == PersonId{}; });
+  for (Candidate& each : candidates)
+    each.track.usual = missing_of(each.track, tracks.repeatability).build;
+  return corrections;
 }
 
 }  // namespace chorus::associate

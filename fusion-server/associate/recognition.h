@@ -1,19 +1,27 @@
-// Decides who a person is, by their build, when they appear or come back.
+// Decides who the people in view are, by their builds, at every instant.
 //
-// While people are missing, a newcomer is not published until it is decided whether the newcomer is
-// one of them: usually after AssociationConfig::recognise in view, sooner if many sensors see the
-// newcomer or the builds differ too much.  A person who is found again after a gap keeps the id
-// while the builds before and after the gap are compared.  If they are the builds of two people,
-// the person found gets a new id, and the one from before the gap becomes missing under the old id.
+// The persons in question are newcomers while people are missing, and those whose build suggests
+// that a sensor went over to somebody else (tracklets.h).  Who they may be: people who are missing
+// or out of sight, persons in question as they were before, and somebody new.  All questions are
+// answered together, so that the sum of the log odds is greatest; two people who took each other's
+// place get their ids back at once.  An answer counts when one alternative is much likelier than
+// all others, or after about a second in view.  A track that changed its person is split where that
+// happened: what was before it becomes missing under the old id.
+//
+// Only somebody whose build is known can be missing; whoever was seen too briefly, or with too few
+// joints, cannot be recognised and keeps nobody waiting.
 #pragma once
+
+#include <vector>
 
 #include "fusion-server/associate/association_config.h"
 #include "fusion-server/associate/track.h"
+#include "fusion-server/flow/correction.h"
 
 namespace chorus::associate {
 
-/// Adds the track to `tracks.missing`, unless its id was never published. If too many people are
-/// missing, the first of them is dropped.
+/// Adds the track's person to `tracks.missing`, if they can be recognised and their id was
+/// published.  If too many people are missing, the first of them is dropped.
 void miss(const Track& track, Tracks& tracks);
 
 /// Forgets people who have been missing for too long.
@@ -22,8 +30,10 @@ void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config);
 /// Forgets one person, whether they are here or missing; their id is never given again.
 void forget(PersonId person, Tracks& tracks);
 
-/// Decides everything that can be decided now.  A candidate who turns out to be a missing person
-/// takes over that person's id; a track that had the id until then is removed.
-void recognise(std::vector<Candidate>& candidates, Tracks& tracks, const AssociationConfig& config);
+/// Decides everything that can be decided now, and returns which published ids were another's.  A
+/// candidate who turns out to be a missing person takes over that person's id; a track that had the
+/// id until then is removed.
+std::vector<Correction> recognise(std::vector<Candidate>& candidates, Tracks& tracks,
+                                  Timestamp instant, const AssociationConfig& config);
 
 }  // namespace chorus::associate

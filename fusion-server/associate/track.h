@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/body/bones.h"
-#include "fusion-server/associate/build.h"
+#include "fusion-server/associate/tracklets.h"
 
 namespace chorus::associate {
 
@@ -41,17 +41,15 @@ struct Track {
   Duration alone{0};  ///< How long the doubted person has been seen; see Admission::judge().
   /// How long sensors have seen through the place where the person is expected.
   Duration through{0};
-  Build build = {};   ///< Learned since the person was found, or found again.
-  Build second = {};  ///< The same, of the current second in view.
-  /// Set while it is not decided whether the person found after a gap is the one from before it:
-  /// the build from before the gap.  `lost` is when the gap began.
-  std::optional<Build> before = {};
-  Timestamp lost = {};
-  /// True if the id is settled: the person is not one of those missing, or was recognised as one.
+  Tracklets build = {};  ///< What is known of the person's build.
+  Build usual = {};      ///< The same, without what may be somebody else's.
+  /// True once the id is given: the person is new, or was recognised.
   bool named = false;
+  /// True while the person now in view is probably not the one who has the id.
+  bool withheld = false;
 };
 
-/// A person who left, or who was not found for too long.
+/// A person who left, or who was not found for too long, and whose build is known.
 struct Missing {
   PersonId id;
   Timestamp seen;  ///< When last seen.

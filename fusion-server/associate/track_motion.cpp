@@ -12,8 +12,12 @@ namespace {
 
 constexpr double kVelocityBlend = 0.2;  // Exponential smoothing factor; about 0.15 s at 30 Hz.
 constexpr double kFastest = 4.0;        // [m/s], a sprint; limits the effect of one wrong view.
-constexpr double kKnown = 0.5;          // [s] in view above which builds can be compared.
-constexpr double kLongest = 0.1;        // [s]; one instant counts for at most this time.
+// Prior log odds that the person found after a gap, at the expected place, is the one from before
+// it, and that a person is the same when all bodies that show the person are new.
+constexpr double kAfterGap = 1.5;
+constexpr double kOtherBodies = 3.0;
+constexpr Duration kGap = std::chrono::milliseconds(200);  // A shorter one is noise of detection.
+constexpr double kLongest = 0.1;  // [s]; one instant counts for at most this time.
 
 /// Mean of the views that have a place.
 MeanPlace mean_of(const std::vector<PlacedView>& sights) {
@@ -77,15 +81,23 @@ void update_velocity(Track& track, std::vector<Footprint> prints, const Eigen::V
   track.footprints = std::move(prints);
 }
 
-/// After a gap: notes that the build now has to be compared with the build from before the gap.
-void question(Track& track, Timestamp instant, const AssociationConfig& config) {
-  if (track.hits == 0 || instant - track.seen <= config.question) return;
-  if (!track.before && sight_of(track.build) >= kKnown) {
-    track.before = track.build;
-    track.lost = track.seen;
+/// True if a body that shows the person now has shown the person before.
+bool goes_on(const std::vector<Footprint>& before, const std::vector<Footprint>& now) {
+  return std::ranges::any_of(now, [&](const Footprint& to) {
+    return std::ranges::any_of(before, [&](const Footprint& from) {
+      return std::tie(from.sensor, from.body) == std::tie(to.sensor, to.body);
+    });
+  });
+}
+
+/// Cuts the track where another person may have taken the place of the one it follows.
+void cut(Track& track, const std::vector<Footprint>& now, Timestamp instant) {
+  if (track.hits == 0) return;
+  if (instant - track.seen > kGap) {
+    track.build.cut(kAfterGap);
+  } else if (!now.empty() && !goes_on(track.footprints, now)) {
+    track.build.cut(kOtherBodies);
   }
-  if (track.before) track.build = {};
-  track.second = {};
 }
 
 }  // namespace
@@ -98,7 +110,7 @@ Candidate predict(const Track& track, Timestamp instant, const AssociationConfig
           config.gate + config.gate_growth * std::abs(age)};
 }
 
-void update(Candidate& candidate, Timestamp instant, const AssociationConfig& config) {
+void update(Candidate& candidate, Timestamp instant) {
   if (candidate.sights.empty()) return;
   Track& track = candidate.track;
   const bool rays = std::ranges::any_of(candidate.sights, &PlacedView::rays);
@@ -115,13 +127,13 @@ void update(Candidate& candidate, Timestamp instant, const AssociationConfig& co
     return;
   }
   const double elapsed = seconds(instant - track.seen);
-  update_velocity(track, footprints_of(candidate.sights), *found, elapsed);
-  question(track, instant, config);
+  std::vector<Footprint> prints = footprints_of(candidate.sights);
+  cut(track, prints, instant);
+  update_velocity(track, std::move(prints), *found, elapsed);
   if (track.hits == 0) track.found = instant;
   const Spans spans = spans_of(candidate.sights, track.joints);
   const double lasted = track.hits == 0 ? 0.0 : std::clamp(elapsed, 0.0, kLongest);
-  track.build.add(spans, lasted);
-  track.second.add(spans, lasted);
+  track.build.add(spans, instant, lasted);
   track.core = *found;
   track.error = mean.error();
   track.seen = instant;

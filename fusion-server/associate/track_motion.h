@@ -13,8 +13,9 @@ namespace chorus::associate {
 [[nodiscard]] Candidate predict(const Track& track, Timestamp instant,
                                 const AssociationConfig& config);
 
-/// Updates the candidate by its views. If they do not locate the person (there are none, or only
+/// Updates the candidate by its views, and cuts its build (tracklets.h) where nobody saw it before
+/// or all bodies that show it are new. If they do not locate the person (there are none, or only
 /// one camera without depth sees the person), the track stays as it was.
-void update(Candidate& candidate, Timestamp instant, const AssociationConfig& config);
+void update(Candidate& candidate, Timestamp instant);
 
 }  // namespace chorus::associate

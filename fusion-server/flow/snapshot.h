@@ -8,6 +8,7 @@
 #include "common/base/strong_id.h"
 #include "common/time/timestamp.h"
 #include "fusion-server/flow/aligned_sensor.h"
+#include "fusion-server/flow/correction.h"
 #include "fusion-server/flow/fused_body.h"
 
 namespace chorus {
@@ -29,6 +30,8 @@ struct Snapshot {
   std::vector<SensorReport> reports;
   /// Registration::version of the places that were used; another one: the world may have moved.
   std::uint64_t registration_version = 0;
+  /// Of ids in earlier snapshots, as far as they are noticed at this instant.
+  std::vector<Correction> corrections = {};
 };
 
 }  // namespace chorus

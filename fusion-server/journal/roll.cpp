@@ -51,7 +51,7 @@ bool same(const KnownPerson& a, const KnownPerson& b) {
   };
   return a.id == b.id && a.name == b.name && a.presence == b.presence && a.slot == b.slot &&
          a.sides_confidence == b.sides_confidence && lengths(a) == lengths(b) &&
-         a.sensors == b.sensors;
+         a.sensors == b.sensors && a.correction == b.correction;
 }
 
 tl::unexpected<Error> unknown(PersonId id) {
@@ -94,6 +94,9 @@ bool Roll::take(const Snapshot& snapshot) {
     if (forgotten_.contains(body.id)) continue;
     here.insert(body.id);
     update(entry_of(body.id, snapshot.instant), body, snapshot);
+  }
+  for (const Correction& each : snapshot.corrections) {
+    if (here.contains(each.person)) entry_of(each.person, snapshot.instant).correction = each;
   }
   for (KnownPerson& person : people_) {
     if (here.contains(person.id) || person.presence == Presence::Left) continue;

@@ -38,6 +38,8 @@ struct KnownPerson {
   std::optional<double> sides_confidence = {};
   std::optional<LearnedLength> stature = {};
   std::vector<SensorId> sensors = {};  ///< That see the person now.
+  /// The last time that the person was published under another id.
+  std::optional<Correction> correction = {};
 };
 
 class Roll {

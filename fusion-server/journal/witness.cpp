@@ -54,12 +54,14 @@ constexpr Kind kRecordingFailed{"recording-failed", Severity::Error,
 constexpr Kind kCame{"person-came"};
 constexpr Kind kLeft{"person-left"};
 constexpr Kind kBack{"person-back"};
+constexpr Kind kCorrected{"person-corrected"};
 
 constexpr std::array kKinds{
-    kSensorLive, kSensorLost,     kSensorBack,      kSensorRefused, kSensorMoved, kSensorInPlace,
-    kVerdict,    kAdopted,        kNotAdopted,      kProposed,      kReplaced,    kNotStored,
-    kClientCame, kClientLost,     kOutputFailed,    kOutputOpen,    kDiskLow,     kDiskRoom,
-    kRecording,  kRecordingEnded, kRecordingFailed, kCame,          kLeft,        kBack};
+    kSensorLive,      kSensorLost, kSensorBack, kSensorRefused, kSensorMoved,
+    kSensorInPlace,   kVerdict,    kAdopted,    kNotAdopted,    kProposed,
+    kReplaced,        kNotStored,  kClientCame, kClientLost,    kOutputFailed,
+    kOutputOpen,      kDiskLow,    kDiskRoom,   kRecording,     kRecordingEnded,
+    kRecordingFailed, kCame,       kLeft,       kBack,          kCorrected};
 
 /// Collects the events of one comparison.
 class Teller {
@@ -205,12 +207,20 @@ std::string called(const KnownPerson& person) {
   return person.name.empty() ? "Person " + id : person.name + " (person " + id + ")";
 }
 
+std::string corrected(const KnownPerson& person) {
+  const Correction& last = *person.correction;
+  return fmt::format("{} was shown as person {} for {:.1f} s.", called(person),
+                     last.published.value, seconds(last.until - last.since));
+}
+
 void tell_people(Teller& out, const Glimpse& now, const Glimpse& last) {
   for (const KnownPerson& person : now.people) {
     const auto* was = found(last.people, person.id, &KnownPerson::id);
     const bool here = person.presence != Presence::Left;
     const bool was_here = was && was->presence != Presence::Left;
     const std::string id = std::to_string(person.id.value);
+    if (person.correction && (!was || was->correction != person.correction))
+      out.tell(kCorrected, id, corrected(person));
     if (here && !was) out.tell(kCame, id, called(person) + " came.");
     if (here && was && !was_here) out.tell(kBack, id, called(person) + " is back.");
     if (!here && was_here) out.tell(kLeft, id, called(person) + " left.");

@@ -224,6 +224,7 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   Perceived perceived;
   perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion, memory.seating};
   perceived.people = std::move(grouped.people);
+  perceived.corrections = std::move(grouped.corrections);
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
   forget_the_gone(perceived.memory);
@@ -236,6 +237,7 @@ Step fuse(Perceived seen, const Inputs& in, std::vector<SensorId> sensors,
           const PipelineConfig& config) {
   Snapshot snapshot{in.sequence, in.instant, std::move(sensors), {}, {}};
   snapshot.registration_version = seen.registration_version;
+  snapshot.corrections = std::move(seen.corrections);
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
   leave_out_the_unplaced(snapshot.bodies, seen.people);

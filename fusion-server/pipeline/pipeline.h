@@ -70,6 +70,7 @@ struct Perceived {
   std::vector<SensorReport> reports;
   Memory memory;
   std::uint64_t registration_version = 0;
+  std::vector<Correction> corrections = {};
 };
 
 struct Step {

@@ -102,8 +102,6 @@ void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read_s("carry_s", out.carry, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read_s("slow_down_s", out.slow_down, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read_s("remember_s", out.remember, std::chrono::seconds(0), std::chrono::seconds(3600));
-  reader.read_s("recognise_s", out.recognise, std::chrono::seconds(0), std::chrono::seconds(60));
-  reader.read_s("question_s", out.question, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read("merge_frames", out.merge_frames, 1, 1000);
   reader.read_s("alone_s", out.alone, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read_s("motionless_s", out.motionless, std::chrono::seconds(0), std::chrono::seconds(60));

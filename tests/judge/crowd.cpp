@@ -205,6 +205,25 @@ std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin)
   return {in_stints(way, begin, stints[0]), in_stints(placed(other, along_z), begin, stints[1])};
 }
 
+std::vector<synthetic::Person> people_turning_back(std::uint64_t seed) {
+  constexpr double kWay = 0.75;    // half of the way that each walks to and fro [m]
+  constexpr double kShort = 0.25;  // how far from the middle they turn [m]
+  std::vector<synthetic::Person> people;
+  const double hour = synthetic::Draw{seed, kHour}.uniform(0.0, 10.0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    WalkerScript script = script_of(seed, i, PathKind::Line);
+    script.seed = seed;  // both walk alike
+    script.reach = kWay;
+    const double heading = heading_of_line(script);
+    script.centre = (kWay + kShort) * Eigen::Vector2d(std::sin(heading), std::cos(heading));
+    Placing placing;
+    placing.yaw = -heading + (i == 0 ? 0.0 : std::numbers::pi);
+    placing.delay = hour;
+    people.push_back(placed(script, placing));
+  }
+  return people;
+}
+
 std::vector<synthetic::Person> side_by_side(std::uint64_t seed) {
   std::vector<synthetic::Person> people;
   const double yaw = synthetic::Draw{seed, kHour}.uniform(0.0, kFullTurn);

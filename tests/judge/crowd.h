@@ -32,6 +32,10 @@ namespace chorus::bench {
 /// side.
 [[nodiscard]] std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin);
 
+/// Two people of different builds who walk towards each other, turn back behind the screen() at the
+/// same time, and come out on the side on which they went in.
+[[nodiscard]] std::vector<synthetic::Person> people_turning_back(std::uint64_t seed);
+
 /// Two people at assembly work, 1 m apart, who are in their places from the start.
 [[nodiscard]] std::vector<synthetic::Person> side_by_side(std::uint64_t seed);
 

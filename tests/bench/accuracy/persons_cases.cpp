@@ -203,6 +203,7 @@ std::vector<PersonsCase> persons_cases() {
           {"crossing-2-close", "A", ring(3), crossing_close},
           behind_screen("crossing-2-hidden", crossing_two),
           behind_screen("booth-2", in_booth),
+          behind_screen("turning-back-2", people_turning_back),
           {"crossing-2-hidden-C", "C", places_behind_screen(), crossing_two, {screen()}, kRendered},
           {"crossing-2-hidden-D", "D", places_behind_screen(), crossing_two, {screen()}},
           {"return-3-D", "D", ring(6), returning, {}, kMinute},

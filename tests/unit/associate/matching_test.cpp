@@ -23,7 +23,7 @@ Candidate known_at(double size, double x) {
   out.predicted = {x, 1.2, 0};
   out.gate = 0.6;
   out.track.admitted = true;
-  out.track.build.add(spans_of(std::vector{of_size(size, x)}, {}), 10.0);
+  out.track.usual.add(spans_of(std::vector{of_size(size, x)}, {}), 10.0);
   return out;
 }
 

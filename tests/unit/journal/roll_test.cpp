@@ -51,6 +51,18 @@ TEST(Roll, ListsWhoIsThereAndWhoSeesThem) {
   EXPECT_TRUE(roll.take(snapshot(2 * kSecond, {body(7, 1), body(2)}))) << "s2 no longer sees 7";
 }
 
+TEST(Roll, SaysWhoWasShownAsSomebodyElse) {
+  Roll roll(kMinute);
+  roll.take(snapshot({}, {body(3)}));
+  Snapshot corrected = snapshot(kSecond, {body(7)});
+  corrected.corrections = {{PersonId{3}, {7}, kStart, kStart + kSecond},
+                           {{3}, {9}, kStart, kStart}};
+  EXPECT_TRUE(roll.take(corrected));
+  ASSERT_TRUE(roll.find({7})->correction);
+  EXPECT_EQ(roll.find({7})->correction->published, PersonId{3});
+  EXPECT_EQ(roll.find({9}), nullptr) << "who is not published";
+}
+
 TEST(Roll, WhoLeavesIsRememberedForAWhile) {
   Roll roll(kMinute);
   roll.take(snapshot({}, {body(7)}));

@@ -156,6 +156,20 @@ TEST(Witness, WatchesRecordingsAndTheirDisk) {
   EXPECT_THAT(kinds(witness.compare(quiet())), ElementsAre("disk-has-room"));
 }
 
+TEST(Witness, TellsOnceWhoWasShownAsSomebodyElse) {
+  Glimpse one = quiet();
+  one.people = {KnownPerson{}};
+  one.people[0].id = {7};
+  Glimpse corrected = one;
+  const Timestamp now = corrected.time;
+  corrected.people[0].correction = {PersonId{3}, {7}, now - std::chrono::milliseconds(1500), now};
+  const auto events = told(corrected, one);
+  ASSERT_THAT(kinds(events), ElementsAre("person-corrected"));
+  EXPECT_EQ(events[0].about, "7");
+  EXPECT_EQ(events[0].message, "Person 7 was shown as person 3 for 1.5 s.");
+  EXPECT_THAT(told(corrected, corrected), IsEmpty());
+}
+
 TEST(Witness, GreetsPeople) {
   Glimpse one = quiet();
   one.people = {KnownPerson{}};

@@ -1,0 +1,66 @@
+// What a track has seen of its person's build, cut into tracklets, and whether all of them are one
+// person's.
+//
+// Sensors may go over from one person to another: where nobody saw the person for a while, where
+// all bodies that show the person are new, and, rarely, at any time.  There the track is cut; a
+// tracklet in view for a second is cut, too.  For each cut, the builds before and after it are
+// compared, at every instant: a likelihood ratio test for a change at one of several known times.
+// So it does not matter when the change is noticed: the track can be split where it happened.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/time/timestamp.h"
+#include "fusion-server/associate/build.h"
+
+namespace chorus::associate {
+
+/// Sight of one track in which nothing suggests a change of the person.
+struct Tracklet {
+  Timestamp begin;  ///< Its first instant in view.
+  Timestamp end;    ///< Its last one.
+  /// Prior log odds that the person is the one of the tracklet before.
+  double continuity = 0.0;
+  Build build = {};
+};
+
+/// A cut and the log odds that the person after it is the one before it, by the builds and
+/// Tracklet::continuity.
+struct Doubt {
+  std::size_t cut = 0;  ///< Index of the first tracklet after it.
+  double odds = 0.0;
+};
+
+class Tracklets {
+ public:
+  /// Continuity at a cut that only the time has made.
+  static constexpr double kUnbroken = 6.0;
+
+  /// Makes a cut before the next add().  A tracklet that was hardly in view is not cut again, but
+  /// gets the lower of the two continuities.
+  void cut(double continuity);
+  /// Adds the lengths of one instant that lasts for `elapsed` [s].
+  void add(const Spans& spans, Timestamp instant, double elapsed);
+  /// Puts what is known of a person, last seen at `seen`, before the first tracklet.
+  void precede(const Build& known, Timestamp seen, double continuity);
+
+  /// The cut at which the person most likely changed; none if one side of each cut has no length.
+  [[nodiscard]] std::optional<Doubt> doubt(const Repeatability& repeatability) const;
+
+  [[nodiscard]] Build before(std::size_t cut) const;
+  [[nodiscard]] Build after(std::size_t cut) const;
+  [[nodiscard]] Build whole() const { return after(0); }
+  /// Ordered by time; at most a dozen, because the oldest are joined.
+  [[nodiscard]] std::span<const Tracklet> all() const { return tracklets_; }
+  /// Drops the tracklets before the cut.
+  void keep_after(std::size_t cut);
+
+ private:
+  std::vector<Tracklet> tracklets_;
+  std::optional<double> next_;  ///< Continuity of a tracklet that the next add() begins.
+};
+
+}  // namespace chorus::associate
