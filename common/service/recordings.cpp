@@ -226,6 +226,23 @@ Result<RecordingReport> Recordings::find(std::string_view name) const {
               "there is no recording of this name");
 }
 
+Result<std::vector<fs::path>> Recordings::files_of(const std::string& name) const {
+  const auto report = find(name);
+  if (!report) return pass(report);
+  if (is_running(*report))
+    return fail(ErrorCode::Unavailable, "recordings/" + name,
+                "it is still being written: stop it first");
+  std::vector<fs::path> files;
+  for (const record::RecordedFile& file : report->files)
+    files.push_back(fs::path(options_.config.folder) / name / file.name);
+  return files;
+}
+
+void Recordings::adopt(const RecordingReport& report) {
+  const std::scoped_lock lock(mutex_);
+  ended_[report.name] = report;
+}
+
 Result<http::DocumentPtr> Recordings::list(const http::Request& request) const {
   const auto page = page_of(request);
   if (!page) return pass(page);

@@ -4,6 +4,7 @@
 // ends it; no request ever deletes a file (docs/decisions/0011-recordings.md).
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/config_reader.h"
 #include "common/http/router.h"
@@ -55,6 +57,12 @@ class Recordings {
 
   /// The newest recording of this run, whether it runs or has ended; none: nothing was recorded.
   [[nodiscard]] std::optional<record::RecordingReport> newest() const;
+
+  /// The files of a recording that has ended.  NotFound when none has this name; Unavailable while
+  /// it is being written.
+  [[nodiscard]] Result<std::vector<std::filesystem::path>> files_of(const std::string& name) const;
+  /// Lists a recording that was made in the folder by something else than start().
+  void adopt(const record::RecordingReport& report);
 
   [[nodiscard]] Result<record::RecordingReport> start(const RecordingRequest& request);
   /// Ends a recording without waiting (state `stopping`); does nothing if it has already ended.

@@ -167,6 +167,16 @@ void FusionCore::displace_moved(Timestamp instant) {
   change_places(std::move(before));
 }
 
+Result<void> FusionCore::register_anew(const SensorId& sensor) {
+  Registration before = registration();
+  if (auto released = registrar_.release(sensor); !released) return released;
+  if (!before.sensors.contains(sensor)) return {};
+  guard_.displaced(sensor);
+  strays_.forget();
+  change_places(std::move(before));
+  return {};
+}
+
 std::optional<Snapshot> FusionCore::amended(Timestamp now) {
   const auto answered = world_.hindsight.due(now);
   if (!answered) return std::nullopt;

@@ -61,6 +61,8 @@ class FusionCore {
   void forget(PersonId person);
   /// As Registrar::move_origin.
   [[nodiscard]] Result<void> move_origin(const Origin& origin);
+  /// As Registrar::release.
+  [[nodiscard]] Result<void> register_anew(const SensorId& sensor);
   /// As Registrar::undo.
   [[nodiscard]] Result<void> undo();
   /// As Registrar::accept and Registrar::decline.

@@ -134,6 +134,20 @@ bool Registrar::displace(const SensorId& sensor, const std::string& reason) {
   return true;
 }
 
+Result<void> Registrar::release(const SensorId& sensor) {
+  if (auto idle = unless_busy("registration"); !idle) return pass(idle);
+  if (!config_.sensors.contains(sensor))
+    return fail(ErrorCode::NotFound, "sensors/" + sensor.str(), "this sensor is not followed");
+  retries_.forget(sensor);
+  if (!registration_.sensors.contains(sensor)) return {};
+  if (displace(sensor, fmt::format("{} is to be registered anew, as somebody asked", sensor.str())))
+    return {};
+  return fail(
+      ErrorCode::Conflict, "registration",
+      "with fewer than three sensors that have a place, a walk registers all of them: start "
+      "one");
+}
+
 Result<void> Registrar::move_origin(const Origin& origin) {
   if (auto idle = unless_busy("origin"); !idle) return pass(idle);
   return places_.move_origin(origin);

@@ -69,6 +69,11 @@ class Registrar {
   /// sensor may start at once. False while a session is running, if the sensor has no place, or if
   /// fewer than two others have one.
   [[nodiscard]] bool displace(const SensorId& sensor, const std::string& reason);
+  /// Removes the place of a sensor, and its pause after failed sessions, because somebody asked to
+  /// have it registered anew; a session for it may start at once.  Conflict while a session is
+  /// running, and if fewer than two others have a place; NotFound for a sensor that is not
+  /// followed.
+  [[nodiscard]] Result<void> release(const SensorId& sensor);
   /// Conflict while a session is running; NotFound and InvalidArgument as with_origin().
   [[nodiscard]] Result<void> move_origin(const Origin& origin);
 

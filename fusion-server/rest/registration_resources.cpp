@@ -180,6 +180,26 @@ Result<http::ActionResult> RegistrationResources::move_origin(const http::Reques
   return http::ActionResult{http::status::kOk, live_->current(), {}};
 }
 
+/// The sensor's place is shown as gone at once, if enough others have one.
+Result<http::ActionResult> RegistrationResources::register_anew(const std::string& id) {
+  constexpr std::size_t kLeastPlaced = 3;
+  const std::scoped_lock lock(mutex_);
+  if (auto idle = unless_busy(progress_, "registration"); !idle) return pass(idle);
+  const auto sensor = SensorId::parse(id);
+  const bool placed = sensor && registration_.sensors.contains(*sensor);
+  if (!sensor || (!placed && !registration_.verdicts.contains(*sensor)))
+    return fail(ErrorCode::NotFound, "registration/sensors/" + id,
+                "this sensor has no place and none was sought yet; a walk gives it one");
+  if (placed && registration_.sensors.size() < kLeastPlaced)
+    return fail(ErrorCode::Conflict, "registration",
+                "with fewer than three sensors that have a place, a walk registers all of them: "
+                "start one (POST /registration)");
+  registration_.sensors.erase(*sensor);
+  control_.register_anew(*sensor, ++asked_);
+  show();
+  return http::ActionResult{http::status::kAccepted, live_->current(), {}};
+}
+
 Result<http::ActionResult> RegistrationResources::undo() {
   const std::scoped_lock lock(mutex_);
   if (auto idle = unless_busy(progress_, "registration"); !idle) return pass(idle);
@@ -266,6 +286,9 @@ void RegistrationResources::add_routes(http::Router& router) {
                 [this](const Request&, const PathParams&) -> Done { return forget(); });
   router.action(Method::Post, "/registration/origin",
                 [this](const Request& request, const PathParams&) { return move_origin(request); });
+  router.action(
+      Method::Post, "/registration/sensors/{id}/again",
+      [this](const Request&, const PathParams& params) { return register_anew(params.at("id")); });
   router.action(Method::Post, "/registration/undo",
                 [this](const Request&, const PathParams&) { return undo(); });
   router.action(Method::Post, "/registration/accept",

@@ -32,6 +32,7 @@ struct RegistrationControl {
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
   std::function<void(std::uint64_t ticket)> forget;
   std::function<void(const core::Origin& origin, std::uint64_t ticket)> move_origin;
+  std::function<void(const SensorId& sensor, std::uint64_t ticket)> register_anew;
   std::function<void(std::uint64_t ticket)> undo;
   std::function<void(bool accept, std::uint64_t ticket)> decide;
   /// What holds for a session unless the request says otherwise.
@@ -51,6 +52,7 @@ class RegistrationResources {
   [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
   [[nodiscard]] http::ActionResult forget();
   [[nodiscard]] Result<http::ActionResult> move_origin(const http::Request& request);
+  [[nodiscard]] Result<http::ActionResult> register_anew(const std::string& id);
   [[nodiscard]] Result<http::ActionResult> undo();
   [[nodiscard]] Result<http::ActionResult> accept();
   [[nodiscard]] Result<http::ActionResult> decline();

@@ -15,6 +15,7 @@
 #include "common/resource/link_lines.h"
 #include "common/service/common_resources.h"
 #include "common/service/http_config.h"
+#include "common/service/recording_views.h"
 #include "fusion-server/foxglove/viewer_dialogue.h"
 #include "fusion-server/nats/cell_link.h"
 #include "fusion-server/outputs/output_bank.h"
@@ -29,11 +30,14 @@
 #include "fusion-server/rest/site_resources.h"
 #include "fusion-server/rest/tracker_description.h"
 #include "fusion-server/server/fusion_concerns.h"
+#include "fusion-server/server/fusion_start.h"
 #include "fusion-server/server/health.h"
 #include "fusion-server/server/initial_registration.h"
 #include "fusion-server/server/lookout.h"
+#include "fusion-server/server/picture_desk.h"
 #include "fusion-server/server/pipeline_loop.h"
 #include "fusion-server/server/recording_tap.h"
+#include "fusion-server/server/sensor_desk.h"
 #include "fusion-server/server/start_report.h"
 #include "fusion-server/server/state_folder.h"
 
@@ -44,29 +48,6 @@ std::vector<SensorId> ids_of(const std::vector<client::FollowedService>& sensors
   std::vector<SensorId> ids;
   for (const client::FollowedService& sensor : sensors) ids.push_back(sensor.id);
   return ids;
-}
-
-core::CoreConfig core_config(const FusionSettings& settings) {
-  const LiveSettings& live = settings.live;
-  core::CoreConfig core;
-  core.output = live.output;
-  core.pipeline = live.pipeline;
-  core.pipeline.seating.front = outputs::slots_of_all(settings.live.outputs);
-  core.registration = live.registration;
-  core.session = live.session;
-  core.watch = live.watch;
-  core.worn = live.worn;
-  for (const client::FollowedService& source : live.inertial) core.inertial.insert(source.id);
-  if (!settings.at_start.registration_file.empty()) core.session.automatic = false;
-  for (const client::FollowedService& sensor : live.sensors) core.sensors.insert(sensor.id);
-  return core;
-}
-
-std::uint64_t first_person(const RegistrationStore& store) {
-  const auto next = store.load_next_person();
-  if (next) return *next;
-  log::error("ids of people begin anew", {{"reason", to_string(next.error())}});
-  return 1;
 }
 
 }  // namespace
@@ -81,12 +62,17 @@ struct FusionServer::Impl {
 
   std::shared_ptr<http::Router> make_router();
   LoopOptions loop_options(InitialRegistration initial);
-  void follow(const LiveSettings& live);
+  void follow();
+  [[nodiscard]] FusionSettings in_force() const;
+  void sensors_changed();
   void follow_inertial(const std::vector<client::FollowedService>& sources);
   void take_status(const Status& next);
   void meet_the_site();
   [[nodiscard]] std::vector<OutputStatus> output_states() const;
   LookoutOptions lookout_options();
+  service::RecordingViewsOptions recording_views_options();
+  SensorDeskOptions sensor_desk_options(const std::string& folder);
+  [[nodiscard]] std::optional<client::FollowedService> followed(const std::string& id) const;
   [[nodiscard]] Status status_now() const {
     const std::scoped_lock lock(mutex);
     return status;
@@ -115,8 +101,11 @@ struct FusionServer::Impl {
   std::optional<rest::RegistrationResources> registration;
   std::optional<rest::SiteResources> site;  ///< Only in a site.
   std::optional<service::Recordings> recordings;
+  std::optional<service::RecordingViews> views;
   std::optional<RecordingTap> tap;
   std::optional<Lookout> lookout;
+  std::optional<SensorDesk> desk_of_sensors;
+  std::optional<PictureDesk> pictures;
   foxglove::Desk desk;
   std::unique_ptr<http::Server> http;
   std::unique_ptr<nats::CellLink> link;  ///< To the other cells; null: there are none.
@@ -157,31 +146,50 @@ LookoutOptions FusionServer::Impl::lookout_options() {
   return options;
 }
 
+service::RecordingViewsOptions FusionServer::Impl::recording_views_options() {
+  service::RecordingViewsOptions options;
+  options.files_of = [this](const std::string& name) { return recordings->files_of(name); };
+  options.folder = config.at_start.recording.folder;
+  options.made = [this](const record::RecordingReport& made) { recordings->adopt(made); };
+  options.run = serving.run;
+  return options;
+}
+
+SensorDeskOptions FusionServer::Impl::sensor_desk_options(const std::string& folder) {
+  SensorDeskOptions options;
+  options.folder = store_trouble.empty() ? folder : "";
+  options.trust = [this] {
+    const std::scoped_lock lock(mutex);
+    return config.live.trust;
+  };
+  options.configured = [this] {
+    const std::scoped_lock lock(mutex);
+    return config.live.sensors;
+  };
+  options.changed = [this] { sensors_changed(); };
+  return options;
+}
+
+std::optional<client::FollowedService> FusionServer::Impl::followed(const std::string& id) const {
+  for (client::FollowedService& service : in_force().live.sensors)
+    if (service.id.str() == id) return std::move(service);
+  return std::nullopt;
+}
+
 std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   auto router = std::make_shared<http::Router>();
-  rest::RegistrationControl control;
+  rest::RegistrationControl control =
+      registration_control([this](Command command) { loop->ask(std::move(command)); });
   control.defaults = [this] {
     const std::scoped_lock lock(mutex);
     const core::SessionConfig& session = config.live.session;
     return rest::SessionRequest{session.target, session.adoption};
   };
-  control.start = [this](const rest::SessionRequest& request, std::uint64_t session,
-                         std::uint64_t ticket) {
-    loop->ask(StartSession{request.target, request.adoption, session, ticket});
-  };
-  control.cancel = [this](std::uint64_t session, std::uint64_t ticket) {
-    loop->ask(CancelSession{session, ticket});
-  };
-  control.forget = [this](std::uint64_t ticket) { loop->ask(Forget{ticket}); };
-  control.move_origin = [this](const core::Origin& origin, std::uint64_t ticket) {
-    loop->ask(MoveOrigin{origin, ticket});
-  };
-  control.undo = [this](std::uint64_t ticket) { loop->ask(Undo{ticket}); };
-  control.decide = [this](bool accept, std::uint64_t ticket) { loop->ask(Decide{accept, ticket}); };
   frames.emplace(serving, service::DocumentHistory{config.at_start.history});
   frame_sink.emplace(*frames);
   frames->predict_with([this] { return frame_sink->predicted(clock->now()); });
-  sensors.emplace(serving, ids_of(config.live.sensors));
+  sensors.emplace(serving, ids_of(in_force().live.sensors));
+  pictures.emplace(serving.run, [this](const std::string& id) { return followed(id); });
   inertial.emplace(serving, ids_of(config.live.inertial));
   props.emplace(serving, board);
   registration.emplace(serving, std::move(control));
@@ -191,8 +199,12 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   lookout->add_routes(*router);
   foxglove::add_route(*router, desk, config.at_start.title, serving.run);
   recordings->add_routes(*router);
+  views.emplace(recording_views_options());
+  views->add_routes(*router);
   frames->add_routes(*router);
   sensors->add_routes(*router);
+  pictures->add_routes(*router);
+  rest::add_setup_routes(*router, serving, desk_of_sensors->control());
   inertial->add_routes(*router);
   props->add_routes(*router);
   if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run, *router);
@@ -233,7 +245,7 @@ void FusionServer::Impl::take_status(const Status& next) {
 
 LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   LoopOptions options;
-  options.core = core_config(config);
+  options.core = core_config(in_force());
   // Sequences grow across restarts (no output is faster than 1 kHz): no cache takes an old frame.
   options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
   // Ids of sessions, too: no session is shorter than a second, so no client follows an old one.
@@ -259,7 +271,24 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   return options;
 }
 
-void FusionServer::Impl::follow(const LiveSettings& live) {
+/// The settings, in which the sensors are those that are followed: what operators changed counts.
+FusionSettings FusionServer::Impl::in_force() const {
+  FusionSettings settings;
+  {
+    const std::scoped_lock lock(mutex);
+    settings = config;
+  }
+  settings.live.sensors = desk_of_sensors->followed(settings.live.sensors);
+  return settings;
+}
+
+void FusionServer::Impl::sensors_changed() {
+  loop->ask(core_config(in_force()));
+  follow();
+}
+
+void FusionServer::Impl::follow() {
+  const LiveSettings live = in_force().live;
   follow_inertial(live.inertial);
   if (evaluation) evaluation->follow(*followers, config.at_start.evaluation);
   followers->follow<resource::FrameResource>(client::kFrames, live.sensors, [this](auto arrived) {
@@ -309,7 +338,8 @@ Result<void> FusionServer::start() {
   s.state_claim = std::move(*claim);
   for (const std::string& concern : setting_concerns(s.config))
     log::warn("the configuration may not be what is meant", {{"what", concern}});
-  auto initial = initial_registration(s.config, s.store);
+  s.desk_of_sensors.emplace(s.sensor_desk_options(folder));
+  auto initial = initial_registration(s.in_force(), s.store);
   if (!initial) return pass(initial);
   s.outputs.emplace(outputs::OutputsContext{s.clock, s.board});
   if (auto opened = s.outputs->apply(s.config.live.outputs); !opened) return opened;
@@ -321,13 +351,13 @@ Result<void> FusionServer::start() {
   s.http = std::make_unique<http::Server>(http, s.make_router());
   s.meet_the_site();
   s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*initial)));
-  if (auto bound = s.http->start(); !bound) return bound;
   s.followers = std::make_unique<client::Followers>(
       client::FollowOptions{.timings = s.config.at_start.poll, .clock = s.clock});
-  s.follow(s.config.live);
+  if (auto bound = s.http->start(); !bound) return bound;
+  s.follow();
   s.status_at = std::chrono::steady_clock::now();
   s.loop->start();
-  report_start(s.config, s.http->port());
+  report_start(s.in_force(), s.http->port());
   return {};
 }
 
@@ -341,9 +371,8 @@ void FusionServer::take(const LiveSettings& live) {
   }
   if (const auto opened = s.outputs->apply(live.outputs); !opened)
     log::error("an output could not be opened", {{"reason", to_string(opened.error())}});
-  s.loop->ask(core_config(s.config));
   s.lookout->remember_for(live.pipeline.association.remember);
-  s.follow(live);
+  s.sensors_changed();
   s.http->set_tokens(live.tokens);
   if (live.identity) s.http->set_identity(*live.identity);
 }
@@ -367,20 +396,6 @@ void FusionServer::stop() {
 void FusionServer::tell_of(std::shared_ptr<const service::Configuration> configuration) {
   const std::scoped_lock lock(impl_->mutex);
   impl_->configuration = std::move(configuration);
-}
-
-service::About about_fusion() {
-  return {
-      "chorus-fusion",
-      "chorus-fusion: polls body-tracking sensors, registers and fuses them, and answers as one "
-      "tracker.",
-      "  chorus-fusion --config deploy/config/fusion.json\n"
-      "  chorus-fusion --config deploy/config/fusion.json --set outputs.vrpn.enabled=true\n",
-      {},
-      "/etc/chorus/fusion.json the configuration that the service of the package reads\n"
-      "/var/lib/chorus where the sensors stand, and recordings\n"
-      "/usr/share/chorus/viewer the files of the viewer\n"
-      "/usr/share/doc/chorus-fusion/examples/fusion.json every key with its default\n"};
 }
 
 }  // namespace chorus::server

@@ -334,6 +334,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   read_worn(fusion.child("inertial"), live);
   read_fusion(std::move(fusion), live.pipeline.fusion);
   const tls::Trust trust = client::read_trust(root.child("poll"));
+  live.trust = trust;
   read_sensors(root, trust, live);
   read_inertial(root, trust, live);
   read_evaluation(root.child("evaluation"), trust, at_start);

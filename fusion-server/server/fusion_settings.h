@@ -28,6 +28,7 @@ struct LiveSettings {
   std::vector<http::Token> tokens;        ///< From the section http.
   std::optional<tls::Identity> identity;  ///< From the section http.
   std::vector<client::FollowedService> sensors;
+  tls::Trust trust;  ///< The authorities accepted for https, also of sensors that are added later.
   /// Services whose /orientations are followed.  They have no place, take part in no walk, and are
   /// none of the sensors.
   std::vector<client::FollowedService> inertial;

@@ -142,6 +142,8 @@ void PipelineLoop::obey(Command command) {
     forget(*wish);
   } else if (const auto* move = std::get_if<MoveOrigin>(&command)) {
     move_origin(*move);
+  } else if (const auto* again = std::get_if<RegisterAnew>(&command)) {
+    register_anew(*again);
   } else if (const auto* back = std::get_if<Undo>(&command)) {
     undo(*back);
   } else if (const auto* choice = std::get_if<Decide>(&command)) {
@@ -197,6 +199,16 @@ void PipelineLoop::move_origin(const MoveOrigin& wish) {
                              {"z", wish.origin.z},
                              {"yaw_deg", to_deg(wish.origin.yaw)},
                              {"version", core_.registration().version}});
+  keeper_.keep(worker_, core_.registration(), core_.earlier());
+}
+
+void PipelineLoop::register_anew(const RegisterAnew& wish) {
+  obeyed_ = wish.ticket;
+  if (const auto done = core_.register_anew(wish.sensor); !done) {
+    log::warn("sensor not registered anew", {{"reason", to_string(done.error())}});
+    return;
+  }
+  log::info("sensor is to be registered anew", {{"sensor", wish.sensor.str()}});
   keeper_.keep(worker_, core_.registration(), core_.earlier());
 }
 

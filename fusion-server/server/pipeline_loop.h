@@ -45,6 +45,11 @@ struct MoveOrigin {
   core::Origin origin;
   std::uint64_t ticket = 0;
 };
+/// Takes the place of one sensor back, so that it is registered again.
+struct RegisterAnew {
+  SensorId sensor;
+  std::uint64_t ticket = 0;
+};
 struct Undo {
   std::uint64_t ticket = 0;
 };
@@ -56,8 +61,8 @@ struct Decide {
 struct ForgetPerson {
   PersonId person;
 };
-using Command = std::variant<StartSession, CancelSession, Forget, MoveOrigin, Undo, Decide,
-                             ForgetPerson, core::CoreConfig>;
+using Command = std::variant<StartSession, CancelSession, Forget, MoveOrigin, RegisterAnew, Undo,
+                             Decide, ForgetPerson, core::CoreConfig>;
 
 struct LoopOptions {
   core::CoreConfig core;
@@ -97,6 +102,7 @@ class PipelineLoop {
   void cancel_session(const CancelSession& wish);
   void forget(const Forget& wish);
   void move_origin(const MoveOrigin& wish);
+  void register_anew(const RegisterAnew& wish);
   void undo(const Undo& wish);
   void decide(const Decide& wish);
   void publish(Snapshot snapshot);

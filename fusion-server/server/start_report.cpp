@@ -46,9 +46,10 @@ void report_start(const FusionSettings& settings, std::uint16_t port) {
                                     {"port", port},
                                     {"sensors", settings.live.sensors.size()}});
   if (settings.live.sensors.empty())
-    log::warn("no sensor is polled", {{"advice",
-                                       "name them in the section \"sensors\" of a file "
-                                       "and start with --config FILE"}});
+    log::warn("no sensor is polled",
+              {{"advice",
+                "add them on the page /viewer/, or name them in the "
+                "section \"sensors\" of a file and start with --config FILE"}});
 }
 
 }  // namespace chorus::server

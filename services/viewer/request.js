@@ -20,8 +20,8 @@ const send = (url, body, method) => fetch(url, {
   body: body ? JSON.stringify(body) : undefined,
 });
 
-/// Sends it; a server that asks for a token gets one that is typed.  Resolves to the problem, or to '' where all is well.
-export async function request(url, body = null, method = 'POST') {
+/// Sends it; a server that asks for a token gets one that is typed.  Resolves to { problem, body }: problem is '' where all is well.
+export async function requested(url, body = null, method = 'POST') {
   let answer = await send(url, body, method);
   if (answer.status === 401 || answer.status === 403) {
     const { detail } = await answer.clone().json().catch(() => ({}));
@@ -31,8 +31,20 @@ export async function request(url, body = null, method = 'POST') {
       answer = await send(url, body, method);
     }
   }
-  if (answer.ok) return '';
+  const said = await answer.json().catch(() => null);
+  if (answer.ok) return { problem: '', body: said };
   if (answer.status === 401) token = null;
-  const problem = await answer.json().catch(() => ({}));
-  return problem.detail ?? `the server answered ${answer.status}`;
+  return { problem: said?.detail ?? `the server answered ${answer.status}`, body: null };
+}
+
+/// The same, of which only the problem is of interest.
+export const request = (...asked) => requested(...asked).then(({ problem }) => problem);
+
+/// Reads something that is no JSON, with the token that is in use: { blob } or { problem }.
+export async function fetched(url) {
+  const answer = await fetch(url, { cache: 'no-store', headers: token ? { Authorization: `Bearer ${token}` } : {} }).catch(() => null);
+  if (!answer) return { problem: 'the server does not answer' };
+  if (answer.ok) return { blob: await answer.blob() };
+  const { detail } = await answer.json().catch(() => ({}));
+  return { problem: detail ?? `the server answered ${answer.status}` };
 }

@@ -13,8 +13,9 @@ const SHARPEST = 2; // most pixels of the scene for one of the page
 const SLOW_MS = 60; // a picture that takes longer is drawn coarser
 
 export class Room {
-  constructor(canvas) {
-    this.canvas = canvas;
+  /// `coarsens`: whether a slow machine draws with fewer pixels.
+  constructor(canvas, { coarsens = true } = {}) {
+    Object.assign(this, { canvas, coarsens });
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.ratio = Math.min(window.devicePixelRatio, SHARPEST);
     this.renderer.setPixelRatio(this.ratio);
@@ -139,7 +140,7 @@ export class Room {
     const begun = performance.now();
     this.renderer.render(this.scene, this.camera);
     this.took = 0.9 * (this.took ?? 0) + 0.1 * (performance.now() - begun);
-    if (this.took > SLOW_MS && this.ratio > 0.5) {
+    if (this.coarsens && this.took > SLOW_MS && this.ratio > 0.5) {
       this.ratio /= 2;
       this.took = 0;
       this.renderer.setPixelRatio(this.ratio);

@@ -78,7 +78,7 @@ function ofTheSensors(sensors) {
   const dead = all.filter(([, sensor]) => sensor.state !== 'live');
   const why = dead.map(([id, sensor]) => (sensor.lastError ? `${id}: ${sensor.lastError}` : '')).find(Boolean);
   if (all.length === 0) {
-    return { tone: 'bad', sentence: 'No sensors are configured.', next: 'Add them under "sensors" in the configuration of chorus-fusion.' };
+    return { tone: 'bad', sentence: 'No sensors are configured.', next: 'Add them: under Sensors, below.' };
   }
   if (dead.length === all.length) {
     const sentence = all.length === 1 ? 'The only sensor delivers nothing.' : `None of the ${all.length} sensors delivers anything.`;
@@ -152,4 +152,10 @@ export function sidesOf(frame) {
   const all = (frame?.bodies ?? []).map((body) => Number(body.sidesConfidence ?? NaN)).filter(Number.isFinite);
   if (all.length === 0) return '–';
   return `${Math.floor(100 * Math.min(...all))} % certain`;
+}
+
+/// What is said while a recording is shown instead of the room.
+export function stateOfPlayback({ name, at, seconds }, only) {
+  const now = (time) => `${time.toFixed(1)} s`;
+  return { tone: 'calm', sentence: `A recording is shown: ${name} at ${now(at)} of ${now(seconds)}.`, next: only ? '' : 'The room as it is now is behind it: “Back to the room”.' };
 }

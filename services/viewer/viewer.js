@@ -1,20 +1,26 @@
 // The cockpit: the room as the fusion server knows it, and everything that an operator does to it.
-// Uses only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration, /people/, /events,
+// Uses only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration, /people/, /events, /setup,
 // /recordings/.
 import { jointLines } from './certainty.js';
 import { Cockpit, drawerOfKey, wantedDrawer } from './panels/cockpit.js';
 import { html, render } from './panels/html.js';
 import { watchOrigin } from './origin.js';
-import { Resource, clock, follow, link } from './poll.js';
+import { Player } from './player.js';
+import { Resource, clock, follow as followForEver, link } from './poll.js';
 import { Readout } from './readout.js';
 import { judgedBones } from './judged.js';
 import { askFor, takeToken, tokenInUse } from './request.js';
 import { Room } from './room.js';
-import { OutputRate, OwnDelay, freshness, stateOf } from './state.js';
+import { stepOf } from './setup.js';
+import { OutputRate, OwnDelay, freshness, stateOf, stateOfPlayback } from './state.js';
 
+const LISTS_RECORDINGS = ['record', 'playback'];
 const RAW_EVERY_MS = 66;
 const STATE_EVERY_MS = 200;
-const base = new URL(new URLSearchParams(location.search).get('server') ?? '../', location.href);
+const query = new URLSearchParams(location.search);
+const base = new URL(query.get('server') ?? '../', location.href);
+const recordingOnly = query.has('only'); // `chorus view`: there is no room behind the recording
+const follow = (...what) => { if (!recordingOnly) followForEver(...what); };
 const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
 
 /// What the page has shown so far, for tests and for curious people.
@@ -22,11 +28,12 @@ const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sen
 window.chorusViewer = shown;
 
 takeToken(location, history);
-const room = new Room(document.getElementById('scene'));
+const room = new Room(document.getElementById('scene'), { coarsens: !query.has('still') });
 
 /// All facts that the panels show.
 const known = {
   frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '', people: null, events: null, evaluation: null,
+  setup: null, firstRun: false, originShown: false, playback: null, playbackProblem: '',
   state: { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' }, shownFrame: null, shownRate: NaN, age: NaN,
   drawer: null, dialog: null, asking: null,
   switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false },
@@ -55,9 +62,9 @@ function setTheme(theme) {
 }
 const themeNow = () => document.documentElement.dataset.theme ?? 'dark';
 
-function openDrawer(drawer) {
-  change({ drawer: known.drawer === drawer ? null : drawer });
-  if (known.drawer === 'record') followRecordings();
+function openDrawer(drawer, toggle = true) {
+  change({ drawer: toggle && known.drawer === drawer ? null : drawer });
+  if (LISTS_RECORDINGS.includes(known.drawer)) followRecordings();
 }
 
 const act = {
@@ -65,6 +72,17 @@ const act = {
   colorOf: (id) => room.colorOf(id),
   token: tokenInUse,
   onDrawer: openDrawer,
+  onOriginShown: () => change({ originShown: true }),
+  onFirstRunDone: () => change({ firstRun: false }),
+  playback: {
+    only: recordingOnly,
+    open: (name) => player.open(name),
+    close: () => player.close(),
+    toggle: () => player.playback?.toggle(),
+    seek: (seconds) => player.playback?.seek(seconds),
+    speed: (speed) => player.playback?.setSpeed(speed),
+    again: () => player.outlineAgain(),
+  },
   onDialog: (dialog) => change({ dialog }),
   onClose: () => change({ dialog: null }),
   onTheme: () => setTheme(themeNow() === 'dark' ? 'light' : 'dark'),
@@ -81,6 +99,21 @@ askFor((reason) => new Promise((resolve) => {
   change({ asking: { reason, answer: (token) => { change({ asking: null }); resolve(token); } } });
 }));
 
+/// A recording instead of the room as it is now.
+const player = new Player(room, {
+  fetchJson: (path) => new Resource(resource(path).url).next(),
+  onShown: (playback) => {
+    const opened = Boolean(playback) !== Boolean(known.playback);
+    change({ playback, ...(opened ? { drawer: 'playback', playbackProblem: '' } : {}),
+      ...(recordingOnly ? { sensors: Object.fromEntries(playback.sensors.map((id) => [id, { state: 'recorded' }])) } : {}) });
+    if (opened) followRecordings();
+    if (!playback && known.registration) room.place(known.registration);
+  },
+  onFailed: (playbackProblem) => change({ playbackProblem, drawer: 'playback' }),
+  onFrame: (frame) => showBodies(frame),
+  onRaw: (id, frame) => showRaw(room.sensor(id), frame, true),
+});
+
 const typing = (target) => target instanceof HTMLElement && target.matches('input:not([type=checkbox]), select, textarea');
 window.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target) || document.querySelector('dialog[open]')) return;
@@ -91,6 +124,7 @@ window.addEventListener('keydown', (event) => {
   else if (event.key === 'h') act.onView('room');
   else if (event.key === 't') act.onTheme();
   else if (event.key === '?') act.onDialog('keys');
+  else if (event.key === ' ' && known.playback && event.target === document.body) act.playback.toggle();
   else if (event.key === 'Escape' && known.drawer) openDrawer(known.drawer);
 });
 
@@ -99,8 +133,16 @@ const outputRate = new OutputRate();
 const failed = () => { shown.errors += 1; };
 const followed = new Set();
 
-function showRaw(view, frame) {
-  shown.rawBones[view.id] = view.raw.show(view.live ? frame.bodies ?? [] : []);
+function showRaw(view, frame, recorded = false) {
+  if (Boolean(known.playback) !== recorded) return;
+  shown.rawBones[view.id] = view.raw.show(view.live || recorded ? frame.bodies ?? [] : []);
+}
+
+function showBodies(frame) {
+  shown.fusedJoints = room.fused.show(frame.bodies ?? []);
+  room.trails.show(frame.bodies ?? [], performance.now());
+  room.follow(frame.bodies ?? []);
+  shown.fusedFrames += 1;
 }
 
 function followRaw(id) {
@@ -113,10 +155,7 @@ function followRaw(id) {
 follow(resource('frame', 10), 0, (frame) => {
   known.frame = frame;
   known.rate = outputRate.after(frame);
-  shown.fusedJoints = room.fused.show(frame.bodies ?? []);
-  room.trails.show(frame.bodies ?? [], performance.now());
-  room.follow(frame.bodies ?? []);
-  shown.fusedFrames += 1;
+  if (!known.playback) showBodies(frame);
   watchOrigin(frame);
 }, failed);
 
@@ -128,15 +167,23 @@ follow(resource('sensors/'), 1000, ({ sensors: all }) => {
     if (!view.live) showRaw(view, { bodies: [] });
     followRaw(id);
   }
+  for (const view of room.sensors.values()) {
+    if (all[view.id]) continue;
+    view.live = false; // taken out, or silenced
+    showRaw(view, { bodies: [] });
+    room.paint(view, {});
+  }
   shown.sensors = room.sensors.size;
-  change({ sensors: all ?? {} });
+  const first = known.sensors === null && Object.keys(all ?? {}).length === 0;
+  change({ sensors: all ?? {}, ...(first ? { firstRun: true, drawer: 'sensors' } : {}) });
 }, failed);
 
 follow(resource('registration'), 1000, (registration) => {
-  room.place(registration);
+  if (!known.playback) room.place(registration);
   const wanted = wantedDrawer(registration);
-  const opens = wanted && !wantedDrawer(known.registration);
-  change({ registration, ...(opens ? { drawer: wanted } : {}) });
+  const opens = wanted && !wantedDrawer(known.registration) && !known.playback;
+  const leads = known.firstRun && stepOf({ ...known, registration }) !== stepOf(known);
+  change({ registration, ...(opens ? { drawer: wanted } : leads ? { drawer: stepOf({ ...known, registration }) ?? known.drawer } : {}) });
   followSession(registration).catch(failed);
 }, failed);
 
@@ -144,12 +191,15 @@ follow(resource('registration'), 1000, (registration) => {
 follow(resource('people/'), 1000, ({ people }) => change({ people }), failed);
 follow(resource('events'), 1000, ({ events }) => change({ events }), failed);
 
+// Sensors that were found, tried, silenced; often only while somebody adds some.
+follow(resource('setup'), 1000, (setup) => change({ setup }), () => {}); // a server of an earlier version has none
+
 // What is amiss with the service itself although it runs: its configuration, its outputs, its disk.
 follow(resource('healthz'), 5000, ({ warning }) => change({ warning: warning ?? '' }), failed);
 
 // What worn sensors say of the tracker, where somebody judges it.
 const JUDGED_EVERY_MS = 250;
-resource('').next().then((self) => {
+if (!recordingOnly) resource('').next().then((self) => {
   if (!self?.evaluation) return;
   follow(resource('evaluation'), JUDGED_EVERY_MS, (evaluation) => {
     room.fused.judged = judgedBones(evaluation);
@@ -176,7 +226,7 @@ async function followRecordings() {
   if (recordingsFollowed) return;
   recordingsFollowed = true;
   const list = resource('recordings/?limit=1000');
-  while (known.drawer === 'record') {
+  while (LISTS_RECORDINGS.includes(known.drawer)) {
     const told = await list.next().catch((error) => ({ problem: `There are no recordings here: ${error.message}` }));
     if (told?.problem) change({ recordingsProblem: told.problem });
     else if (told) change({ recordings: Array.isArray(told.recordings) ? told.recordings : Object.values(told.recordings ?? {}), recordingsProblem: '' });
@@ -192,12 +242,12 @@ setInterval(() => {
   const held = ownDelay.late();
   const age = known.frame ? ageOf(known.frame) : NaN;
   const now = { ...known, link: link.state(), frameAge: age, held };
-  const fresh = freshness(now);
-  const state = stateOf(now);
+  const fresh = known.playback ? 'recorded' : freshness(now);
+  const state = known.playback ? stateOfPlayback(known.playback, recordingOnly) : stateOf(now);
   document.body.dataset.fresh = fresh;
   document.title = state.tone === 'good' || state.tone === 'calm' ? 'Chorus cockpit' : `${state.sentence} – Chorus cockpit`;
   shown.fresh = fresh;
-  change({ state, age, shownFrame: fresh === 'gone' ? null : known.frame, shownRate: fresh === 'live' ? known.rate : NaN });
+  change({ state, age: known.playback ? NaN : age, shownFrame: known.playback ? player.frame : fresh === 'gone' ? null : known.frame, shownRate: fresh === 'live' ? known.rate : NaN });
   if (fresh === 'gone' && known.frame) forget();
 }, STATE_EVERY_MS);
 
@@ -215,18 +265,19 @@ function forget() {
 }
 
 // ---- drawing -------------------------------------------------------------------------------------------------
+const shownFrame = () => (known.playback ? player.frame : known.frame);
 const readout = new Readout(room.canvas, room.camera, document.getElementById('joint'),
-  (body, name) => jointLines(body, name, ageOf(known.frame)));
+  (body, name) => jointLines(body, name, known.playback ? NaN : ageOf(known.frame)));
 
 /// Where a joint of the first person is on the screen [px].
 shown.where = (name) => {
-  const joint = known.frame?.bodies?.[0]?.joints?.[name];
+  const joint = shownFrame()?.bodies?.[0]?.joints?.[name];
   return joint && readout.toScreen(joint);
 };
 
 /// Ellipsoids and read-out of the newest frame, while somebody wants them.
 function showUncertainty() {
-  const bodies = known.switches.uncertainty ? known.frame?.bodies ?? [] : [];
+  const bodies = known.switches.uncertainty ? shownFrame()?.bodies ?? [] : [];
   room.fused.veil(known.switches.uncertainty);
   shown.ellipsoids = room.ellipsoids.show(bodies);
   readout.show(bodies);
@@ -237,6 +288,8 @@ setTheme(window.matchMedia('(prefers-color-scheme: light)').matches ? 'light' : 
 change({});
 new ResizeObserver(fit).observe(root.querySelector('#drawer'));
 fit();
+
+if (query.has('recording')) player.open(query.get('recording'), Number(query.get('at') ?? 0));
 
 room.renderer.setAnimationLoop(() => {
   showUncertainty();

@@ -62,6 +62,20 @@ export function usualWorld() {
 export const live = (extra) => ({ ...LIVE, ...extra });
 export const lost = (extra) => ({ ...LOST, ...extra });
 
+const RECORDED_HZ = 30;
+
+/// What a recording of the swaying person holds between two instants.
+function stretchOf({ seconds }, asked) {
+  const [from, to, every] = ['from', 'to', 'every'].map((key) => Number(asked.get(key)));
+  const messages = [];
+  const step = Math.max(every, 1 / RECORDED_HZ);
+  for (let at = Math.ceil(from / step) * step; at <= Math.min(to, seconds); at += step) {
+    messages.push({ seconds: at, topic: '/sensors/s1/frame', message: frame(Math.round(RECORDED_HZ * at), SENSORS.s1) });
+    messages.push({ seconds: at, topic: '/frame', message: frame(Math.round(RECORDED_HZ * at), null) });
+  }
+  return { from, to, messages };
+}
+
 /// Starts on a free port; `files` is the viewer's folder.
 export async function startFakeFusion(files, world = usualWorld()) {
   let sequence = 1;
@@ -84,9 +98,10 @@ export async function startFakeFusion(files, world = usualWorld()) {
     '/people/': () => ({ people: world.known ?? {} }),
     '/events': () => ({ events: world.events ?? [] }),
     '/recordings/': () => ({ recordings: world.recordings ?? [] }),
+    '/setup': () => ({ text: '', searching: false, found: [], trials: {}, added: [], silenced: {}, ...world.setup }),
   };
   const server = createServer(async (request, response) => {
-    const { pathname } = new URL(request.url, 'http://localhost');
+    const { pathname, searchParams } = new URL(request.url, 'http://localhost');
     if (['POST', 'PATCH', 'DELETE'].includes(request.method)) {
       let text = '';
       for await (const part of request) text += part;
@@ -96,8 +111,23 @@ export async function startFakeFusion(files, world = usualWorld()) {
       world.posted = [...(world.posted ?? []), `${asked} ${allowed ? 200 : 401}`];
       if (allowed) world.after?.(asked, text);
       if (allowed) delete world.registration.proposal;
-      response.writeHead(allowed ? 200 : 401, { 'Content-Type': 'application/json' });
-      return response.end(JSON.stringify(allowed ? world.registration : { detail: 'a token is needed' }));
+      const refused = allowed && world.refuse?.(asked, text);
+      response.writeHead(!allowed ? 401 : refused ? 409 : 200, { 'Content-Type': 'application/json' });
+      const answer = world.answers?.[asked] ?? world.registration;
+      return response.end(JSON.stringify(!allowed ? { detail: 'a token is needed' } : refused ? { detail: refused } : answer));
+    }
+    const recorded = /^\/recordings\/([^/]+)\/(outline|stretch)$/.exec(pathname);
+    if (recorded) {
+      const known = world.outlines?.[recorded[1]];
+      response.writeHead(known ? 200 : 404, { 'Content-Type': 'application/json' });
+      if (!known) return response.end(JSON.stringify({ detail: 'there is no recording of this name' }));
+      world.stretches = (world.stretches ?? 0) + (recorded[2] === 'stretch');
+      return response.end(JSON.stringify(recorded[2] === 'outline' ? known : stretchOf(known, searchParams)));
+    }
+    if (/^\/sensors\/[^/]+\/image$/.test(pathname)) {
+      const picture = world.pictures?.[pathname.split('/')[2]];
+      response.writeHead(picture ? 200 : 404, { 'Content-Type': picture ? 'image/svg+xml' : 'application/json' });
+      return response.end(picture ?? JSON.stringify({ detail: 'images are switched off; set images: true' }));
     }
     const clock = `${serverNow()}000000`;
     if (answers[pathname]) {

@@ -34,9 +34,9 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 15> kRecordingCommandNames{
-    "import", "replay", "fuse",   "export",  "train-error", "calibrate", "characterise", "align",
-    "scan",   "glove",  "report", "compare", "score",       "evaluate",  "position"};
+inline constexpr std::array<std::string_view, 16> kRecordingCommandNames{
+    "import", "replay", "view",  "fuse",   "export",  "train-error", "calibrate", "characterise",
+    "align",  "scan",   "glove", "report", "compare", "score",       "evaluate",  "position"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -47,6 +47,7 @@ Run add_origin(CLI::App& options);
 Run add_status(CLI::App& options);
 Run add_record(CLI::App& options);
 Run add_replay(CLI::App& options);
+Run add_view(CLI::App& options);
 Run add_fuse(CLI::App& options);
 Run add_export(CLI::App& options);
 Run add_train_error(CLI::App& options);

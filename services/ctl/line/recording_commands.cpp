@@ -26,6 +26,12 @@ constexpr std::array kRecordingCommands{
             "  chorus replay walk.mcap --speed 0.5    every sensor of one recording\n"
             "Ctrl-C stops all of them.",
             &add_replay},
+    Command{"view", "Shows a recording in the cockpit: timeline, speed, the room in 3D",
+            "Examples:\n"
+            "  chorus view walk.mcap                  prints an address to open in a browser\n"
+            "  chorus view walk.mcap --png t=12.4 --out walk.png    one picture (needs chromium)\n"
+            "More: docs/guide/cockpit.md.",
+            &add_view},
     Command{
         "fuse", "Fuses recordings of several sensors offline, registration included",
         "Examples:\n"

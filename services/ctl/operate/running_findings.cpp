@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/base/asked_program.h"
 #include "common/client/service_client.h"
 #include "common/http/status.h"
-#include "services/ctl/line/asked_program.h"
 #include "services/ctl/line/console.h"
 
 namespace chorus::ctl {

@@ -10,12 +10,12 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "common/base/asked_program.h"
 #include "common/net/listen.h"
 #include "common/record/cell_outline.h"
 #include "common/record/cell_reader.h"
 #include "common/time/clock.h"
 #include "services/ctl/convert/sniffed.h"
-#include "services/ctl/line/asked_program.h"
 #include "services/ctl/line/child_processes.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/number_range.h"

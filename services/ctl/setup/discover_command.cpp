@@ -4,15 +4,17 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/client/discovery.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
-#include "services/ctl/setup/discovery.h"
 
 namespace chorus::ctl {
 namespace {
 
+using client::FoundSensor;
+
 Result<int> discover(bool json) {
-  const auto found = discovered_sensors();
+  const auto found = client::discovered_sensors();
   if (!found) return pass(found);
   if (json) {
     nlohmann::json all = nlohmann::json::array();

@@ -10,11 +10,11 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/strong_id.h"
+#include "common/client/discovery.h"
 #include "common/client/service_client.h"
 #include "common/net/host_name.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/new_file.h"
-#include "services/ctl/setup/discovery.h"
 #include "services/ctl/setup/init_checks.h"
 #include "services/ctl/setup/init_site.h"
 #include "services/ctl/setup/phone_page.h"
@@ -149,8 +149,8 @@ std::string announce_folder(const InitArguments& arguments) {
   if (!arguments.announce.empty()) return arguments.announce;
   std::error_code hidden;
   const bool offered = arguments.out == kSensorFile && !is_loopback(arguments.address) &&
-                       std::filesystem::is_directory(kAvahiFolder, hidden);
-  return offered ? kAvahiFolder : "";
+                       std::filesystem::is_directory(client::kAvahiFolder, hidden);
+  return offered ? client::kAvahiFolder : "";
 }
 
 /// Writes the announcement.  A failure is only reported, because the sensor works without it.
@@ -159,7 +159,7 @@ void announce(const InitArguments& arguments, const ServiceWishes& wishes) {
   if (folder.empty()) return;
   const std::string file = folder + "/chorus-sensor.service";
   const auto done =
-      write_file(file, announcement(arguments.sensor.id, wishes.port, !wishes.tls.empty()),
+      write_file(file, client::announcement(arguments.sensor.id, wishes.port, !wishes.tls.empty()),
                  Readers::Everybody, Overwriting::Yes);
   std::cerr << (done ? file + " written: chorus discover finds this sensor (--no-announce)\n"
                      : "note: not announced: " + to_string(done.error()) + "\n");
@@ -185,10 +185,10 @@ Result<ServiceWishes> write_sensor(InitArguments& arguments) {
 
 /// Adds the sensors that announce themselves, except those whose name is already in the list.
 Result<void> add_discovered(std::vector<PolledWish>& sensors) {
-  const auto found = discovered_sensors();
+  const auto found = client::discovered_sensors();
   if (!found) return pass(found);
   const std::vector<PolledWish> named = sensors;
-  for (const FoundSensor& sensor : *found) {
+  for (const client::FoundSensor& sensor : *found) {
     const auto of_this = [&](const auto& each) { return each.id == sensor.id; };
     if (std::ranges::any_of(named, of_this)) continue;
     // If two services announce one id, either may be an impostor that wants the token, so a person

@@ -1,10 +1,13 @@
 // The whole page beside the scene: top, sensors, people, and one drawer at a time.
 import { html } from './html.js';
+import { AddSensors } from './add.js';
 import { Keys, Phone, Token } from './dialogs.js';
 import { Events } from './events.js';
+import { FirstRun } from './first_run.js';
 import { Judged } from './judged.js';
 import { Look } from './look.js';
 import { People, Tracker } from './people.js';
+import { LookAt } from './playback.js';
 import { Record } from './record.js';
 import { Register, Verdict } from './register.js';
 import { Sensors } from './sensors.js';
@@ -12,7 +15,9 @@ import { Top } from './top.js';
 import { Work } from './work.js';
 import { World } from './world.js';
 
-const DRAWERS = [['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'], ['work', 'Work', 'p'], ['view', 'View', 'v']];
+const DRAWERS = [['sensors', 'Sensors', 's'], ['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'],
+  ['playback', 'Look at a recording', 'l'], ['work', 'Work', 'p'], ['view', 'View', 'v']];
+const OF_RECORDINGS = ['playback', 'view']; // what there is without a room
 export const drawerOfKey = (key) => DRAWERS.find(([, , own]) => own === key)?.[0] ?? null;
 
 /// The drawer that opens by itself: where somebody has to decide or to walk.  Pure.
@@ -22,9 +27,11 @@ export function wantedDrawer(registration) {
 }
 
 function Drawer({ open, known, act }) {
+  if (open === 'sensors') return html`<${AddSensors} setup=${known.setup} sensors=${known.sensors} resource=${act.resource} />`;
   if (open === 'register') return html`<${Register} registration=${known.registration} told=${known.told} resource=${act.resource} />`;
-  if (open === 'world') return html`<${World} resource=${act.resource} />`;
-  if (open === 'record') return html`<${Record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} />`;
+  if (open === 'world') return html`<${World} resource=${act.resource} onShown=${act.onOriginShown} />`;
+  if (open === 'record') return html`<${Record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} onLook=${act.playback.open} />`;
+  if (open === 'playback') return html`<${LookAt} recordings=${known.recordings} problem=${known.recordingsProblem} shown=${known.playback} failed=${known.playbackProblem} resource=${act.resource} act=${act.playback} />`;
   if (open === 'work') return html`<${Work} frame=${known.shownFrame} resource=${act.resource} />`;
   if (open === 'view') return html`<${Look} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
   return null;
@@ -43,16 +50,17 @@ export function Cockpit({ known, act }) {
     <${Top} state=${known.state} alarms=${known.registration?.alarms} warning=${known.warning} onKeys=${() => act.onDialog('keys')} onTheme=${act.onTheme} onPhone=${() => act.onDialog('phone')} />
     <main>
       <aside id="left" aria-label="sensors">
-        <${Sensors} sensors=${known.sensors} registration=${known.registration} colorOf=${act.colorOf} onLook=${(id) => act.onView('sensor', id)} />
+        <${Sensors} known=${known} act=${act} />
       </aside>
       <aside id="right" aria-label="people and events">
         <${People} frame=${known.shownFrame} known=${known.people} resource=${act.resource} onLook=${(id) => act.onView('person', id)} />
         <${Judged} evaluation=${known.evaluation} />
         <${Tracker} frame=${known.shownFrame} rate=${known.shownRate} age=${known.age} />
-        <${Events} events=${known.events} />
+        ${!act.playback.only && html`<${Events} events=${known.events} />`}
       </aside>
       <section id="drawer" aria-label="operate">
-        <div role="tablist" aria-label="drawers">${DRAWERS.map(([key, label, letter]) => html`
+        <${FirstRun} known=${known} onDrawer=${act.onDrawer} onDone=${act.onFirstRunDone} />
+        <div role="tablist" aria-label="drawers">${DRAWERS.filter(([key]) => !act.playback.only || OF_RECORDINGS.includes(key)).map(([key, label, letter]) => html`
           <button key=${key} type="button" role="tab" id="tab-${key}" aria-selected=${String(known.drawer === key)} aria-controls="drawer-body"
             title=${`key ${letter}`} onClick=${() => act.onDrawer(key)}>${label}${key === 'register' ? html` <${Verdict} registration=${known.registration} />` : ''}</button>`)}</div>
         <div id="drawer-body" role="tabpanel" tabindex="-1">${known.drawer && html`<${Drawer} open=${known.drawer} known=${known} act=${act} />`}</div>

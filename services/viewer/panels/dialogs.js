@@ -3,7 +3,7 @@ import qrcode from 'qrcode-generator';
 
 import { html, useEffect, useRef, useState } from './html.js';
 
-export const KEYS = [['r', 'Register'], ['w', 'World'], ['e', 'Record'], ['p', 'Work'], ['v', 'View'], ['u', 'show the uncertainty'],
+export const KEYS = [['s', 'Sensors'], ['r', 'Register'], ['w', 'World'], ['e', 'Record'], ['l', 'Look at a recording'], ['space', 'play and pause'], ['p', 'Work'], ['v', 'View'], ['u', 'show the uncertainty'],
   ['a', 'from above'], ['h', 'the whole room'], ['t', 'light or dark'], ['?', 'this list'], ['Esc', 'close']];
 
 function Dialog({ label, onClose, children }) {

@@ -25,7 +25,7 @@ export function Lines({ id, lines, label, kind = '' }) {
 }
 
 /// A button that sends something: disabled while it runs; says what went wrong through `say`.
-export function Action({ id, label, run, say, kind = '', confirm = null, title = '', disabled = false }) {
+export function Action({ id, label, ariaLabel, run, say, kind = '', confirm = null, title = '', disabled = false }) {
   const [busy, setBusy] = useState(false);
   const [asked, setAsked] = useState(false);
   const press = async () => {
@@ -41,7 +41,7 @@ export function Action({ id, label, run, say, kind = '', confirm = null, title =
     return setBusy(false);
   };
   const text = asked ? confirm : label;
-  return html`<button id=${id} type="button" class=${asked ? 'bad' : kind} title=${title} disabled=${busy || disabled}
+  return html`<button id=${id} type="button" aria-label=${asked ? undefined : ariaLabel} class=${asked ? 'bad' : kind} title=${title} disabled=${busy || disabled}
     onClick=${press} onBlur=${() => setAsked(false)}>${text}</button>`;
 }
 

@@ -31,17 +31,17 @@ function Running({ recording, resource, say }) {
   </div>`;
 }
 
-function Row({ recording }) {
+function Row({ recording, onLook }) {
   const files = recording.download ? [recording.download] : recording.files ?? [];
   const state = [recording.state, ...(recording.reasons ?? [])].join(': ');
   return html`<tr>
-    <td>${recording.name}</td><td class=${recording.state === 'failed' || recording.state === 'interrupted' ? 'bad' : ''}>${state}</td>
+    <td>${recording.name} ${recording.state !== 'recording' && recording.state !== 'stopping' && html`<button type="button" aria-label=${`look at ${recording.name}`} onClick=${() => onLook(recording.name)}>look</button>`}</td><td class=${recording.state === 'failed' || recording.state === 'interrupted' ? 'bad' : ''}>${state}</td>
     <td>${recording.frames}</td><td>${size(recording.bytes)}</td>
     <td>${recording.state === 'stopping' ? 'being written' : files.map((file, i) => html`<a key=${file} href=${`..${file}`} download>${files.length > 1 ? `part ${i + 1}` : 'download'}</a> `)}</td>
   </tr>`;
 }
 
-export function Record({ recordings, problem, resource }) {
+export function Record({ recordings, problem, resource, onLook }) {
   const [said, say] = useState('');
   if (problem) return html`<p>${problem}</p>`;
   const running = (recordings ?? []).find(({ state }) => state === 'recording');
@@ -50,7 +50,7 @@ export function Record({ recordings, problem, resource }) {
     <${Said} id="record-said" text=${said} />
     ${(recordings ?? []).length > 0 && html`<table aria-label="recordings, newest first">
       <thead><tr><th>name</th><th>state</th><th>frames</th><th>size</th><th>file</th></tr></thead>
-      <tbody id="recordings">${newest(recordings).map((recording) => html`<${Row} key=${recording.name} recording=${recording} />`)}</tbody>
+      <tbody id="recordings">${newest(recordings).map((recording) => html`<${Row} key=${recording.name} recording=${recording} onLook=${onLook} />`)}</tbody>
     </table>`}
   </div>`;
 }

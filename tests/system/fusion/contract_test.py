@@ -13,7 +13,7 @@ GETS = {path: methods["get"]["responses"] for path, methods in DOCUMENT["paths"]
 NEVER = "application/x-none-of-ours"
 # Who serves what: the rest is served by everybody, or documents its 404.
 OF_ERGONOMICS = {"/ergonomics/", "/methods/", "/asked"}
-OF_TRACKER = {"/sensors/", "/inertial/", "/people/", "/events", "/outputs/", "/props/", "/registration", "/viewer/"}
+OF_TRACKER = {"/sensors/", "/inertial/", "/people/", "/events", "/outputs/", "/props/", "/registration", "/setup", "/viewer/"}
 
 
 def bare(headers):

@@ -339,5 +339,18 @@ TEST_F(Sessions, ASensorThatWasMovedLosesItsPlaceAndOneForItStartsAtOnce) {
   EXPECT_EQ(registrar().undo().error().code, ErrorCode::Conflict);
 }
 
+TEST_F(Sessions, SomebodyMayAskThatOneSensorIsRegisteredAnew) {
+  begin_with(ring());
+  EXPECT_EQ(registrar().release(sensor_id("stranger")).error().code, ErrorCode::NotFound);
+  ASSERT_TRUE(registrar().release(sensor_id("s2")));
+  EXPECT_FALSE(registrar().registration().sensors.contains(sensor_id("s2")));
+  EXPECT_EQ(registrar().release(sensor_id("s3")).error().code, ErrorCode::Conflict)
+      << "two are left, and nobody could tell which of them stands where it did";
+  EXPECT_TRUE(registrar().release(sensor_id("s2"))) << "it has no place: only its pause ends";
+  walk(std::chrono::seconds(1));
+  EXPECT_EQ(newest().state, SessionState::Collecting);
+  EXPECT_EQ(registrar().release(sensor_id("s2")).error().code, ErrorCode::Conflict);
+}
+
 }  // namespace
 }  // namespace chorus::core

@@ -1,6 +1,6 @@
 #include "services/ctl/line/child_processes.h"
 
-#include "services/ctl/line/asked_program.h"
+#include "common/base/asked_program.h"
 
 #include <csignal>
 

@@ -1,4 +1,4 @@
-#include "services/ctl/setup/discovery.h"
+#include "common/client/discovery.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -10,6 +10,11 @@
 
 namespace chorus::ctl {
 namespace {
+
+using client::announcement;
+using client::discovered_sensors;
+using client::FoundSensor;
+using client::read_browsed;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/base/asked_program.h"
 #include "common/http/server.h"
-#include "services/ctl/line/asked_program.h"
 #include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {

@@ -1,4 +1,4 @@
-#include "services/ctl/line/asked_program.h"
+#include "common/base/asked_program.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -12,7 +12,7 @@
 #include <csignal>
 #include <cstring>
 
-namespace chorus::ctl {
+namespace chorus {
 namespace {
 
 constexpr int kNoSuchProgram = 127;  // As a shell has it.
@@ -94,4 +94,4 @@ Result<Asked> ask_program(const std::vector<std::string>& command, const AskLimi
   return asked;
 }
 
-}  // namespace chorus::ctl
+}  // namespace chorus

@@ -1,4 +1,4 @@
-#include "services/ctl/setup/discovery.h"
+#include "common/client/discovery.h"
 
 #include <arpa/inet.h>
 
@@ -14,7 +14,7 @@
 #include "common/base/parse.h"
 #include "common/base/strong_id.h"
 
-namespace chorus::ctl {
+namespace chorus::client {
 namespace {
 
 // So that one host that announces thousands cannot hide the others, and comparing them stays quick.
@@ -181,4 +181,4 @@ Result<std::vector<FoundSensor>> discovered_sensors(const AskLimits& limits) {
   return read_browsed(asked->said);
 }
 
-}  // namespace chorus::ctl
+}  // namespace chorus::client

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/asked_program.h"
 #include "common/base/result.h"
-#include "services/ctl/line/asked_program.h"
 
-namespace chorus::ctl {
+namespace chorus::client {
 
 /// Where avahi-daemon looks for services to announce.
 inline constexpr const char* kAvahiFolder = "/etc/avahi/services";
@@ -45,4 +45,4 @@ struct FoundSensor {
 /// Avahi failed; Timeout: it said nothing in time.
 [[nodiscard]] Result<std::vector<FoundSensor>> discovered_sensors(const AskLimits& limits = {});
 
-}  // namespace chorus::ctl
+}  // namespace chorus::client

@@ -9,7 +9,7 @@
 #include "common/base/duration.h"
 #include "common/base/result.h"
 
-namespace chorus::ctl {
+namespace chorus {
 
 /// The program of this name in the folder of our own program; if there is none, the bare name,
 /// which is searched for in $PATH.
@@ -31,4 +31,4 @@ struct Asked {
 [[nodiscard]] Result<Asked> ask_program(const std::vector<std::string>& command,
                                         const AskLimits& limits = {});
 
-}  // namespace chorus::ctl
+}  // namespace chorus

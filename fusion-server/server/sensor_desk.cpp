@@ -1,0 +1,138 @@
+#include "fusion-server/server/sensor_desk.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "common/base/file.h"
+#include "common/base/log.h"
+
+namespace chorus::server {
+namespace {
+
+constexpr std::uintmax_t kMaxBytes = 1u << 20;
+constexpr std::size_t kMostTrials = 32;
+/// Finding takes a second or two; an operator waits no longer than this.
+constexpr auto kSearch = std::chrono::seconds(6);
+
+}  // namespace
+
+SensorDesk::SensorDesk(SensorDeskOptions options) : options_(std::move(options)) {
+  if (options_.folder.empty() || !is_there(path())) return;
+  auto stored = read_file(path(), kMaxBytes).and_then([](const std::string& text) {
+    return read_sensor_changes(text);
+  });
+  if (stored) {
+    changes_ = std::move(*stored);
+    return;
+  }
+  damage_ = to_string(stored.error());
+  log::error("sensors that were added on the page are not followed", {{"reason", damage_}});
+}
+
+std::string SensorDesk::path() const {
+  return (std::filesystem::path(options_.folder) / "sensors.json").string();
+}
+
+SensorChanges SensorDesk::changes() const {
+  const std::scoped_lock lock(mutex_);
+  return changes_;
+}
+
+Services SensorDesk::followed(const Services& configured) const {
+  SensorChanges now = changes();
+  for (auto& sensor : now.added) sensor.trust = options_.trust();
+  return followed_of(configured, now);
+}
+
+rest::SetupFacts SensorDesk::facts() const {
+  const Services configured = options_.configured();
+  const std::scoped_lock lock(mutex_);
+  rest::SetupFacts facts = told_;
+  if (!options_.folder.empty()) facts.file = path();
+  facts.text = text_of(changes_, Tokens::Hidden);
+  for (const auto& sensor : changes_.added) facts.added.insert(sensor.id.str());
+  for (const Services* all : {&configured, &changes_.added}) {
+    for (const auto& sensor : *all) {
+      if (changes_.silenced.contains(sensor.id)) facts.silenced[sensor.id.str()] = sensor.url;
+    }
+  }
+  return facts;
+}
+
+Result<SensorChanges> SensorDesk::with(const Services& more) const {
+  return with_sensors(changes(), options_.configured(), more);
+}
+
+/// Writes the file before the change takes effect: what is followed is what a restart follows.
+Result<void> SensorDesk::put(Result<SensorChanges> next) {
+  if (!next) return pass(next);
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!damage_.empty())
+      return fail(ErrorCode::Conflict, "sensors.json",
+                  "nothing is changed while this file cannot be read: " + damage_ +
+                      "; mend or delete it and restart the server");
+    if (!options_.folder.empty()) {
+      if (auto kept = replace_file(path(), text_of(*next, Tokens::Written)); !kept)
+        return pass(kept);
+      std::error_code failed;  // It holds tokens; the folder lets nobody else in anyway.
+      std::filesystem::permissions(
+          path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_write, failed);
+    }
+    changes_ = std::move(*next);
+  }
+  log::info("sensors changed",
+            {{"added", changes().added.size()}, {"silenced", changes().silenced.size()}});
+  options_.changed();
+  return {};
+}
+
+void SensorDesk::search() {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (std::exchange(told_.searching, true)) return;
+  }
+  worker_.post([this] {
+    auto found = client::discovered_sensors({.patience = kSearch});
+    const std::scoped_lock lock(mutex_);
+    told_.searching = false;
+    told_.search_problem = found ? "" : found.error().context + " " + found.error().message;
+    if (found) told_.found = std::move(*found);
+  });
+}
+
+void SensorDesk::attempt(const client::FollowedService& sensor) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!told_.trials.contains(sensor.url) && told_.trials.size() >= kMostTrials)
+      told_.trials.erase(told_.trials.begin());
+    told_.trials[sensor.url] = {};
+  }
+  worker_.post([this, sensor] {
+    auto result = client::try_sensor(sensor.url, sensor.token, options_.trust());
+    const std::scoped_lock lock(mutex_);
+    if (const auto trial = told_.trials.find(sensor.url); trial != told_.trials.end())
+      trial->second = {false, std::move(result)};
+  });
+}
+
+rest::SetupControl SensorDesk::control() {
+  rest::SetupControl control;
+  control.facts = [this] { return facts(); };
+  control.search = [this] { search(); };
+  control.attempt = [this](const client::FollowedService& sensor) { attempt(sensor); };
+  control.preview = [this](const Services& more) -> Result<std::string> {
+    return with(more).map([](const SensorChanges& next) { return text_of(next, Tokens::Hidden); });
+  };
+  control.add = [this](const Services& more) { return put(with(more)); };
+  control.silence = [this](const SensorId& id, bool silent) {
+    return put(with_silence(changes(), options_.configured(), id, silent));
+  };
+  control.take_out = [this](const SensorId& id) {
+    return put(without_sensor(changes(), options_.configured(), id));
+  };
+  return control;
+}
+
+}  // namespace chorus::server
