@@ -6,7 +6,8 @@ export const STEPS = [['sensors', 'Add the sensors'], ['register', 'Walk'], ['wo
 /// `known`: sensors and registration as served; `originShown`: whether somebody has shown the origin.
 export function stepOf({ sensors, registration, originShown }) {
   if (Object.keys(sensors ?? {}).length === 0) return 'sensors';
-  if (registration?.verdict !== 'Good') return 'register';
+  const walks = ['collecting', 'solving'].includes(registration?.session?.state); // until then no origin can be shown
+  if (registration?.verdict !== 'Good' || walks) return 'register';
   return originShown ? null : 'world';
 }
 

@@ -51,6 +51,8 @@ function change(facts) {
 /// The panels leave the scene its part of the window; in a narrow one they stand below it (viewer.css).
 function fit() {
   const box = (selector) => root.querySelector(selector).getBoundingClientRect();
+  document.documentElement.style.setProperty('--below-header', `${box('header').bottom + 10}px`);
+  document.documentElement.style.setProperty('--above-drawer', `${window.innerHeight - box('#drawer').top}px`);
   const beside = getComputedStyle(root.querySelector('#left')).position === 'fixed';
   room.fit(beside ? { left: box('#left').right, right: window.innerWidth - box('#right').left,
     top: box('header').bottom, bottom: window.innerHeight - box('#drawer').top } : {});
@@ -286,7 +288,8 @@ function showUncertainty() {
 window.addEventListener('resize', fit);
 setTheme(window.matchMedia('(prefers-color-scheme: light)').matches ? 'light' : 'dark');
 change({});
-new ResizeObserver(fit).observe(root.querySelector('#drawer'));
+const sizes = new ResizeObserver(fit);
+for (const part of ['header', '#drawer']) sizes.observe(root.querySelector(part));
 fit();
 
 if (query.has('recording')) player.open(query.get('recording'), Number(query.get('at') ?? 0));

@@ -12,8 +12,8 @@ export function launch() {
 }
 
 /// Opens the viewer and collects all errors that it reports.
-export async function openViewer(browser, url) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: 'dark' });
+export async function openViewer(browser, url, size = { width: 1280, height: 800 }) {
+  const page = await browser.newPage({ viewport: size, colorScheme: 'dark' });
   page.setDefaultTimeout(PATIENCE_MS);
   const complaints = [];
   page.on('pageerror', (error) => complaints.push(String(error)));

@@ -49,6 +49,13 @@ function frame(sequence, place, about = {}, still = false) {
 const LIVE = { state: 'live', ageMilliseconds: 12, rateHz: 30, bodies: 1, weight: 0.8, share: 0.97 };
 const LOST = { state: 'lost', ageMilliseconds: 61000, rateHz: 30, bodies: 1, weight: 0, share: 0, lastError: 'connection refused' };
 
+/// The same body several times, side by side.
+function crowd(body, count) {
+  return Array.from({ length: count }, (_, i) => ({ ...body, '@id': `skeletons/${i + 1}`, bodyId: i + 1,
+    joints: Object.fromEntries(Object.entries(body.joints).map(([name, joint]) =>
+      [name, Number.isFinite(joint.x) ? { ...joint, x: joint.x + 0.8 * (i - (count - 1) / 2), z: joint.z + 0.6 * (i % 2) } : joint])) }));
+}
+
 /// The answers of the fake server; tests change them while it runs.
 export function usualWorld() {
   return {
@@ -83,7 +90,7 @@ export async function startFakeFusion(files, world = usualWorld()) {
   const timer = setInterval(() => { sequence += world.frozen ? 0 : 1; }, 33);
   const current = () => {
     if (!world.frozen || !fused) fused = frame(sequence, null, world.person, world.still);
-    return { ...fused, bodies: world.people > 0 ? fused.bodies : [] };
+    return { ...fused, bodies: world.people > 1 ? crowd(fused.bodies[0], world.people) : world.people > 0 ? fused.bodies : [] };
   };
   const answers = {
     '/frame': current,
@@ -101,6 +108,7 @@ export async function startFakeFusion(files, world = usualWorld()) {
     '/setup': () => ({ text: '', searching: false, found: [], trials: {}, added: [], silenced: {}, ...world.setup }),
   };
   const server = createServer(async (request, response) => {
+    if (world.silent && !request.url.startsWith('/viewer/')) return; // it takes its time
     const { pathname, searchParams } = new URL(request.url, 'http://localhost');
     if (['POST', 'PATCH', 'DELETE'].includes(request.method)) {
       let text = '';

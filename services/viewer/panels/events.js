@@ -49,9 +49,9 @@ export function Events({ events }) {
   return html`<section aria-labelledby="events-title">
     <h2 id="events-title">Events ${urgent.length > 0 && html`<strong id="unseen" class="warn">${urgent.length} unseen</strong>`}</h2>
     ${urgent.length > 1 && html`<button type="button" id="all-seen" onClick=${() => onSeen(urgent.map((event) => event.eventId))}>all seen</button>`}
-    <ul id="events" role="log" aria-label="what happened, what was not seen yet first">
+    <div role="log" aria-label="what happened, what was not seen yet first"><ul id="events">
       ${listed(events, seen).map((event) => html`<${Row} key=${event.eventId} event=${event} waits=${urgent.includes(event)} onSeen=${onSeen} />`)}
-    </ul>
+    </ul></div>
     ${(events ?? []).length === 0 && html`<p class="faint">nothing has happened yet</p>`}
   </section>`;
 }

@@ -43,16 +43,18 @@ export function People({ frame, known, resource, onLook }) {
   </section>`;
 }
 
+const WHOLE = ['sides', 'sequence']; // facts that need a line of their own
+
 export function Tracker({ frame, rate, age }) {
   const facts = [
-    ['bodies', frame?.bodies?.length ?? '–', ''],
     ['sides', sidesOf(frame), 'probability that left and right are not exchanged; of several people the least certain one'],
+    ['bodies', frame?.bodies?.length ?? '–', ''],
     ['rate', `${number(rate, 1)} Hz`, ''],
     ['age', ageText(age), 'of the newest fused frame'],
     ['sequence', frame?.sequence ?? '–', 'number of the frame'],
   ];
   return html`<section aria-labelledby="tracker-title">
     <h2 id="tracker-title">Fused tracker</h2>
-    <dl>${facts.map(([id, value, title]) => html`<div key=${id} title=${title}><dt>${id}</dt><dd id=${id}>${value}</dd></div>`)}</dl>
+    <dl>${facts.map(([id, value, title]) => html`<div key=${id} class=${WHOLE.includes(id) ? 'whole' : ''} title=${title}><dt>${id}</dt><dd id=${id}>${value}</dd></div>`)}</dl>
   </section>`;
 }

@@ -73,7 +73,7 @@ function Card({ id, sensor, known, act }) {
     <h3><svg class="swatch" viewBox="0 0 10 10" aria-hidden="true"><circle cx="5" cy="5" r="5" fill=${swatch(act.colorOf(id))} /></svg>
       <span class="id">${id}</span> <span class="state ${card.tone}">${card.state}</span></h3>
     ${shown.picture && html`<${Picture} id=${id} resource=${act.resource} />`}
-    ${sensor.state !== 'recorded' && html`<dl>${card.facts.map(([name, value]) => html`<div key=${name}><dt>${name}</dt><dd data-fact=${name}>${value}</dd></div>`)}</dl>`}
+    ${sensor.state !== 'recorded' && html`<dl>${card.facts.map(([name, value]) => html`<div key=${name} class=${name === 'place' ? 'whole' : ''}><dt>${name}</dt><dd data-fact=${name}>${value}</dd></div>`)}</dl>`}
     ${card.words.map((line) => html`<p class="bad" key=${line}>${line}</p>`)}
     <div class="row doings">
       <button type="button" title="look at the room from where it stands" aria-label=${`look from ${id}`} onClick=${() => act.onView('sensor', id)}>look</button>

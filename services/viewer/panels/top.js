@@ -21,7 +21,7 @@ export function Top({ state, alarms, warning, onKeys, onTheme, onPhone }) {
       <button type="button" id="theme" title="light or dark (key t)" onClick=${onTheme}>theme</button>
       <button type="button" id="keys" title="what the keys do (key ?)" onClick=${onKeys}>keys</button>
     </nav>
-    ${waiting.length > 0 && html`<ul id="alarms" role="alert" aria-label="alarms">${waiting.map((alarm) => html`
-      <li key=${alarm}>${alarm} <button type="button" onClick=${() => setSeen(new Set([...seen, alarm]))}>seen</button></li>`)}</ul>`}
+    ${waiting.length > 0 && html`<div id="alarms" role="alert"><ul aria-label="alarms">${waiting.map((alarm) => html`
+      <li key=${alarm}>${alarm} <button type="button" onClick=${() => setSeen(new Set([...seen, alarm]))}>seen</button></li>`)}</ul></div>`}
   </header>`;
 }
