@@ -137,3 +137,25 @@ for (const [name, state] of Object.entries(STATES)) {
     }
   });
 }
+
+const HEAVIEST = 900_000; // bytes, libraries included, before compression
+
+test('the page is light: what it loads until the first body is shown', async () => {
+  const server = await startFakeFusion(FILES, usualWorld());
+  const page = await browser.newPage();
+  const sizes = {};
+  page.on('response', async (answer) => {
+    const { pathname } = new URL(answer.url());
+    if (pathname.startsWith('/viewer/')) sizes[pathname] = (await answer.body().catch(() => '')).length;
+  });
+  try {
+    await page.goto(server.url);
+    await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 0);
+    const all = Object.values(sizes).reduce((sum, size) => sum + size, 0);
+    assert.ok(sizes['/viewer/node_modules/three/build/three.core.min.js'] > 100_000, 'libraries are counted');
+    assert.ok(all <= HEAVIEST, `${all} bytes`);
+  } finally {
+    await page.close();
+    server.stop();
+  }
+});

@@ -337,7 +337,7 @@ test('keys open drawers and dialogs, and stay out of text fields; a phone gets t
   await page.keyboard.press('Escape');
   await page.getByRole('button', { name: 'phone' }).click();
   await page.waitForSelector('.qr', { state: 'visible', ...SOON });
-  assert.equal(await page.evaluate(async () => (await import('./panels/dialogs.js')).phoneAddress('http://cell:8080/viewer/?x=1', 'a b')),
+  assert.equal(await page.evaluate(async () => (await import('./panels/phone.js')).phoneAddress('http://cell:8080/viewer/?x=1', 'a b')),
     'http://cell:8080/viewer/?x=1#token=a%20b');
   await page.keyboard.press('Escape');
   await page.keyboard.press('t');

@@ -1,20 +1,24 @@
 // The whole page beside the scene: top, sensors, people, and one drawer at a time.
-import { html } from './html.js';
-import { AddSensors } from './add.js';
-import { Keys, Phone, Token } from './dialogs.js';
+import { Later, html } from './html.js';
+import { Keys, Token } from './dialogs.js';
 import { Events } from './events.js';
 import { FirstRun } from './first_run.js';
 import { Judged } from './judged.js';
 import { Look } from './look.js';
 import { People, Tracker } from './people.js';
-import { LookAt } from './playback.js';
-import { Record } from './record.js';
 import { Register, Verdict } from './register.js';
 import { Sensors } from './sensors.js';
 import { Top } from './top.js';
-import { Work } from './work.js';
 import { World } from './world.js';
 
+// What is not needed at once is loaded when it is opened.
+const LATER = {
+  sensors: () => import('./add.js').then(({ AddSensors }) => AddSensors),
+  playback: () => import('./playback.js').then(({ LookAt }) => LookAt),
+  record: () => import('./record.js').then(({ Record }) => Record),
+  work: () => import('./work.js').then(({ Work }) => Work),
+  phone: () => import('./phone.js').then(({ Phone }) => Phone),
+};
 const DRAWERS = [['sensors', 'Sensors', 's'], ['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'],
   ['playback', 'Look at a recording', 'l'], ['work', 'Work', 'p'], ['view', 'View', 'v']];
 const OF_RECORDINGS = ['playback', 'view']; // what there is without a room
@@ -27,12 +31,12 @@ export function wantedDrawer(registration) {
 }
 
 function Drawer({ open, known, act }) {
-  if (open === 'sensors') return html`<${AddSensors} setup=${known.setup} sensors=${known.sensors} resource=${act.resource} />`;
+  if (open === 'sensors') return html`<${Later} key="sensors" load=${LATER.sensors} setup=${known.setup} sensors=${known.sensors} resource=${act.resource} />`;
   if (open === 'register') return html`<${Register} registration=${known.registration} told=${known.told} resource=${act.resource} />`;
   if (open === 'world') return html`<${World} resource=${act.resource} onShown=${act.onOriginShown} />`;
-  if (open === 'record') return html`<${Record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} onLook=${act.playback.open} />`;
-  if (open === 'playback') return html`<${LookAt} recordings=${known.recordings} problem=${known.recordingsProblem} shown=${known.playback} failed=${known.playbackProblem} resource=${act.resource} act=${act.playback} />`;
-  if (open === 'work') return html`<${Work} frame=${known.shownFrame} resource=${act.resource} />`;
+  if (open === 'record') return html`<${Later} key="record" load=${LATER.record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} onLook=${act.playback.open} />`;
+  if (open === 'playback') return html`<${Later} key="playback" load=${LATER.playback} recordings=${known.recordings} problem=${known.recordingsProblem} shown=${known.playback} failed=${known.playbackProblem} resource=${act.resource} act=${act.playback} />`;
+  if (open === 'work') return html`<${Later} key="work" load=${LATER.work} frame=${known.shownFrame} resource=${act.resource} />`;
   if (open === 'view') return html`<${Look} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
   return null;
 }
@@ -40,7 +44,7 @@ function Drawer({ open, known, act }) {
 function Dialogs({ known, act }) {
   if (known.asking) return html`<${Token} reason=${known.asking.reason} onToken=${known.asking.answer} />`;
   if (known.dialog === 'keys') return html`<${Keys} onClose=${act.onClose} />`;
-  if (known.dialog === 'phone') return html`<${Phone} href=${location.href} token=${act.token()} onClose=${act.onClose} />`;
+  if (known.dialog === 'phone') return html`<${Later} load=${LATER.phone} href=${location.href} token=${act.token()} onClose=${act.onClose} />`;
   return null;
 }
 

@@ -18,6 +18,18 @@ export function size(bytes) {
   return `${(bytes / 1000 ** step).toFixed(step === 0 ? 0 : 1)} ${units[step]}`;
 }
 
+/// A part of the page that is loaded when it is first shown.  `load`: resolves to the component.
+export function Later({ load, ...own }) {
+  const [view, show] = useState(null);
+  useEffect(() => {
+    let wanted = true;
+    load().then((View) => wanted && show(() => View), () => wanted && show(() => Missing));
+    return () => { wanted = false; };
+  }, [load]);
+  return view && html`<${view} ...${own} />`;
+}
+const Missing = () => html`<p class="bad" role="status">This part of the page cannot be loaded: the server does not answer.</p>`;
+
 /// A list of sentences; nothing at all when there are none.
 export function Lines({ id, lines, label, kind = '' }) {
   if (!lines?.length) return null;
