@@ -79,7 +79,7 @@ export class Resource {
   }
 }
 
-/// Polls for ever; backs off after failures and reports them to `onError`.
+/// Polls for ever, each time after `everyMs` (a number, or a function that says it now); backs off after failures and reports them to `onError`.
 export async function follow(resource, everyMs, onValue, onError) {
   let backoff = 250;
   for (;;) {
@@ -87,7 +87,7 @@ export async function follow(resource, everyMs, onValue, onError) {
       const value = await resource.next();
       if (value !== null) onValue(value);
       backoff = 250;
-      await pause(everyMs);
+      await pause(typeof everyMs === 'function' ? everyMs() : everyMs);
     } catch (error) {
       onError(error);
       await pause(backoff);

@@ -15,7 +15,9 @@ import { stepOf } from './setup.js';
 import { OutputRate, OwnDelay, freshness, stateOf, stateOfPlayback } from './state.js';
 
 const LISTS_RECORDINGS = ['record', 'playback'];
-const RAW_EVERY_MS = 66;
+const RAW_EVERY_MS = 66; // at the most often; with many sensors
+const RAW_SHARE_MS = 16; // each has one turn in so many milliseconds, so that reading them leaves time for drawing
+const RAW_HIDDEN_MS = 500;
 const STATE_EVERY_MS = 200;
 const query = new URLSearchParams(location.search);
 const base = new URL(query.get('server') ?? '../', location.href);
@@ -147,11 +149,13 @@ function showBodies(frame) {
   shown.fusedFrames += 1;
 }
 
+const rawPause = () => (known.switches.raw ? Math.max(RAW_EVERY_MS, RAW_SHARE_MS * room.sensors.size) : RAW_HIDDEN_MS);
+
 function followRaw(id) {
   if (followed.has(id)) return;
   followed.add(id);
   const view = room.sensor(id);
-  follow(resource(`sensors/${id}/frame`), RAW_EVERY_MS, (frame) => showRaw(view, frame), () => view.raw.show([]));
+  follow(resource(`sensors/${id}/frame`), rawPause, (frame) => showRaw(view, frame), () => view.raw.show([]));
 }
 
 follow(resource('frame', 10), 0, (frame) => {
@@ -248,7 +252,7 @@ setInterval(() => {
   const state = known.playback ? stateOfPlayback(known.playback, recordingOnly) : stateOf(now);
   document.body.dataset.fresh = fresh;
   document.title = state.tone === 'good' || state.tone === 'calm' ? 'Chorus cockpit' : `${state.sentence} – Chorus cockpit`;
-  shown.fresh = fresh;
+  Object.assign(shown, { fresh, age });
   change({ state, age: known.playback ? NaN : age, shownFrame: known.playback ? player.frame : fresh === 'gone' ? null : known.frame, shownRate: fresh === 'live' ? known.rate : NaN });
   if (fresh === 'gone' && known.frame) forget();
 }, STATE_EVERY_MS);

@@ -56,6 +56,12 @@ function crowd(body, count) {
       [name, Number.isFinite(joint.x) ? { ...joint, x: joint.x + 0.8 * (i - (count - 1) / 2), z: joint.z + 0.6 * (i % 2) } : joint])) }));
 }
 
+/// What one sensor sees.
+function rawFrame(sequence, place, world) {
+  const seen = frame(sequence, place);
+  return world.crowded ? { ...seen, bodies: crowd(seen.bodies[0], world.people) } : seen;
+}
+
 /// The answers of the fake server; tests change them while it runs.
 export function usualWorld() {
   return {
@@ -95,8 +101,6 @@ export async function startFakeFusion(files, world = usualWorld()) {
   const answers = {
     '/frame': current,
     '/sensors/': () => ({ sensors: world.sensors }),
-    '/sensors/s1/frame': () => frame(sequence, SENSORS.s1),
-    '/sensors/s2/frame': () => frame(sequence, SENSORS.s2),
     '/registration': () => world.registration,
     '/': () => (world.evaluation ? { evaluation: 'evaluation' } : {}),
     '/evaluation': () => world.evaluation,
@@ -137,7 +141,14 @@ export async function startFakeFusion(files, world = usualWorld()) {
       response.writeHead(picture ? 200 : 404, { 'Content-Type': picture ? 'image/svg+xml' : 'application/json' });
       return response.end(picture ?? JSON.stringify({ detail: 'images are switched off; set images: true' }));
     }
+    if (world.pages?.[pathname]) {
+      response.writeHead(200, { 'Content-Type': 'text/html' });
+      return response.end(world.pages[pathname]);
+    }
     const clock = `${serverNow()}000000`;
+    const raw = /^\/sensors\/([^/]+)\/frame$/.exec(pathname)?.[1];
+    if (raw && SENSORS[raw]) answers[pathname] = () => rawFrame(sequence, SENSORS[raw], world);
+    else if (raw && world.sensors[raw]) answers[pathname] = () => rawFrame(sequence, SENSORS.s1, world);
     if (answers[pathname]) {
       const tag = pathname === '/frame' ? `"${sequence}"` : `"${Date.now()}"`;
       const unchanged = request.headers['if-none-match'] === tag;
@@ -155,5 +166,5 @@ export async function startFakeFusion(files, world = usualWorld()) {
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   const { port } = server.address();
-  return { port, world, url: `http://127.0.0.1:${port}/viewer/`, stop: () => { clearInterval(timer); server.closeAllConnections(); server.close(); } };
+  return { port, world, current, url: `http://127.0.0.1:${port}/viewer/`, stop: () => { clearInterval(timer); server.closeAllConnections(); server.close(); } };
 }
