@@ -35,7 +35,7 @@ const room = new Room(document.getElementById('scene'), { coarsens: !query.has('
 /// All facts that the panels show.
 const known = {
   frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '', people: null, events: null, evaluation: null,
-  setup: null, firstRun: false, originShown: false, playback: null, playbackProblem: '',
+  site: null, setup: null, firstRun: false, originShown: false, playback: null, playbackProblem: '',
   state: { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' }, shownFrame: null, shownRate: NaN, age: NaN,
   drawer: null, dialog: null, asking: null,
   switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false },
@@ -122,6 +122,7 @@ const typing = (target) => target instanceof HTMLElement && target.matches('inpu
 window.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target) || document.querySelector('dialog[open]')) return;
   const drawer = drawerOfKey(event.key);
+  if (drawer === 'hall' && !known.site) return;
   if (drawer) openDrawer(drawer);
   else if (event.key === 'u') act.onSwitch('uncertainty', !known.switches.uncertainty);
   else if (event.key === 'a') act.onView('above');
@@ -202,6 +203,9 @@ follow(resource('setup'), 1000, (setup) => change({ setup }), () => {}); // a se
 
 // What is amiss with the service itself although it runs: its configuration, its outputs, its disk.
 follow(resource('healthz'), 5000, ({ warning }) => change({ warning: warning ?? '' }), failed);
+
+// Whether this tracker is a cell of a hall.
+if (!recordingOnly) resource('configuration').next().then((told) => change({ site: told?.inForce?.site?.name || null })).catch(() => {}); // nobody may read it
 
 // What worn sensors say of the tracker, where somebody judges it.
 const JUDGED_EVERY_MS = 250;

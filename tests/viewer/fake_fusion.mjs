@@ -109,6 +109,9 @@ export async function startFakeFusion(files, world = usualWorld()) {
     '/people/': () => ({ people: world.known ?? {} }),
     '/events': () => ({ events: world.events ?? [] }),
     '/recordings/': () => ({ recordings: world.recordings ?? [] }),
+    '/configuration': () => ({ inForce: world.site ? { site: { name: world.site.siteName } } : {} }),
+    '/site/cells/': () => world.site ?? {},
+    '/site/people/': () => ({ sitePeople: world.sitePeople ?? {} }),
     '/setup': () => ({ text: '', searching: false, found: [], trials: {}, added: [], silenced: {}, ...world.setup }),
   };
   const server = createServer(async (request, response) => {

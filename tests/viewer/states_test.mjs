@@ -103,6 +103,15 @@ const STATES = {
   world: { world: good, reach: [says('Live: one person'), key('w'), says('facing its front')] },
   view: { world: good, reach: [says('Live: one person'), key('v'), key('u'), says('drag to turn')] },
   work: { world: good, reach: [says('Live: one person'), key('p'), says('No posture scores')] },
+  hall: {
+    world: (world) => {
+      good(world);
+      world.site = { siteName: 'hall-1', cell: 'A', connected: true, dropped: 0, siteCells: { A: { state: 'own', placed: true, people: 1, x: 0, y: 0, z: 0, qx: 0, qy: 0, qz: 0, qw: 1 },
+        B: { state: 'heard', placed: true, people: 1, address: 'http://b:8080/', x: 6, y: 0, z: 1, qx: 0, qy: 0.38, qz: 0, qw: 0.92 }, C: { state: 'heard', placed: false, people: 0 }, D: { state: 'silent', placed: true, people: 0, x: 0, y: 0, z: 7, qx: 0, qy: 0, qz: 0, qw: 1 } } };
+      world.sitePeople = { 'A-3': { bodyId: 3, siteCertainty: 0.99, cell: 'A', x: 0.5, y: 0.9, z: 0.4 }, 'B-7': { bodyId: 4, siteCertainty: 0.8, cell: 'B', x: 5, y: 0.9, z: 0 } };
+    },
+    reach: [says('Live: one person'), (page) => page.getByRole('tab', { name: 'Hall' }).click(), says('nobody has walked from A to C yet'), says('80 % certain')],
+  },
   keys: { world: good, reach: [says('Live: one person'), key('?'), says('show the uncertainty')] },
   token: { world: (world) => { good(world); world.token = 'secret'; }, reach: [says('Live: one person'), key('e'), (page) => page.getByRole('button', { name: 'Record', exact: true }).click(), says('asks for a token')] },
   phone: { world: good, reach: [says('Live: one person')], size: { width: 390, height: 844 } },

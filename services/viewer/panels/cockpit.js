@@ -17,10 +17,11 @@ const LATER = {
   playback: () => import('./playback.js').then(({ LookAt }) => LookAt),
   record: () => import('./record.js').then(({ Record }) => Record),
   work: () => import('./work.js').then(({ Work }) => Work),
+  hall: () => import('./hall.js').then(({ Hall }) => Hall),
   phone: () => import('./phone.js').then(({ Phone }) => Phone),
 };
 const DRAWERS = [['sensors', 'Sensors', 's'], ['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'],
-  ['playback', 'Look at a recording', 'l'], ['work', 'Work', 'p'], ['view', 'View', 'v']];
+  ['playback', 'Look at a recording', 'l'], ['work', 'Work', 'p'], ['hall', 'Hall', 'g'], ['view', 'View', 'v']];
 const OF_RECORDINGS = ['playback', 'view']; // what there is without a room
 export const drawerOfKey = (key) => DRAWERS.find(([, , own]) => own === key)?.[0] ?? null;
 
@@ -37,6 +38,7 @@ function Drawer({ open, known, act }) {
   if (open === 'record') return html`<${Later} key="record" load=${LATER.record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} onLook=${act.playback.open} />`;
   if (open === 'playback') return html`<${Later} key="playback" load=${LATER.playback} recordings=${known.recordings} problem=${known.recordingsProblem} shown=${known.playback} failed=${known.playbackProblem} resource=${act.resource} act=${act.playback} />`;
   if (open === 'work') return html`<${Later} key="work" load=${LATER.work} frame=${known.shownFrame} resource=${act.resource} />`;
+  if (open === 'hall') return html`<${Later} key="hall" load=${LATER.hall} resource=${act.resource} />`;
   if (open === 'view') return html`<${Look} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
   return null;
 }
@@ -64,7 +66,7 @@ export function Cockpit({ known, act }) {
       </aside>
       <section id="drawer" aria-label="operate">
         <${FirstRun} known=${known} onDrawer=${act.onDrawer} onDone=${act.onFirstRunDone} />
-        <div role="tablist" aria-label="drawers">${DRAWERS.filter(([key]) => !act.playback.only || OF_RECORDINGS.includes(key)).map(([key, label, letter]) => html`
+        <div role="tablist" aria-label="drawers">${DRAWERS.filter(([key]) => (act.playback.only ? OF_RECORDINGS.includes(key) : key !== 'hall' || known.site)).map(([key, label, letter]) => html`
           <button key=${key} type="button" role="tab" id="tab-${key}" aria-selected=${String(known.drawer === key)} aria-controls="drawer-body"
             title=${`key ${letter}`} onClick=${() => act.onDrawer(key)}>${label}${key === 'register' ? html` <${Verdict} registration=${known.registration} />` : ''}</button>`)}</div>
         <div id="drawer-body" role="tabpanel" tabindex="-1">${known.drawer && html`<${Drawer} open=${known.drawer} known=${known} act=${act} />`}</div>

@@ -1,8 +1,9 @@
-// Looking at a recording: which messages are shown at an instant, what is fetched next, and how time goes on.
+// The pure parts behind drawers: recordings by instant, the first steps, the hall from above.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { Playback, latest, nextStretch, timeText } from '../../services/viewer/playback.js';
+import { boxOf, cellsOf, connectionOf, peopleOf, trailsAfter, wordsOf } from '../../services/viewer/hall.js';
 import { addressOf, freeId, stepOf, wishOf } from '../../services/viewer/setup.js';
 
 const at = (seconds, topic = '/frame') => ({ seconds, topic, message: { seconds } });
@@ -101,4 +102,22 @@ test('an address is understood as people type it, and an id is one that is free'
   assert.equal(freeId('', ['sensor-1']), 'sensor-2');
   assert.deepEqual(wishOf([{ id: 'a', url: 'u', token: '' }, { id: 'b', url: 'v', token: 't' }]),
     { sensors: [{ id: 'a', url: 'u' }, { id: 'b', url: 'v', token: 't' }] });
+});
+
+test('a hall has its cells with what they need, its people with where they went, and room around them', () => {
+  const told = { siteName: 'hall-1', cell: 'A', connected: true, siteCells: { A: { state: 'own', people: 1, x: 0, z: 0 }, B: { state: 'heard', placed: false, people: 2 } } };
+  assert.deepEqual(cellsOf(told).map(({ id }) => id), ['A', 'B']);
+  assert.deepEqual(cellsOf({ siteCells: [{ cellId: '#A' }] }).map(({ id }) => id), ['A']);
+  assert.match(wordsOf(cellsOf(told)[1], 'A'), /^2 people; nobody has walked from A to B yet/);
+  assert.equal(wordsOf(cellsOf(told)[0], 'A'), '1 person');
+  assert.equal(connectionOf(told).words, 'hall-1: 2 cells.');
+  assert.match(connectionOf({ connected: false, trouble: 'wrong password' }).words, /wrong password.*goes on alone/);
+  assert.deepEqual(boxOf([]), [-5, -5, 10, 10]);
+  assert.deepEqual(boxOf([{ x: 0, z: 0 }, { x: 6, z: 1 }, { x: NaN, z: 0 }]), [-4.5, -4.5, 15, 10]);
+  const people = peopleOf({ sitePeople: { 'A-3': { x: 1, z: 2 } } });
+  let trails = trailsAfter(new Map(), people, 0);
+  trails = trailsAfter(trails, people, 9000);
+  assert.equal(trails.get('A-3').length, 2);
+  assert.equal(trailsAfter(trails, people, 11000).get('A-3').length, 2, 'the first one is too old');
+  assert.equal(trailsAfter(trails, [], 11000).size, 0);
 });
