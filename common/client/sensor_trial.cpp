@@ -13,10 +13,10 @@
 namespace chorus::client {
 namespace {
 
-constexpr http::ClientLimits kLimits{.max_body_bytes = 1u << 20,
-                                     .connect_timeout = std::chrono::milliseconds(1500),
-                                     .answer_timeout = std::chrono::milliseconds(2500)};
-constexpr JsonLimits kJson{1u << 20, 32};
+constexpr http::ClientLimits kTrialLimits{.max_body_bytes = 1u << 20,
+                                          .connect_timeout = std::chrono::milliseconds(1500),
+                                          .answer_timeout = std::chrono::milliseconds(2500)};
+constexpr JsonLimits kTrialJson{1u << 20, 32};
 
 SensorTrial bad(std::string words) { return {false, std::move(words), {}}; }
 
@@ -53,7 +53,7 @@ struct Asking {
   [[nodiscard]] Result<http::ClientResponse> get(const std::string& path) const {
     http::ClientRequest own = request;
     own.target = url.target + path;
-    return http::fetch(url, own, kLimits, trust);
+    return http::fetch(url, own, kTrialLimits, trust);
   }
 };
 
@@ -68,7 +68,7 @@ SensorTrial with_frame(const Asking& asking, const std::string& title, SensorTri
     trial.words = title + " is there, but has not delivered a frame yet.";
     return trial;
   }
-  const auto frame = parse_json(answer->body, kJson);
+  const auto frame = parse_json(answer->body, kTrialJson);
   const std::size_t bodies = frame ? part_at(*frame, "bodies").size() : 0;
   trial.words = bodies == 0 ? title + " is there and sees nobody now."
                             : fmt::format("{} is there and sees {} {}.", title, bodies,
@@ -89,7 +89,7 @@ SensorTrial try_sensor(const std::string& url, const std::string& token, const t
   const auto answer = asking.get("");
   if (!answer) return bad(unanswered(asking.url, answer.error()));
   if (answer->status != http::status::kOk) return refused(answer->status, !token.empty());
-  const auto self = parse_json(answer->body, kJson);
+  const auto self = parse_json(answer->body, kTrialJson);
   if (!self || !self->is_object() || !self->contains("frame"))
     return bad(
         "What is there answers, but does not describe itself as a sensor: is the port right?");

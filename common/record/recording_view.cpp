@@ -24,18 +24,18 @@ bool is_frame(std::string_view topic) {
 }
 bool is_shown(std::string_view topic) { return is_frame(topic) || topic == kPlaces; }
 /// What holds until the next message of its topic; frames, readings and scenes do not.
-bool is_state(std::string_view topic) {
+bool holds_on(std::string_view topic) {
   return topic == kPlaces || topic.ends_with("/floor-plane") || topic.ends_with("/clock") ||
          topic.ends_with("/calibration");
 }
 
 /// The sensor of "/sensors/s1/frame".
-std::string sensor_of(std::string_view topic) {
+std::string sensor_in_topic(std::string_view topic) {
   topic.remove_prefix(kSensors.size());
   return std::string(topic.substr(0, topic.find('/')));
 }
 
-Timestamp after(Timestamp start, double seconds) { return start + from_seconds(seconds); }
+Timestamp time_after(Timestamp start, double seconds) { return start + from_seconds(seconds); }
 
 /// Whether it looks like one JSON object; reading all of it would take too long.
 bool is_object(std::string_view text) {
@@ -110,7 +110,7 @@ std::string RecordingView::outline() {
     for (const Channel& channel : part.stream.channels()) {
       if (channel.topic == kFrame && single_.empty()) out["fused"] = true;
       if (channel.topic != kFrame && is_frame(channel.topic))
-        sensors.insert(sensor_of(channel.topic));
+        sensors.insert(sensor_in_topic(channel.topic));
     }
     if (auto own = part.stream.last_of(kPlaces)) places = std::move(own);
     notes.insert(part.stream.notes().begin(), part.stream.notes().end());
@@ -140,23 +140,24 @@ Result<std::string> RecordingView::stretch(const Stretch& asked) {
   std::map<std::string, Timestamp, std::less<>> newest;
   std::string messages;
   double to = asked.to;
-  const auto done = each_between(
-      after(first_, asked.from), after(first_, asked.to), [&](const MessageView& message) {
-        const double at = seconds(message.log_time - first_);
-        const auto before = newest.find(message.topic);
-        if (asked.every > 0.0 && before != newest.end() && is_frame(message.topic) &&
-            message.log_time < after(before->second, asked.every))
-          return true;
-        if (!is_object(message.data)) return true;
-        newest.insert_or_assign(std::string(message.topic), message.log_time);
-        messages += fmt::format(R"({}{{"seconds":{:.4f},"topic":{},"message":)",
-                                messages.empty() ? "" : ",\n", at,
-                                nlohmann::json(std::string(message.topic)).dump());
-        messages.append(message.data).append("}");
-        if (messages.size() < kMostStretch) return true;
-        to = at;
-        return false;
-      });
+  const auto done =
+      each_between(time_after(first_, asked.from), time_after(first_, asked.to),
+                   [&](const MessageView& message) {
+                     const double at = seconds(message.log_time - first_);
+                     const auto before = newest.find(message.topic);
+                     if (asked.every > 0.0 && before != newest.end() && is_frame(message.topic) &&
+                         message.log_time < time_after(before->second, asked.every))
+                       return true;
+                     if (!is_object(message.data)) return true;
+                     newest.insert_or_assign(std::string(message.topic), message.log_time);
+                     messages += fmt::format(R"({}{{"seconds":{:.4f},"topic":{},"message":)",
+                                             messages.empty() ? "" : ",\n", at,
+                                             nlohmann::json(std::string(message.topic)).dump());
+                     messages.append(message.data).append("}");
+                     if (messages.size() < kMostStretch) return true;
+                     to = at;
+                     return false;
+                   });
   if (!done) return pass(done);
   return fmt::format(R"({{"from":{:.4f},"to":{:.4f},"messages":[{}]}})", asked.from, to, messages);
 }
@@ -166,8 +167,8 @@ Result<std::string> RecordingView::frame_at(double seconds_in) {
   if (!std::isfinite(seconds_in))
     return fail(ErrorCode::InvalidArgument, "at", "the seconds since the recording's beginning");
   std::string frame;
-  const auto done = each_between(after(first_, seconds_in - kBack), after(first_, seconds_in),
-                                 [&](const MessageView& message) {
+  const auto done = each_between(time_after(first_, seconds_in - kBack),
+                                 time_after(first_, seconds_in), [&](const MessageView& message) {
                                    if (message.topic == kFrame && is_object(message.data))
                                      frame = message.data;
                                    return true;
@@ -218,7 +219,7 @@ struct Copy {
 
   Result<void> take(const MessageView& message) {
     if (message.log_time < cut.from) {
-      if (is_state(message.topic))
+      if (holds_on(message.topic))
         state.insert_or_assign(std::string(message.topic), message.copy());
       return {};
     }

@@ -15,9 +15,9 @@ using std::chrono::steady_clock;
 
 constexpr auto kFresh = std::chrono::milliseconds(400);  ///< Until then the same picture is good.
 constexpr auto kKept = std::chrono::seconds(10);         ///< An older picture would mislead.
-constexpr http::ClientLimits kLimits{.max_body_bytes = 4u << 20,
-                                     .connect_timeout = std::chrono::milliseconds(1000),
-                                     .answer_timeout = std::chrono::milliseconds(1500)};
+constexpr http::ClientLimits kPictureLimits{.max_body_bytes = 4u << 20,
+                                            .connect_timeout = std::chrono::milliseconds(1000),
+                                            .answer_timeout = std::chrono::milliseconds(1500)};
 
 /// The image as the sensor sent it, or why it sends none, in words for the operator.
 Result<http::ClientResponse> image_of(const client::FollowedService& service) {
@@ -27,7 +27,7 @@ Result<http::ClientResponse> image_of(const client::FollowedService& service) {
   request.target = url->target + (url->target.ends_with('/') ? "" : "/") + "images/color";
   if (!service.token.empty())
     request.headers.emplace_back("Authorization", "Bearer " + service.token);
-  auto answer = http::fetch(*url, request, kLimits, service.trust);
+  auto answer = http::fetch(*url, request, kPictureLimits, service.trust);
   if (!answer) return pass(answer);
   if (answer->status == http::status::kOk) return answer;
   if (answer->status == http::status::kUnauthorized || answer->status == http::status::kForbidden)

@@ -10,7 +10,7 @@
 namespace chorus::server {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 1u << 20;
+constexpr std::uintmax_t kMostChangesBytes = 1u << 20;
 constexpr std::size_t kMostTrials = 32;
 /// Finding takes a second or two; an operator waits no longer than this.
 constexpr auto kSearch = std::chrono::seconds(6);
@@ -19,7 +19,7 @@ constexpr auto kSearch = std::chrono::seconds(6);
 
 SensorDesk::SensorDesk(SensorDeskOptions options) : options_(std::move(options)) {
   if (options_.folder.empty() || !is_there(path())) return;
-  auto stored = read_file(path(), kMaxBytes).and_then([](const std::string& text) {
+  auto stored = read_file(path(), kMostChangesBytes).and_then([](const std::string& text) {
     return read_sensor_changes(text);
   });
   if (stored) {
