@@ -155,7 +155,7 @@ set(CPACK_DEBIAN_COMMON_PACKAGE_CONTROL_EXTRA "${control}/postinst;${control}/po
 set(CPACK_DEBIAN_COMMON_PACKAGE_DEPENDS passwd)
 set(CPACK_DEBIAN_COMMON_PACKAGE_SUGGESTS "chrony, avahi-daemon, avahi-utils")
 set(CPACK_DEBIAN_FUSION_PACKAGE_RECOMMENDS "nats-server")
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "chorus-sensor, libxgboost0")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "chorus-sensor, chromium, libxgboost0")
 set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folders of a workshop host
  Writes configurations, checks hosts, registers sensors and records.")
 set(CPACK_COMPONENT_SENSOR_DESCRIPTION "Chorus: a body-tracking device as a web service

@@ -19,8 +19,8 @@ export class Player {
     let outline;
     try {
       outline = await this.io.fetchJson(this.path('outline'));
-    } catch {
-      return this.io.onFailed(`${name} cannot be opened: the server says that it cannot read it, or no longer has it.`);
+    } catch (error) {
+      return this.io.onFailed(`${name} cannot be opened: ${error.message}`);
     }
     this.playback = new Playback(outline, ({ from, to, every }) => this.io.fetchJson(this.path(`stretch?from=${from}&to=${to}&every=${every}`)));
     this.placed = null;

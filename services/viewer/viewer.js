@@ -9,7 +9,7 @@ import { Player } from './player.js';
 import { Resource, clock, follow as followForEver, link } from './poll.js';
 import { Readout } from './readout.js';
 import { judgedBones } from './judged.js';
-import { askFor, takeToken, tokenInUse } from './request.js';
+import { askFor, requested, takeToken, tokenInUse } from './request.js';
 import { Room } from './room.js';
 import { stepOf } from './setup.js';
 import { OutputRate, OwnDelay, freshness, stateOf, stateOfPlayback } from './state.js';
@@ -105,7 +105,11 @@ askFor((reason) => new Promise((resolve) => {
 
 /// A recording instead of the room as it is now.
 const player = new Player(room, {
-  fetchJson: (path) => new Resource(resource(path).url).next(),
+  fetchJson: async (path) => { // recordings show people: they may need a token that reading the present does not
+    const { problem, body } = await requested(new URL(path, base).href, null, 'GET');
+    if (problem) throw new Error(problem);
+    return body;
+  },
   onShown: (playback) => {
     const opened = Boolean(playback) !== Boolean(known.playback);
     change({ playback, ...(opened ? { drawer: 'playback', playbackProblem: '' } : {}),

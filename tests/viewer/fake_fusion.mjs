@@ -134,6 +134,10 @@ export async function startFakeFusion(files, world = usualWorld()) {
     const recorded = /^\/recordings\/([^/]+)\/(outline|stretch)$/.exec(pathname);
     if (recorded) {
       const known = world.outlines?.[recorded[1]];
+      if (world.recordingToken && request.headers.authorization !== `Bearer ${world.recordingToken}`) {
+        response.writeHead(401, { 'Content-Type': 'application/json' });
+        return response.end(JSON.stringify({ detail: 'a token of role images is needed' }));
+      }
       response.writeHead(known ? 200 : 404, { 'Content-Type': 'application/json' });
       if (!known) return response.end(JSON.stringify({ detail: 'there is no recording of this name' }));
       world.stretches = (world.stretches ?? 0) + (recorded[2] === 'stretch');

@@ -168,3 +168,27 @@ test('the page is light: what it loads until the first body is shown', async () 
     server.stop();
   }
 });
+
+test('a recording that cannot be opened, and one that needs a token, say so', async () => {
+  const world = usualWorld();
+  STATES.playback.world(world);
+  world.recordings = [recording, { ...recording, name: 'lost', started: '2026-11-27T08:00:00Z' }];
+  world.recordingToken = 'secret';
+  const server = await startFakeFusion(FILES, world);
+  const { page } = await openViewer(browser, server.url);
+  try {
+    await says('Live: one person')(page);
+    await page.keyboard.press('l');
+    await page.getByRole('button', { name: 'look at walk-1' }).click();
+    await page.fill('#token', 'secret');
+    await page.getByRole('button', { name: 'Send' }).click();
+    await says('A recording is shown: walk-1')(page);
+    await page.getByRole('button', { name: /^Back to the room/ }).click();
+    await page.getByRole('button', { name: 'look at lost' }).click();
+    await says('lost cannot be opened: there is no recording of this name')(page);
+    await says('Live: one person')(page);
+  } finally {
+    await page.close();
+    server.stop();
+  }
+});
