@@ -47,7 +47,7 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
                                 const AssociationConfig& config) {
   std::vector<Candidate> candidates;
   for (const Track& track : tracks.people) {
-    const Duration age = std::chrono::abs(instant - track.seen);
+    const Duration age = std::chrono::abs(instant - track.placed);
     const Duration coast = track.named && is_settled(track, config)
                                ? config.coast
                                : std::min(config.coast, kCoastUnknown);
@@ -167,10 +167,10 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
   std::vector<Person> people;
   for (Candidate& candidate : candidates) {
     const Track& track = candidate.track;
-    // `seen` is unchanged by a single ray body, which does not determine a position.
-    const bool placed = instant - track.seen <= config.carry;
+    // Whom one camera without depth alone sees is tracked for `coast` after others have seen them.
+    const bool recent = instant - track.seen <= config.carry;
     const bool shown = track.named && !track.withheld && is_settled(track, config);
-    if (placed && shown) people.push_back(person_of(candidate));
+    if (recent && shown) people.push_back(person_of(candidate));
   }
   keep_the_best(people);
   return people;

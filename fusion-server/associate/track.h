@@ -21,8 +21,10 @@ struct Footprint {
 struct Track {
   PersonId id;
   Timestamp found;  ///< First instant at which views located the person.
-  Timestamp seen;   ///< Last instant at which views located the person.
-  int hits = 0;     ///< Number of instants at which views located the person.
+  Timestamp seen;   ///< Last instant at which views showed the person.
+  /// Last instant at which views located the person; a single ray body does not.
+  Timestamp placed;
+  int hits = 0;  ///< Number of instants at which views located the person.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   PlanError error = PlanError::Zero();                 ///< Of `core`, as far as sensors state it.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]

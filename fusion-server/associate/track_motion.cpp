@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/body/bones.h"
+#include "common/geometry/ray.h"
 
 namespace chorus::associate {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kFastest = 4.0;        // [m/s], a sprint; limits the effect of
 constexpr double kAfterGap = 1.5;
 constexpr double kOtherBodies = 3.0;
 constexpr Duration kGap = std::chrono::milliseconds(200);  // A shorter one is noise of detection.
+constexpr double kSlowing = 1.0;  // [s] of the speed along the rays of one camera
 constexpr double kLongest = 0.1;  // [s]; one instant counts for at most this time.
 
 /// Mean of the views that have a place.
@@ -93,11 +95,37 @@ bool goes_on(const std::vector<Footprint>& before, const std::vector<Footprint>&
 /// Cuts the track where another person may have taken the place of the one it follows.
 void cut(Track& track, const std::vector<Footprint>& now, Timestamp instant) {
   if (track.hits == 0) return;
-  if (instant - track.seen > kGap) {
+  if (instant - track.placed > kGap) {
     track.build.cut(kAfterGap);
   } else if (!now.empty() && !goes_on(track.footprints, now)) {
     track.build.cut(kOtherBodies);
   }
+}
+
+/// Moves a track across the rays of the one camera that shows it, as far as its joints are off them
+/// in the mean; it goes on along them more and more slowly.
+void shift_across(Candidate& candidate, const SensorView& view, double elapsed) {
+  Track& track = candidate.track;
+  const Eigen::Vector3d expected = candidate.predicted - track.core;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const Joint& joint = view.skeleton.joints[j];
+    if (!joint.bears() || !track.joints[j]) continue;
+    const Eigen::Vector3d there = *track.joints[j] + expected;
+    sum += nearest_on({view.eye, joint.position}, there) - there;
+    count += 1.0;
+  }
+  const Eigen::Vector3d shift = expected + (count > 0 ? sum / count : sum);
+  for (auto& joint : track.joints) {
+    if (joint) *joint += shift;
+  }
+  track.core += shift;
+  if (!(elapsed > 0)) return;
+  const Eigen::Vector3d sight = (track.core - view.eye).normalized();
+  const Eigen::Vector3d along = track.velocity.dot(sight) * sight;
+  turn_velocity(track, shift / elapsed);
+  track.velocity -= std::min(1.0, elapsed / kSlowing) * along;
 }
 
 }  // namespace
@@ -107,7 +135,17 @@ Candidate predict(const Track& track, Timestamp instant, const AssociationConfig
   const double slow = seconds(config.slow_down);
   const double way = slow > 0 ? slow * (1.0 - std::exp(-std::abs(age) / slow)) : 0.0;
   return {track, track.core + std::copysign(way, age) * track.velocity,
-          config.gate + config.gate_growth * std::abs(age)};
+          config.gate + config.gate_growth * std::abs(seconds(instant - track.placed))};
+}
+
+void follow(Tracks& tracks, PersonId person, const Located& joints) {
+  const auto track = std::ranges::find(tracks.people, person, &Track::id);
+  const auto core = middle_of(joints);
+  const bool alone =
+      track != tracks.people.end() && track->seen == tracks.instant && track->placed != track->seen;
+  if (!alone || !core) return;
+  track->joints = joints;
+  track->core = *core;
 }
 
 void update(Candidate& candidate, Timestamp instant) {
@@ -122,11 +160,13 @@ void update(Candidate& candidate, Timestamp instant) {
   for (PlacedView& sight : candidate.sights) {
     if (sight.rays) sight.core = found.value_or(candidate.predicted);
   }
+  const double elapsed = seconds(instant - track.seen);
   if (!found) {
     track.joints = before;
+    shift_across(candidate, candidate.sights.front().view, elapsed);
+    track.seen = instant;
     return;
   }
-  const double elapsed = seconds(instant - track.seen);
   std::vector<Footprint> prints = footprints_of(candidate.sights);
   cut(track, prints, instant);
   update_velocity(track, std::move(prints), *found, elapsed);
@@ -136,7 +176,7 @@ void update(Candidate& candidate, Timestamp instant) {
   track.build.add(spans, instant, lasted);
   track.core = *found;
   track.error = mean.error();
-  track.seen = instant;
+  track.seen = track.placed = instant;
   track.through = Duration{0};
   ++track.hits;
 }

@@ -13,9 +13,13 @@ namespace chorus::associate {
 [[nodiscard]] Candidate predict(const Track& track, Timestamp instant,
                                 const AssociationConfig& config);
 
-/// Updates the candidate by its views, and cuts its build (tracklets.h) where nobody saw it before
-/// or all bodies that show it are new. If they do not locate the person (there are none, or only
-/// one camera without depth sees the person), the track stays as it was.
+/// Updates the candidate by its views, and cuts its build (tracklets.h) where nobody placed it
+/// before or all bodies that show it are new.  Without views the track stays as it was; a camera
+/// without depth that alone sees the person moves it across its rays.
 void update(Candidate& candidate, Timestamp instant);
+
+/// Puts the track of a person whom such a camera alone sees where fusion has the joints, because
+/// fusion knows how far away they are by their size.
+void follow(Tracks& tracks, PersonId person, const Located& joints);
 
 }  // namespace chorus::associate

@@ -72,6 +72,15 @@ double pull_of(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread
   return information.cwiseProduct(spread).sum() / kAxes;  // both are symmetric
 }
 
+bool nearly_a_ray(const Joint& joint) {
+  constexpr double kElongated = 3.0;  // ratio of the standard deviations along and across
+  if (!joint.covariance.known()) return false;
+  const Eigen::Matrix3d covariance = joint.covariance.matrix();
+  const double sigma = largest_sigma(covariance);
+  const double along = sigma * sigma;
+  return along > kElongated * kElongated * (covariance.trace() - along) / 2.0;
+}
+
 double mean_variance(const Eigen::Matrix3d& covariance) { return covariance.trace() / kAxes; }
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {

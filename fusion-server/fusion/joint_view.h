@@ -63,6 +63,9 @@ void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance);
 /// information of all views, so the results of all views sum to 1.
 [[nodiscard]] double pull_of(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread);
 
+/// True for a point whose depth is hardly known, as from a camera that guesses depth.
+[[nodiscard]] bool nearly_a_ray(const Joint& joint);
+
 /// Mean variance per axis [m^2].
 [[nodiscard]] double mean_variance(const Eigen::Matrix3d& covariance);
 

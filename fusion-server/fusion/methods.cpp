@@ -26,16 +26,6 @@ constexpr std::array kMethods{
     MethodRow{Method::BodyFilter, "body-filter", body_filter},
 };
 
-/// True for a point whose depth is hardly known, as from a camera that guesses depth.
-bool nearly_a_ray(const Joint& joint) {
-  constexpr double kElongated = 3.0;  // ratio of the standard deviations along and across
-  if (!joint.covariance.known()) return false;
-  const Eigen::Matrix3d covariance = joint.covariance.matrix();
-  const double sigma = largest_sigma(covariance);
-  const double along = sigma * sigma;
-  return along > kElongated * kElongated * (covariance.trace() - along) / 2.0;
-}
-
 /// True if only one view shows the person, and it states the covariance of all its points: such a
 /// body was already fused by somebody else.  Its covariance includes slow errors, which a second
 /// filter would take for noise, and no other view could correct it.

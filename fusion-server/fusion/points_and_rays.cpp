@@ -5,7 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "common/geometry/ray.h"
 #include "common/geometry/rotation.h"
+#include "fusion-server/fusion/held_body.h"
 #include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/learned_errors.h"
 #include "fusion-server/fusion/least_squares.h"
@@ -13,42 +15,115 @@
 namespace chorus::fusion {
 namespace {
 
+constexpr std::size_t kEnough = 3;      // joints that several cameras place: they place the body
+constexpr double kSourceFading = 0.15;  // [s] in which a joint follows other cameras than before
+
 bool any_point(std::span<const JointView> views) {
   return std::ranges::any_of(views, [](const JointView& view) { return view.joint.seen(); });
+}
+
+/// A joint's views at an instant, and where they meet.
+struct Meeting {
+  std::vector<JointView> views;
+  std::optional<LeastSquares> found;
+};
+using Meetings = std::array<Meeting, kJointCount>;
+
+/// State, orientation, contributors and their shares by the views that are trusted.
+void show(FusedJoint& fused, std::span<const JointView> views, std::span<const double> trust,
+          std::span<const double> pull) {
+  fused.joint.state = JointState::Inferred;
+  std::vector<Eigen::Quaterniond> rotations;
+  std::vector<double> weights;
+  ShareTally tally;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (trust[i] == 0.0) continue;
+    fused.joint.state = std::max(fused.joint.state, views[i].joint.state);
+    fused.contributors |= views[i].contributor;
+    tally.add(views[i].contributor, pull[i]);
+    if (!is_unit(views[i].joint.orientation)) continue;
+    rotations.push_back(views[i].joint.orientation);
+    weights.push_back(trust[i] / mean_variance(views[i].covariance));
+  }
+  fused.shares = tally.shares();
+  if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
 }
 
 FusedJoint finish(std::span<const JointView> views, const LeastSquares& found, double common) {
   FusedJoint fused;
   fused.joint.position = found.position;
-  fused.joint.state = JointState::Inferred;
   state_covariance(fused, found.covariance + common * common * Eigen::Matrix3d::Identity());
-  std::vector<Eigen::Quaterniond> rotations;
-  std::vector<double> weights;
-  ShareTally tally;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (found.trust[i] == 0.0) continue;
-    fused.joint.state = std::max(fused.joint.state, views[i].joint.state);
-    fused.contributors |= views[i].contributor;
-    tally.add(views[i].contributor, found.pull[i]);
-    if (!is_unit(views[i].joint.orientation)) continue;
-    rotations.push_back(views[i].joint.orientation);
-    weights.push_back(found.trust[i] / mean_variance(views[i].covariance));
-  }
-  fused.shares = tally.shares();
-  if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
+  show(fused, views, found.trust, found.pull);
   return fused;
+}
+
+/// True if the views place the joint: by a point of known depth, or from two sides.
+bool is_placed(const Meeting& meeting, double max_sigma) {
+  if (!meeting.found || largest_sigma(meeting.found->covariance) > max_sigma) return false;
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < meeting.views.size(); ++i) {
+    const JointView& view = meeting.views[i];
+    if (meeting.found->trust[i] == 0.0) continue;
+    if (view.joint.seen() && !nearly_a_ray(view.joint)) return true;
+    if (first && *first != view.view) return true;
+    first = view.view;
+  }
+  return false;
+}
+
+/// What one of the views shows.
+RayView ray_view(const Person& person, std::size_t index, const Meetings& meetings) {
+  RayView shown{person.views[index].sensor, person.views[index].eye, {}, {}};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    for (const JointView& view : meetings[j].views) {
+      if (view.view != index) continue;
+      const Eigen::Vector3d way = view.joint.position - shown.eye;
+      if (view.joint.bears()) {
+        shown.rays[j] = {view.joint.position, view.covariance, true};
+      } else if (way.norm() > 0) {
+        shown.depth[j] = way.norm();
+        shown.rays[j] = {way.normalized(), view.covariance / way.squaredNorm(), true};
+      }
+    }
+  }
+  return shown;
+}
+
+/// The view that shows most joints.
+std::size_t fullest(const Person& person, const Meetings& meetings) {
+  std::vector<std::size_t> joints(person.views.size(), 0);
+  for (const Meeting& meeting : meetings) {
+    for (const JointView& view : meeting.views) ++joints[view.view];
+  }
+  return static_cast<std::size_t>(std::ranges::max_element(joints) - joints.begin());
 }
 
 class PointsAndRays final : public Estimator {
  public:
   explicit PointsAndRays(const FusionConfig& config)
-      : config_(std::make_shared<const FusionConfig>(config)), errors_(errors_of(config)) {}
+      : config_(std::make_shared<const FusionConfig>(config)),
+        errors_(errors_of(config)),
+        held_(config.body) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
-    return joint_by_joint(person.id, [&](JointId joint) {
-      const auto views = points_and_rays_of(joint, person, instant.sensors, *errors_);
-      return fuse_joint(index_of(joint), instant.at, views);
+    const double passed = last_ ? std::max(0.0, seconds(instant.at - *last_)) : 0.0;
+    last_ = instant.at;
+    held_.predict(passed);
+    const PlacedBody expected = held_.expected();
+    Meetings meetings;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      meetings[j].views =
+          points_and_rays_of(static_cast<JointId>(j), person, instant.sensors, *errors_);
+      meetings[j].found = least_squares(meetings[j].views, config_->huber);
+    }
+    const auto source = hold(person, meetings);
+    FusedBody body = joint_by_joint(person.id, [&](JointId joint) {
+      const std::size_t j = index_of(joint);
+      return alone_ && (*alone_)[j].placed ? held_joint(meetings[j], (*alone_)[j])
+                                           : fuse_joint(j, instant.at, meetings[j]);
     });
+    hand_over(body, expected, source, passed);
+    return body;
   }
 
   [[nodiscard]] std::unique_ptr<Estimator> clone() const override {
@@ -56,9 +131,71 @@ class PointsAndRays final : public Estimator {
   }
 
  private:
-  FusedJoint fuse_joint(std::size_t joint, Timestamp instant, const std::vector<JointView>& views) {
+  /// Who places the body: several cameras, or one alone.
+  struct Source {
+    std::optional<SensorId> alone;
+    bool operator==(const Source&) const = default;
+  };
+
+  /// Gives the held body what the views show of it, and sets `alone_`; none if nobody places it.
+  std::optional<Source> hold(const Person& person, const Meetings& meetings) {
+    alone_.reset();
+    PlacedBody placed;
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      if (!is_placed(meetings[j], config_->max_sigma)) continue;
+      placed[j] = {meetings[j].found->position, meetings[j].found->covariance, true};
+      ++count;
+    }
+    if (count >= kEnough) {
+      held_.take(placed);
+      for (std::size_t v = 0; v < person.views.size(); ++v)
+        held_.compare(ray_view(person, v, meetings), placed);
+      return Source{};
+    }
+    if (person.views.empty()) return std::nullopt;
+    const RayView view = ray_view(person, fullest(person, meetings), meetings);
+    alone_ = held_.follow(view);
+    if (!alone_) return std::nullopt;
+    return Source{view.sensor};
+  }
+
+  /// A joint on the ray of the camera that is left.
+  [[nodiscard]] FusedJoint held_joint(const Meeting& meeting, const PlacedJoint& place) const {
+    FusedJoint fused;
+    fused.joint.position = place.position;
+    state_covariance(
+        fused, place.covariance + square(config_->common_sigma) * Eigen::Matrix3d::Identity());
+    const std::vector<double> all(meeting.views.size(), 1.0);
+    show(fused, meeting.views, all, all);
+    if (!any_point(meeting.views)) fused.joint.state = JointState::Inferred;
+    return fused;
+  }
+
+  /// A joint stays where it was expected when others than before place the body, and follows them
+  /// within kSourceFading.  What is left of that is stated.
+  void hand_over(FusedBody& body, const PlacedBody& expected, const std::optional<Source>& source,
+                 double passed) {
+    const double kept = std::exp(-passed / kSourceFading);
+    const bool changed = source && source_ && *source != *source_;
+    if (source) source_ = source;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      Eigen::Vector3d& offset = offsets_[j];
+      offset *= kept;
+      Joint& joint = body.skeleton.joints[j];
+      if (!joint.seen()) continue;
+      if (changed && expected[j].placed) offset += kept * (expected[j].position - joint.position);
+      if (offset.isZero(1e-6)) continue;
+      joint.position += offset;
+      const Eigen::Matrix3d covariance = joint.covariance.matrix() + offset * offset.transpose();
+      joint.covariance = Covariance(covariance);
+      body.variance[j] = mean_variance(covariance);
+    }
+  }
+
+  FusedJoint fuse_joint(std::size_t joint, Timestamp instant, const Meeting& meeting) {
+    const auto& [views, found] = meeting;
     if (views.empty()) return {};
-    const auto found = least_squares(views, config_->huber);
     if (!found || !determined(views, *found)) return bounded(joint, instant, views);
     filters_[joint].update(instant, found->position, mean_variance(found->covariance));
     seen_[joint] = instant;
@@ -89,8 +226,19 @@ class PointsAndRays final : public Estimator {
     return fused;
   }
 
+  static double square(double x) { return x * x; }
+
   std::shared_ptr<const FusionConfig> config_;  ///< Shared by all copies.
   std::shared_ptr<const ErrorModel> errors_;
+  HeldBody held_;
+  std::optional<PlacedBody> alone_;  ///< The body according to one camera; none: not asked.
+  std::optional<Source> source_;     ///< Who last placed the body.
+  std::array<Eigen::Vector3d, kJointCount> offsets_ = [] {
+    std::array<Eigen::Vector3d, kJointCount> none;
+    none.fill(Eigen::Vector3d::Zero());
+    return none;
+  }();
+  std::optional<Timestamp> last_;
   JointFilters filters_ = joint_filters();
   std::array<std::optional<Timestamp>, kJointCount> seen_;
 };

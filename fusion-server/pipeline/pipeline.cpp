@@ -6,6 +6,7 @@
 
 #include "common/sensor/limits.h"
 #include "fusion-server/align/patience.h"
+#include "fusion-server/associate/track_motion.h"
 #include "fusion-server/facing/front_rear.h"
 #include "fusion-server/facing/stand_in.h"
 
@@ -241,6 +242,8 @@ Step fuse(Perceived seen, const Inputs& in, std::vector<SensorId> sensors,
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
   leave_out_the_unplaced(snapshot.bodies, seen.people);
+  for (const FusedBody& body : snapshot.bodies)
+    associate::follow(seen.memory.tracks, body.id, points_of(body.skeleton));
   seen.memory.seating.seat(snapshot.bodies, in.instant, config.association.coast, config.seating);
   snapshot.reports = std::move(seen.reports);
   return {std::move(snapshot), std::move(seen.memory), std::move(seen.people)};

@@ -4,8 +4,10 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include "common/base/units.h"
+#include "common/body/bones.h"
 #include "common/geometry/rigid_fit.h"
 #include "fusion-server/pipeline/offline.h"
 #include "tests/bench/camera/four_views.h"
@@ -35,12 +37,42 @@ std::filesystem::path folder() {
   return stated != nullptr ? stated : "../shared/data/totalcapture_views";
 }
 
+/// How errors compare with what is stated of them.
+struct Stated {
+  double nees = 0.0;      ///< Sum of e^T C^-1 e / 3.
+  double variance = 0.0;  ///< Sum of the stated variance per axis [m^2].
+  double square = 0.0;    ///< Sum of the squared error per axis [m^2].
+  double inside = 0.0;    ///< In the stated 95 % ellipsoid.
+  double count = 0.0;
+
+  void add(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
+    constexpr double kInside = 7.815;  // 95 % of chi-squared with three degrees of freedom
+    const double distance = off.dot(covariance.inverse() * off);
+    nees += distance / 3.0;
+    variance += covariance.trace() / 3.0;
+    square += off.squaredNorm() / 3.0;
+    inside += distance <= kInside ? 1.0 : 0.0;
+    count += 1.0;
+  }
+  void add(const Stated& other) {
+    nees += other.nees;
+    variance += other.variance;
+    square += other.square;
+    inside += other.inside;
+    count += other.count;
+  }
+};
+
 /// Distances of the twelve joints from the truth.
 struct ViconErrors {
   std::vector<double> raw;      ///< [m]
   std::vector<double> aligned;  ///< After one rigid motion of the take [m].
   double missing = 0.0;         ///< Share of the joints.
   double exchanged = 0.0;       ///< Share of the instants with left and right exchanged.
+  /// Of each joint, raw and aligned: sums of squared error over stated variance, and of both, per
+  /// axis.
+  std::array<Stated, kViconJoints.size()> stated{};
+  std::array<Stated, kViconJoints.size()> stated_aligned{};
 };
 
 double distance(const Body& a, const Body& b, JointId in_a, JointId in_b) {
@@ -56,6 +88,22 @@ bool is_exchanged(const Body& body, const Body& truth) {
     other += distance(body, truth, mirror(id), id);
   }
   return other < same;
+}
+
+/// `fit` moves what was found onto the truth.
+void add_stated(ViconErrors& errors, const Motion& motion, const ImportedSet& set,
+                const Eigen::Isometry3d& fit) {
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    for (std::size_t k = 0; motion[i] && k < kViconJoints.size(); ++k) {
+      const Joint& joint = (*motion[i])[kViconJoints[k]];
+      if (!joint.seen() || !joint.covariance.known()) continue;
+      const Eigen::Vector3d& exact = set.truth[i].skeleton[kViconJoints[k]].position;
+      const Eigen::Matrix3d covariance = joint.covariance.matrix();
+      errors.stated[k].add(joint.position - exact, covariance);
+      errors.stated_aligned[k].add(fit * joint.position - exact,
+                                   fit.linear() * covariance * fit.linear().transpose());
+    }
+  }
 }
 
 ViconErrors errors_of(const Motion& motion, const ImportedSet& set) {
@@ -80,6 +128,7 @@ ViconErrors errors_of(const Motion& motion, const ImportedSet& set) {
     errors.raw.push_back((found[i] - truth[i]).norm());
     if (fit) errors.aligned.push_back((fit->target_from_source * found[i] - truth[i]).norm());
   }
+  if (fit) add_stated(errors, motion, set, fit->target_from_source);
   return errors;
 }
 
@@ -100,6 +149,22 @@ void add_rows(Report& report, const std::string& name, const ViconErrors& ours,
   row("p99_mm", percentile(ours.raw, 0.99), percentile(offline.raw, 0.99));
   report.row(name, "missing_percent", 100.0 * ours.missing, "%");
   report.row(name, "flip_percent", 100.0 * ours.exchanged, "%");
+}
+
+void add_stated_rows(Report& report, const std::string& name,
+                     const std::array<Stated, kViconJoints.size()>& joints) {
+  Stated all;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Stated& each = joints[k];
+    all.add(each);
+    if (each.count == 0.0) continue;
+    report.row(fmt::format("{}-{}", name, name_of(kViconJoints[k])), "nees", each.nees / each.count,
+               "1");
+  }
+  if (all.count == 0.0) return;
+  report.row(name, "nees", all.nees / all.count, "1");
+  report.row(name, "inside_95_percent", 100.0 * all.inside / all.count, "%");
+  report.row(name, "stated_over_true", std::sqrt(all.variance / all.square), "1");
 }
 
 /// Every instant by itself, from the same rays.
@@ -197,6 +262,10 @@ Result<void> measure(Report& report, const std::filesystem::path& path) {
     const std::string row = fmt::format("{}-{}", name, way.name);
     add_rows(report, row, ours, baseline);
     report.row(row, "several_bodies_percent", 100.0 * fused->several, "%");
+    if (way.method == Method::BodyFilter) {
+      add_stated_rows(report, row, ours.stated);
+      add_stated_rows(report, row + "-aligned", ours.stated_aligned);
+    }
     if (way.method == Method::BodyFilter)
       report.condition(row + ": at most 0.9 of the offline triangulation of the same landmarks",
                        mean(ours.raw) <= kTarget * mean(baseline.raw));

@@ -98,7 +98,7 @@ TEST(RayMatching, AllCamerasThatSeeAPersonMeetInOne) {
   EXPECT_EQ(people[0].size(), 4u);
 }
 
-TEST(RayMatching, ALoneCameraFoundsNobodyAndKeepsNobody) {
+TEST(RayMatching, ALoneCameraFoundsNobodyAndKeepsThemForAWhile) {
   RayRoom room;
   const std::vector<Camera> lone{kTwo[0]};
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(room.see(lone, {standing_person()}).empty());
@@ -107,8 +107,12 @@ TEST(RayMatching, ALoneCameraFoundsNobodyAndKeepsNobody) {
   std::vector<Person> people = room.see(lone, {standing_person()});
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].views.size(), 1u);
-  for (int i = 0; i < 35; ++i) people = room.see(lone, {standing_person()});
-  EXPECT_TRUE(people.empty()) << "nobody has placed it for over a second";
+  for (int i = 0; i < 60; ++i) people = room.see(lone, {standing_person({0.02 * i, 0, 0})});
+  ASSERT_EQ(people.size(), 1u) << "for 2 s, and across its rays";
+  EXPECT_EQ(people[0].views.size(), 1u);
+  EXPECT_NEAR(core_of_track(room, 0).x(), 1.18, 0.1);
+  for (int i = 0; i < 35; ++i) people = room.see(lone, {standing_person({1.2, 0, 0})});
+  EXPECT_TRUE(people.empty()) << "nobody has placed it for over three seconds";
 }
 
 TEST(RayMatching, PeopleAreToldApartByHowTheirRaysMeet) {
