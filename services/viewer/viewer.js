@@ -26,7 +26,7 @@ const follow = (...what) => { if (!recordingOnly) followForEver(...what); };
 const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
 
 /// What the page has shown so far, for tests and for curious people.
-const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sensors: 0, errors: 0, pictures: 0 };
+const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sensors: 0, errors: 0, pictures: 0, paused: false };
 window.chorusViewer = shown;
 
 takeToken(location, history);
@@ -307,6 +307,7 @@ fit();
 if (query.has('recording')) player.open(query.get('recording'), Number(query.get('at') ?? 0));
 
 room.renderer.setAnimationLoop(() => {
+  if (shown.paused) return;
   showUncertainty();
   room.draw(known.switches);
   shown.pictures += 1;
