@@ -11,7 +11,10 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kEnough = 3;      // Number of joints needed to decide.
+constexpr std::size_t kEnough = 3;  // Number of joints needed to decide.
+// Number of joints that rays of two cameras must locate to start a new person: rays of a few joints
+// of two people meet by chance.
+constexpr std::ptrdiff_t kLeast = 5;
 constexpr std::size_t kMaxNew = 64;     // Views considered at one instant; the others have to wait.
 constexpr std::size_t kMaxPairs = 256;  // Hypotheses considered, best first.
 
@@ -35,11 +38,13 @@ std::optional<double> apart(const SensorView& a, const SensorView& b) {
   return median_of(std::move(distances));
 }
 
-/// True if a person can be that far from each camera, and can be of that size.
+/// True if enough of the body is located, and a person can be that far from each camera and of that
+/// size.
 bool is_plausible(const Located& body, std::span<const PlacedView> views,
                   const BodyLimits& limits) {
   const auto core = middle_of(body);
-  if (!core) return false;
+  const auto is_located = [](const auto& joint) { return joint.has_value(); };
+  if (!core || std::ranges::count_if(body, is_located) < kLeast) return false;
   for (const PlacedView& each : views) {
     if ((*core - each.view.eye).norm() > limits.max_range) return false;
   }

@@ -89,6 +89,38 @@ TEST(RayMatching, TwoCamerasMakeOnePersonAtItsPlace) {
   EXPECT_TRUE(people[0].views[0].skeleton[JointId::Neck].bears()) << "they stay rays";
 }
 
+/// The person with these joints alone.
+Skeleton<WorldSpace> part_of(const Skeleton<WorldSpace>& person,
+                             const std::vector<JointId>& joints) {
+  Skeleton<WorldSpace> part;
+  for (const JointId id : joints) part[id] = person[id];
+  return part;
+}
+
+TEST(RayMatching, AFewJointsOfTwoCamerasStartNobody) {
+  const std::vector four{JointId::SpineBase, JointId::Neck, JointId::Head, JointId::ShoulderLeft};
+  std::vector five = four;
+  five.push_back(JointId::ShoulderRight);
+  RayRoom few;
+  RayRoom enough;
+  for (int i = 0; i < 5; ++i) few.see(kTwo, {part_of(standing_person(), four)});
+  for (int i = 0; i < 5; ++i) enough.see(kTwo, {part_of(standing_person(), five)});
+  EXPECT_TRUE(few.tracks.people.empty());
+  EXPECT_EQ(enough.tracks.people.size(), 1u);
+}
+
+TEST(RayMatching, AFragmentThatGoesKeepsNobodyWaiting) {
+  const std::vector joints{JointId::SpineBase, JointId::SpineShoulder, JointId::Neck,
+                           JointId::Head,      JointId::ShoulderLeft,  JointId::ShoulderRight};
+  RayRoom room;
+  for (int i = 0; i < 90; ++i) room.see(kTwo, {part_of(standing_person(), joints)});
+  for (int i = 0; i < 120; ++i) room.see(std::vector<SensorView>{});
+  EXPECT_TRUE(room.tracks.missing.empty());
+  std::vector<Person> people;
+  for (int i = 0; i < 3; ++i) people = room.see(kFour, {standing_person({1.0, 0, 0})});
+  EXPECT_EQ(people.size(), 1u) << "the actor is published at once";
+}
+
 TEST(RayMatching, AllCamerasThatSeeAPersonMeetInOne) {
   std::vector<PlacedView> views;
   for (const Camera& camera : kFour)
