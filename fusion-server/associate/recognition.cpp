@@ -20,9 +20,12 @@ constexpr double kGlance = 0.5;
 constexpr double kSettled = 1.0;  // [s] in view after which somebody can be recognised
 constexpr double kUsual = 2.0;    // [s] in view after which a build is the person's usual one
 constexpr double kSure = 5.0;     // Log odds by which the likeliest answer is certain.
-constexpr double kInQuestion =
-    2.0;                       // Log odds of being the same below which a track is questioned.
-constexpr double kTurn = 2.0;  // The same by which another answer is likelier than the id in use.
+// The same for a newcomer, who has no id to lose.
+constexpr double kSureOfNewcomer = 3.0;
+// Log odds of being the same below which a track is questioned.
+constexpr double kInQuestion = 2.0;
+// Log odds by which another answer has to be likelier than the id in use.
+constexpr double kTurn = 2.0;
 // Log odds, against the likeliest other answer, below which an id is withheld.
 constexpr double kUnlikely = -0.5;
 // Prior log odds that somebody is a person who is expected at that place, and that somebody who was
@@ -154,7 +157,7 @@ bool is_decided(const Question& question, const CostTable& table, std::size_t ro
     return false;
   if (is_looked_at(question.build)) return true;
   if (!question.doubt && instant - question.since > kNoBones) return true;
-  return is_glance(question.build) && best - rival > kSure;
+  return is_glance(question.build) && best - rival > (question.doubt ? kSure : kSureOfNewcomer);
 }
 
 /// The answers that together are likeliest.

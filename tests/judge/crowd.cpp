@@ -207,7 +207,7 @@ std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin)
 
 std::vector<synthetic::Person> people_turning_back(std::uint64_t seed) {
   constexpr double kWay = 0.75;    // half of the way that each walks to and fro [m]
-  constexpr double kShort = 0.25;  // how far from the middle they turn [m]
+  constexpr double kShort = 0.29;  // how far from the middle they turn [m]
   std::vector<synthetic::Person> people;
   const double hour = synthetic::Draw{seed, kHour}.uniform(0.0, 10.0);
   for (std::size_t i = 0; i < 2; ++i) {
