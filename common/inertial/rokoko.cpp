@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/inertial/lz4_frame.h"
 #include "common/inertial/segment_poses.h"
 
 namespace chorus::inertial {
@@ -31,6 +32,9 @@ SegmentPoses rokoko_segments() {
   for (const RokokoRow& row : kRokoko) segments.push_back({std::string(row.name), -1, row.limb});
   return SegmentPoses(std::move(segments));
 }
+
+/// Unpacked: a scene of several people with hands and faces takes some hundred kB.
+constexpr std::size_t kMostText = 4U << 20;
 
 tl::unexpected<Error> not_rokoko(std::string what) {
   return fail(ErrorCode::Malformed, "Rokoko", std::move(what));
@@ -75,8 +79,17 @@ class RokokoReader final : public StreamReader {
   [[nodiscard]] Result<void> take(std::string_view bytes, Timestamp now) override {
     if (bytes.size() > kMaxStreamDatagram)
       return fail(ErrorCode::TooLarge, "Rokoko", "is longer than a datagram");
-    if (bytes.starts_with("\x04\x22\x4d\x18"))
-      return not_rokoko("is compressed by LZ4; choose JSON without compression in Rokoko Studio");
+    if (!is_lz4_frame(bytes)) return take_text(bytes, now);
+    const auto text = unpacked_lz4(bytes, kMostText);
+    if (!text) return fail(text.error().code, "Rokoko", to_string(text.error()));
+    return take_text(*text, now);
+  }
+  [[nodiscard]] std::optional<InertialFrame> instant(Timestamp now) override {
+    return poses_.instant(now);
+  }
+
+ private:
+  Result<void> take_text(std::string_view bytes, Timestamp now) {
     const json document = json::parse(bytes, nullptr, false);
     if (document.is_discarded()) return not_rokoko("is no JSON");
     const json* const actors = actors_of(document);
@@ -88,11 +101,7 @@ class RokokoReader final : public StreamReader {
       if (auto ok = take_bone(*body, i, now); !ok) return ok;
     return {};
   }
-  [[nodiscard]] std::optional<InertialFrame> instant(Timestamp now) override {
-    return poses_.instant(now);
-  }
 
- private:
   /// Where the bones of the actor are.
   [[nodiscard]] const json* body_of(const json& actors) const {
     for (const json& actor : actors) {

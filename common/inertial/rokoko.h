@@ -1,4 +1,5 @@
-// Rokoko Studio's JSON over UDP (usually port 14043), versions 2 and 3, without LZ4.
+// Rokoko Studio's JSON over UDP (usually port 14043), versions 2 and 3, plain or
+// packed by LZ4.
 //
 // Version 3: {"version": "3,0", "scene": {"actors": [{"name", "body": {"hip": {"position": {x, y,
 // z}, "rotation": {x, y, z, w}}, ...}}]}}; version 2: {"version": 2, "actors": [{"name", "hip":

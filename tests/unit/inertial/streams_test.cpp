@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <lz4frame.h>
 
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
@@ -248,6 +249,24 @@ TEST(Rokoko, ReadsVersion2AndStudiosTwoAndAHalf) {
     ASSERT_THAT(reader->take(text, kHeard), IsOk()) << version;
     EXPECT_LT(off(heard(*reader), Limb::ForearmLeft, turn_about(kZ, 60)), kSent);
   }
+}
+
+std::string packed_by_lz4(const std::string& text) {
+  std::string out(LZ4F_compressFrameBound(text.size(), nullptr), '\0');
+  out.resize(LZ4F_compressFrame(out.data(), out.size(), text.data(), text.size(), nullptr));
+  return out;
+}
+
+TEST(Rokoko, ReadsWhatIsPackedByLz4) {
+  const auto reader = make_rokoko_reader("Bo");
+  const std::string packed = packed_by_lz4(std::string(kActorV3));
+  ASSERT_THAT(reader->take(packed, kHeard), IsOk());
+  EXPECT_LT(off(heard(*reader), Limb::Pelvis, turn_about(kY, 0)), kSent);
+  for (std::size_t length = 4; length < packed.size(); ++length)
+    EXPECT_FALSE(reader->take(packed.substr(0, length), kHeard)) << length;
+  EXPECT_THAT(why(reader->take(packed_by_lz4(std::string(8U << 20, ' ')), kHeard)),
+              HasSubstr("more than"));
+  EXPECT_THAT(why(reader->take(packed_by_lz4("no JSON at all"), kHeard)), HasSubstr("no JSON"));
 }
 
 TEST(Rokoko, RefusesByNameWithWhatToChange) {
