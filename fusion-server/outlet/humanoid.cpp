@@ -167,6 +167,7 @@ class Rig {
   void add_trunk();
   void add_upright(HumanBone bone, const Direction& along, const Eigen::Vector3d& lateral);
   [[nodiscard]] Eigen::Vector3d turned_with(JointId joint, const Eigen::Vector3d& lateral) const;
+  [[nodiscard]] Direction measured_hinge(JointId end) const;
   void add_limb(const Limb& limb);
   void add_hand(const Tip& hand);
   void add_foot(HumanBone foot, JointId ankle, JointId toe);
@@ -222,22 +223,30 @@ double bentness(const Eigen::Vector3d& upper, const Eigen::Vector3d& lower) {
   return s * s * (3.0 - 2.0 * s);
 }
 
+/// The axis of elbow or knee by a sensor on the limb that ends in this joint.
+Direction Rig::measured_hinge(JointId end) const {
+  if (!body_[end].twist_measured) return std::nullopt;
+  return body_[end].orientation * Eigen::Vector3d::UnitX();
+}
+
 void Rig::add_limb(const Limb& limb) {
   const Direction upper = direction(body_, limb.root, limb.middle);
   const Direction lower = direction(body_, limb.middle, limb.end);
   const Eigen::Quaterniond trunk = turn(limb.trunk);
   const Eigen::Quaterniond straight =
       swung(trunk, limb.rest_along, upper ? *upper : lower.value_or(trunk * limb.rest_along));
-  Eigen::Vector3d hinge = straight * limb.rest_hinge;
+  const Direction worn = measured_hinge(limb.middle);
+  Eigen::Vector3d hinge = worn.value_or(straight * limb.rest_hinge);
   if (upper && lower) {
     const double share = bentness(*upper, *lower);
     hinge = share * upper->cross(*lower).stableNormalized() + (1.0 - share) * hinge;
   }
   const Cross rest{limb.rest_along, limb.rest_hinge};
   follow(limb.upper, false);
-  if (upper) set(limb.upper, turned(rest, {*upper, hinge}, trunk));
+  if (upper) set(limb.upper, turned(rest, {*upper, worn.value_or(hinge)}, trunk));
+  const Eigen::Vector3d below = measured_hinge(limb.end).value_or(hinge);
   follow(limb.lower, false);
-  if (lower) set(limb.lower, turned(rest, {*lower, hinge}, turn(limb.upper)));
+  if (lower) set(limb.lower, turned(rest, {*lower, below}, turn(limb.upper)));
 }
 
 void Rig::add_hand(const Tip& hand) {

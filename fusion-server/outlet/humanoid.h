@@ -14,7 +14,8 @@
 //                    that of SpineShoulder, or from the head's own orientation where only the head
 //                    has one (the only use of orientations: those of limbs are wrong
 //                    by 50-170 degrees about the bone, and leaf joints have none),
-//   for the limbs:   from the plane of elbow or knee if bent (faded in from 15 to 30 degrees); for
+//   for the limbs:   from a sensor that is worn on them; otherwise from the plane of elbow or knee
+//   if bent (faded in from 15 to 30 degrees); for
 //                    a straight limb, by the shortest turn out of T-pose relative to the trunk,
 //   for the hands:   from the thumb, otherwise like the forearm,
 //   for the feet:    from the lower leg.

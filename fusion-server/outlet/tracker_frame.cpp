@@ -19,6 +19,16 @@ constexpr Duration kMaxStep = std::chrono::milliseconds(250);
 /// Exponential smoothing of the velocities: the weight of the newest difference.
 constexpr double kNewest = 0.5;
 
+/// Largest standard deviation of a twist that is better than none [rad]: a straight limb's, taken
+/// by the shortest turn, errs by 20 degrees and more.
+constexpr double kKnownTwist = 0.35;
+
+bool twist_known(const Joint& joint, const Covariance& covariance) {
+  if (!covariance.known() || !is_unit(joint.orientation)) return false;
+  const Eigen::Vector3d bone = joint.orientation * Eigen::Vector3d::UnitY();
+  return bone.dot(covariance.matrix() * bone) < kKnownTwist * kKnownTwist;
+}
+
 TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
   TrackerBody body;
   body.slot = slot;
@@ -30,6 +40,7 @@ TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
     to.tracked = from.seen() && from.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
     to.oriented = is_unit(from.orientation);
     if (to.oriented) to.orientation = from.orientation.normalized();
+    to.twist_measured = twist_known(from, fused.orientation_covariance[i]);
     if (fused.motion) to.velocity = (*fused.motion)[i].velocity;
   }
   for (const Bone& bone : kBones) {  // parents come first

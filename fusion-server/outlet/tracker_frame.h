@@ -26,6 +26,9 @@ struct TrackerJoint {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   /// A sensor states the orientation of this very joint.
   bool oriented = false;
+  /// A sensor on the limb measured how it is turned about itself; `orientation` is then the limb's
+  /// (common/evaluation/limb_frame.h): +y along the bone, +x the axis of the elbow or knee.
+  bool twist_measured = false;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< World axes [rad/s]
   /// False: the position is unknown, or too far away to be plausible, as in /frame; do not send a

@@ -70,6 +70,28 @@ TEST(Humanoid, TheBentElbowSaysHowTheUpperArmIsTwisted) {
   expect_only(humanoid_of(body), {{LeftUpperArm, about_x(90)}, {LeftLowerArm, about_up(-90)}});
 }
 
+/// The left arm's limb axes at rest: +y along the bone, +x the axis of the elbow.
+Quaternion left_arm_at_rest() {
+  Eigen::Matrix3d axes;
+  axes << -Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ();
+  return Quaternion(axes);
+}
+
+TEST(Humanoid, AWornSensorSaysHowAStraightArmIsTwisted) {
+  TrackerBody body = t_pose();
+  const Quaternion twist = about(-Eigen::Vector3d::UnitX(), 40);
+  TrackerJoint& elbow = body.joints[index_of(JointId::ElbowLeft)];
+  elbow.orientation = twist * left_arm_at_rest();
+  elbow.twist_measured = true;
+  expect_only(humanoid_of(body), {{LeftUpperArm, twist}, {LeftHand, twist.conjugate()}});
+  TrackerJoint& wrist = body.joints[index_of(JointId::WristLeft)];
+  wrist.orientation = left_arm_at_rest();
+  wrist.twist_measured = true;
+  expect_only(humanoid_of(body), {{LeftUpperArm, twist}, {LeftLowerArm, twist.conjugate()}});
+  elbow.twist_measured = wrist.twist_measured = false;
+  expect_only(humanoid_of(body), {});
+}
+
 TEST(Humanoid, AKneeBendsBackwards) {
   TrackerBody body = t_pose();
   turn(body, {JointId::KneeRight, JointId::AnkleRight, JointId::FootRight}, JointId::HipRight,

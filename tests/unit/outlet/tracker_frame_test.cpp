@@ -73,6 +73,26 @@ TEST(TrackerJoints, AnUnseenOneHangsAtTheNextTrackedOneTowardsThePelvis) {
   EXPECT_EQ(nearest_tracked(TrackerBody{}, JointId::Head), JointId::SpineBase);
 }
 
+TEST(TrackerJoints, OfLimbsWithASensorHaveTheirTwistIfItIsKnownWell) {
+  FusedBody body = person(1);
+  const std::size_t elbow = index_of(JointId::ElbowLeft);
+  const std::size_t knee = index_of(JointId::KneeLeft);
+  body.skeleton.joints[elbow].orientation = body.skeleton.joints[knee].orientation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(deg(90), Eigen::Vector3d::UnitZ()));  // bone along -x
+  const auto turns = [](double about_x, double others) {
+    const Eigen::Matrix3d squares =
+        Eigen::Vector3d(about_x, others, others).cwiseAbs2().asDiagonal();
+    return Covariance(squares);
+  };
+  body.orientation_covariance[elbow] = turns(deg(10), deg(80));
+  body.orientation_covariance[knee] = turns(deg(40), deg(1));
+  TrackerState state(1);
+  const TrackerBody sent = state.advance(snapshot(milliseconds(0), {body})).bodies.at(0);
+  EXPECT_TRUE(sent[JointId::ElbowLeft].twist_measured);
+  EXPECT_FALSE(sent[JointId::KneeLeft].twist_measured);
+  EXPECT_FALSE(sent[JointId::ElbowRight].twist_measured) << "no sensor";
+}
+
 TEST(TrackerJoints, WithoutAnOrientationTakeThatOfTheNextOneTowardsThePelvis) {
   FusedBody body = person(1);
   for (Joint& joint : body.skeleton.joints) joint.orientation.coeffs().setZero();
