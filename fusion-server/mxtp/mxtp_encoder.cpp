@@ -53,18 +53,34 @@ Eigen::Vector3d origin_of(const MxtpSegment& segment, const outlet::TrackerBody&
   return (1.0 - share) * place(segment.from) + share * place(segment.to);
 }
 
-void add_header(Bytes& out, const outlet::TrackerFrame& frame, const outlet::TrackerBody& body) {
+std::vector<const outlet::TrackerProp*> props_of(const outlet::TrackerFrame& frame,
+                                                 const outlet::TrackerBody& body) {
+  std::vector<const outlet::TrackerProp*> out;
+  for (const outlet::TrackerProp& prop : frame.props)
+    if (prop.pose.tracked && prop.slot == body.slot && out.size() < kMostProps)
+      out.push_back(&prop);
+  return out;
+}
+
+void add_header(Bytes& out, const outlet::TrackerFrame& frame, const outlet::TrackerBody& body,
+                std::size_t props) {
   out.insert(out.end(), kMagic.begin(), kMagic.end());
   outlet::append_big_endian(out, static_cast<std::uint32_t>(frame.sequence));
   outlet::append_big_endian(out, kOnlyDatagram);
-  outlet::append_big_endian(out, static_cast<std::uint8_t>(kSegments));
+  outlet::append_big_endian(out, static_cast<std::uint8_t>(kSegments + props));
   outlet::append_big_endian(out, time_code(frame));
   outlet::append_big_endian(out, static_cast<std::uint8_t>(body.slot));
   outlet::append_big_endian(out, static_cast<std::uint8_t>(kSegments));  // body segments
-  outlet::append_big_endian(out, std::uint8_t{0});                       // props
-  outlet::append_big_endian(out, std::uint8_t{0});                       // finger segments
-  outlet::append_big_endian(out, std::uint16_t{0});                      // reserved
-  outlet::append_big_endian(out, static_cast<std::uint16_t>(kDatagramBytes - 24));
+  outlet::append_big_endian(out, static_cast<std::uint8_t>(props));
+  outlet::append_big_endian(out, std::uint8_t{0});   // finger segments
+  outlet::append_big_endian(out, std::uint16_t{0});  // reserved
+  outlet::append_big_endian(out, static_cast<std::uint16_t>(kItemBytes * (kSegments + props)));
+}
+
+/// Position and quaternion are in Xsens' axes.
+void add_item(Bytes& out, std::size_t id, const Eigen::Vector3d& p, const Eigen::Quaterniond& q) {
+  outlet::append_big_endian(out, static_cast<std::uint32_t>(id));
+  for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) add_real(out, value);
 }
 
 }  // namespace
@@ -72,17 +88,17 @@ void add_header(Bytes& out, const outlet::TrackerFrame& frame, const outlet::Tra
 std::vector<char> encode(const outlet::TrackerFrame& frame, const outlet::TrackerBody& body) {
   const outlet::Humanoid rig = outlet::humanoid_of(body);
   if (!rig[outlet::HumanBone::Hips].known || !body[JointId::Head].tracked) return {};
+  const auto props = props_of(frame, body);
   Bytes out;
-  out.reserve(kDatagramBytes);
-  add_header(out, frame, body);
-  for (std::size_t i = 0; i < kSegments; ++i) {
-    const Eigen::Vector3d p = outlet::xsens_axes().position(origin_of(kMxtpSegments[i], body));
-    const Eigen::Quaterniond q = outlet::xsens_axes().quaternion(rig[kTurns[i]].world_from_bone *
-                                                                 outlet::rig_from_ahead_rest());
-    outlet::append_big_endian(out, static_cast<std::uint32_t>(i + 1));
-    for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()})
-      add_real(out, value);
-  }
+  out.reserve(kDatagramBytes + kItemBytes * props.size());
+  add_header(out, frame, body, props.size());
+  const outlet::Axes& axes = outlet::xsens_axes();
+  for (std::size_t i = 0; i < kSegments; ++i)
+    add_item(out, i + 1, axes.position(origin_of(kMxtpSegments[i], body)),
+             axes.quaternion(rig[kTurns[i]].world_from_bone * outlet::rig_from_ahead_rest()));
+  for (std::size_t i = 0; i < props.size(); ++i)
+    add_item(out, kSegments + 1 + i, axes.position(props[i]->pose.position),
+             axes.quaternion(props[i]->pose.orientation));
   return out;
 }
 

@@ -77,22 +77,27 @@ std::vector<char> controller_block() {
   return block;
 }
 
-void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block) {
+void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block,
+                   std::size_t things) {
   // Readers may read at any time, so the "calibrated" flag of a tracked sensor must not be cleared
   // even for a moment.
   std::vector<bool> tracked(sensors_in(block));
+  const std::size_t bodies = tracked.size() - std::min(things, tracked.size());
   const auto number = static_cast<std::int32_t>(frame.sequence & 0x7FFF'FFFFU);
-  for (const outlet::TrackerBody& body : frame.bodies) {
+  const auto write = [&](std::size_t sensor, const outlet::TrackerJoint& pose) {
+    const std::size_t at = kHeaderBytes + sensor * kSensorBytes;
+    put(block, at, pose_of(pose, unit));
+    put(block, at + kPoseBytes, seconds_and_microseconds(frame.instant));
+    put(block, at + kCalibrated, std::array{std::int32_t{1}, number});
+    tracked[sensor] = true;
+  };
+  for (const outlet::TrackerBody& body : frame.bodies)
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::size_t sensor = kJointCount * body.slot + kSensorOf[i];
-      if (!body.joints[i].tracked || sensor >= tracked.size()) continue;
-      const std::size_t at = kHeaderBytes + sensor * kSensorBytes;
-      put(block, at, pose_of(body.joints[i], unit));
-      put(block, at + kPoseBytes, seconds_and_microseconds(frame.instant));
-      put(block, at + kCalibrated, std::array{std::int32_t{1}, number});
-      tracked[sensor] = true;
+      if (body.joints[i].tracked && sensor < bodies) write(sensor, body.joints[i]);
     }
-  }
+  for (std::size_t i = 0; i < frame.props.size() && bodies + i < tracked.size(); ++i)
+    if (frame.props[i].pose.tracked) write(bodies + i, frame.props[i].pose);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     if (tracked[i]) continue;
     put(block, kHeaderBytes + i * kSensorBytes + kCalibrated, std::array{std::int32_t{0}});

@@ -8,7 +8,8 @@
 //               command; then i32 buttons, f32 valuators (all zero: bodies have no buttons)
 // Right-handed, +y up, R = Ry(azimuth) Rx(elevation) Rz(roll); in feet, as CAVELib programs expect.
 // Sensor 25 * slot + n: n = 0 the head, 1 the right hand (the wand), 2 the left hand, then all
-// other joints in our order.  A sensor that nobody sees keeps its pose, is not calibrated, and does
+// other joints in our order.  Things in hands are the last sensors, in the order of the
+// configuration.  A sensor that nobody sees keeps its pose, is not calibrated, and does
 // not move.
 #pragma once
 
@@ -33,10 +34,12 @@ enum class LengthUnit { Feet, Metres };
 [[nodiscard]] std::vector<char> tracker_block(std::size_t sensors);
 [[nodiscard]] std::vector<char> controller_block();
 
-/// Writes into a block made by tracker_block(); leaves out sensors beyond its end.  The header's
+/// Writes into a block made by tracker_block(), whose last `things` sensors are those of things in
+/// hands; leaves out bodies' sensors beyond the others.  The header's
 /// time stays unchanged: call write_stamp() afterwards, so that a reader that sees a new time sees
 /// new sensors.
-void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block);
+void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block,
+                   std::size_t things = 0);
 void write_stamp(Timestamp instant, std::span<char> block);
 
 }  // namespace chorus::trackd

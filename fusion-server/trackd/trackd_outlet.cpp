@@ -13,15 +13,18 @@ constexpr int kMaxTrackdSensors = 25 * outlet::kMaxSlots;
 
 class TrackdOutlet final : public outlet::Outlet {
  public:
-  TrackdOutlet(LengthUnit unit, SharedSegment tracker, SharedSegment controller)
-      : unit_(unit), tracker_(std::move(tracker)), controller_(std::move(controller)) {}
+  TrackdOutlet(LengthUnit unit, std::size_t things, SharedSegment tracker, SharedSegment controller)
+      : unit_(unit),
+        things_(things),
+        tracker_(std::move(tracker)),
+        controller_(std::move(controller)) {}
 
   /// Makes readers that stay attached see nobody, not the last pose for ever.
-  ~TrackdOutlet() override { write_sensors({}, unit_, tracker_.bytes()); }
+  ~TrackdOutlet() override { write_sensors({}, unit_, tracker_.bytes(), things_); }
 
   [[nodiscard]] std::string_view name() const override { return "trackd"; }
   void send(const outlet::TrackerFrame& frame) override {
-    write_sensors(frame, unit_, tracker_.bytes());
+    write_sensors(frame, unit_, tracker_.bytes(), things_);
     // The time stamp announces the sensors, so it must be written after them.
     std::atomic_thread_fence(std::memory_order_release);
     write_stamp(frame.instant, tracker_.bytes());
@@ -30,6 +33,7 @@ class TrackdOutlet final : public outlet::Outlet {
 
  private:
   LengthUnit unit_;
+  std::size_t things_;
   SharedSegment tracker_;
   SharedSegment controller_;
 };
@@ -56,13 +60,15 @@ void read_settings(ConfigReader& reader, Settings& out) {
 }
 
 Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
-                                                    const outlet::OutletContext& /*context*/) {
-  auto tracker =
-      segment_of(settings.tracker_key, tracker_block(static_cast<std::size_t>(settings.sensors)));
+                                                    const outlet::OutletContext& context) {
+  const std::size_t things = context.props.size();
+  const std::size_t sensors = static_cast<std::size_t>(settings.sensors) + things;
+  auto tracker = segment_of(settings.tracker_key, tracker_block(sensors));
   if (!tracker) return pass(tracker);
   auto controller = segment_of(settings.controller_key, controller_block());
   if (!controller) return pass(controller);
-  return std::make_unique<TrackdOutlet>(settings.unit, std::move(*tracker), std::move(*controller));
+  return std::make_unique<TrackdOutlet>(settings.unit, things, std::move(*tracker),
+                                        std::move(*controller));
 }
 
 }  // namespace chorus::trackd

@@ -74,6 +74,27 @@ TEST(Mxtp, HeaderSaysWhatFollows) {
   for (std::uint32_t id = 1; id <= 23; ++id) EXPECT_EQ(read.u(read.item(id), 4), id);
 }
 
+TEST(Mxtp, ThingsInHandsFollowAsProps) {
+  outlet::TrackerFrame frame = frame_of(chorus::testing::standing_person({0, 0, 0}));
+  frame.props.resize(7);
+  for (outlet::TrackerProp& prop : frame.props) prop.pose.tracked = true;
+  frame.props[0].slot = 2;  // somebody else's
+  frame.props[1].pose.tracked = false;
+  frame.props[2].pose.position = {1, 2, 3};
+  frame.props[2].pose.orientation = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY());
+  const auto bytes = encode(frame, frame.bodies.at(0));
+  ASSERT_EQ(bytes.size(), 760u + 4 * 32) << "MVN has four";
+  const Read read(bytes);
+  EXPECT_EQ(read.u(11, 1), 27u);
+  EXPECT_EQ(read.u(17, 1), 23u);
+  EXPECT_EQ(read.u(18, 1), 4u);
+  EXPECT_EQ(read.u(22, 2), 27u * 32);
+  for (std::uint32_t id = 24; id <= 27; ++id) EXPECT_EQ(read.u(read.item(id), 4), id);
+  EXPECT_THAT(read.place(24), VectorNear(Eigen::Vector3d(3, 1, 2), 1e-5));
+  const Eigen::Quaterniond about_up(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
+  EXPECT_NEAR(read.turn(24).angularDistance(about_up), 0.0, 1e-5);
+}
+
 TEST(Mxtp, PlacesAreZUpAndXForward) {
   Skeleton<WorldSpace> body = chorus::testing::standing_person({0, 0, 0});
   body[JointId::SpineBase].position = {1, 2, 3};

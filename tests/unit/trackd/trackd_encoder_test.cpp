@@ -104,6 +104,19 @@ TEST(Trackd, AnAsymmetricPoseIsInFeetAndDegrees) {
   EXPECT_EQ(wand.microseconds, 101'847u);
 }
 
+TEST(Trackd, ThingsInHandsAreTheLastSensorsAndBodiesDoNotReachThem) {
+  auto block = tracker_block(25 + 2);
+  outlet::TrackerFrame frame = frame_with(one_joint(), 1);  // the second slot has no sensors here
+  frame.props.resize(2);
+  frame.props[1].pose = one_joint()[JointId::HandRight];
+  write_sensors(frame, LengthUnit::Metres, block, 2);
+  EXPECT_EQ(sensor(block, 25).calibrated, 0) << "nobody holds the first thing";
+  EXPECT_EQ(sensor(block, 26).calibrated, 1);
+  EXPECT_FLOAT_EQ(sensor(block, 26).z, 3.0F);
+  write_sensors({}, LengthUnit::Metres, block, 2);
+  EXPECT_EQ(sensor(block, 26).calibrated, 0);
+}
+
 TEST(Trackd, MetresWhenAsked) {
   auto block = tracker_block(25);
   write_sensors(frame_with(one_joint(), 0), LengthUnit::Metres, block);
