@@ -10,6 +10,7 @@
 #include "common/exporters/number_text.h"
 #include "common/exporters/sto.h"
 #include "common/exporters/trc.h"
+#include "common/exporters/wide_csv.h"
 
 namespace chorus::exporters {
 namespace {
@@ -72,6 +73,13 @@ Result<Exported> tables_of(const Take& take,
               "show nobody of whom such a table can be made");
 }
 
+Result<Exported> table_in_csv(const Take& take, const ExportOptions& options) {
+  if (!options.wide) return Exported{{{"", csv_of(take)}}, {}};
+  auto text = wide_csv_of(take, options.columns, options.file_name);
+  if (!text) return pass(text);
+  return Exported{{{"", std::move(*text)}}, {}};
+}
+
 }  // namespace
 
 Result<Exported> exported(const Take& take, ExportFormat format, const ExportOptions& options) {
@@ -80,9 +88,9 @@ Result<Exported> exported(const Take& take, ExportFormat format, const ExportOpt
     case ExportFormat::Gltf:
       return skeletal(take, format, options);
     case ExportFormat::Trc:
-      return Exported{{{"", trc_of(take, options.file_name)}}, {}};
+      return Exported{{{"", trc_of(take, options.file_name, options.columns)}}, {}};
     case ExportFormat::Csv:
-      return Exported{{{"", csv_of(take)}}, {}};
+      return table_in_csv(take, options);
     case ExportFormat::Sto:
       return tables_of(take, &sto_of);
     case ExportFormat::Mot:

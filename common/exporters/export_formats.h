@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/exporters/column_names.h"
 #include "common/exporters/take.h"
 
 namespace chorus::exporters {
@@ -22,7 +23,7 @@ inline constexpr std::array<ExportRow, 8> kExportFormats{{
     {ExportFormat::Bvh, "bvh", "hierarchy and rotations, one file a person"},
     {ExportFormat::C3d, "c3d", "points, float, millimetres, missing joints marked"},
     {ExportFormat::Trc, "trc", "points as a table, as OpenSim reads it"},
-    {ExportFormat::Csv, "csv", "one row a joint, with states, orientations and deviations"},
+    {ExportFormat::Csv, "csv", "one row a joint, with states and deviations; --wide: one a frame"},
     {ExportFormat::Gltf, "gltf", "animated skinned skeletons, binary (.glb)"},
     {ExportFormat::Sto, "sto", "orientations of limbs as a table, as OpenSense reads it"},
     {ExportFormat::AnglesCsv, "angles-csv", "ISB joint angles with deviations, one row a frame"},
@@ -30,8 +31,10 @@ inline constexpr std::array<ExportRow, 8> kExportFormats{{
 }};
 
 struct ExportOptions {
-  std::string file_name = "chorus";  ///< For TRC: the file's name without its folder.
-  double units_per_metre = 100.0;    ///< For BVH.
+  std::string file_name = "chorus";           ///< For TRC and Motive's CSV: without its folder.
+  double units_per_metre = 100.0;             ///< For BVH.
+  bool wide = false;                          ///< For CSV: a row a frame (wide_csv.h).
+  ColumnNames columns = ColumnNames::Chorus;  ///< For TRC and wide CSV.
 };
 
 struct ExportedFile {

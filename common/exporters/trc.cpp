@@ -18,8 +18,17 @@ std::string properties(const Take& take, std::size_t markers) {
          "\t1\t" + frames + "\n";
 }
 
-void append_pose(std::string& text, const Pose& pose) {
-  for (const Joint& joint : pose.skeleton.joints) {
+std::vector<NamedJoint> markers_of(ColumnNames names) {
+  if (names == ColumnNames::Pose2Sim) return {kPose2SimMarkers.begin(), kPose2SimMarkers.end()};
+  std::vector<NamedJoint> all;
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    all.push_back({static_cast<JointId>(j), kJointNames[j]});
+  return all;
+}
+
+void append_pose(std::string& text, const Pose& pose, const std::vector<NamedJoint>& names) {
+  for (const NamedJoint& each : names) {
+    const Joint& joint = pose.skeleton[each.joint];
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       text += '\t';
       if (joint.seen()) append_fixed(text, to_mm(joint.position[axis]), kCoordinateDigits);
@@ -29,8 +38,9 @@ void append_pose(std::string& text, const Pose& pose) {
 
 }  // namespace
 
-std::string trc_of(const Take& take, std::string_view file_name) {
-  const std::size_t markers = take.persons.size() * kJointCount;
+std::string trc_of(const Take& take, std::string_view file_name, ColumnNames names) {
+  const std::vector<NamedJoint> joints = markers_of(names);
+  const std::size_t markers = take.persons.size() * joints.size();
   std::string text = "PathFileType\t4\t(X/Y/Z)\t" + std::string(file_name) + "\n";
   text +=
       "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
@@ -40,8 +50,8 @@ std::string trc_of(const Take& take, std::string_view file_name) {
   for (const PersonTrack& track : take.persons) {
     const std::string prefix =
         take.persons.size() > 1 ? "P" + std::to_string(track.person.value) + "_" : "";
-    for (const std::string_view name : kJointNames)
-      text.append("\t").append(prefix).append(name).append("\t\t");
+    for (const NamedJoint& each : joints)
+      text.append("\t").append(prefix).append(each.name).append("\t\t");
   }
   text += "\t\n\t";
   for (std::size_t m = 1; m <= markers; ++m) {
@@ -52,7 +62,7 @@ std::string trc_of(const Take& take, std::string_view file_name) {
   for (std::size_t f = 0; f < take.frames; ++f) {
     text += std::to_string(f + 1) + "\t";
     append_fixed(text, static_cast<double>(f) / take.rate_hz, kTimeDigits);
-    for (const PersonTrack& track : take.persons) append_pose(text, track.poses[f]);
+    for (const PersonTrack& track : take.persons) append_pose(text, track.poses[f], joints);
     text += "\t\n";
   }
   return text;

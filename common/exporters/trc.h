@@ -10,11 +10,14 @@
 #include <string>
 #include <string_view>
 
+#include "common/exporters/column_names.h"
 #include "common/exporters/take.h"
 
 namespace chorus::exporters {
 
-/// `file_name` appears in the first row.
-[[nodiscard]] std::string trc_of(const Take& take, std::string_view file_name);
+/// `file_name` appears in the first row.  Names of Pose2Sim: its markers alone; of Motive: as of
+/// Chorus, because a marker is no bone.
+[[nodiscard]] std::string trc_of(const Take& take, std::string_view file_name,
+                                 ColumnNames names = ColumnNames::Chorus);
 
 }  // namespace chorus::exporters

@@ -37,6 +37,8 @@ struct ExportArguments {
   bool on_grid = false;  ///< True if --rate or --max-gap was given.
   double seconds = 10.0;
   std::string unit = "cm";
+  bool wide = false;
+  std::string columns = "chorus";
   bool json = false;
 };
 
@@ -154,7 +156,27 @@ Result<int> run_lines(const ExportArguments& arguments) {
   return kExitOk;
 }
 
+Result<void> check_columns(const ExportArguments& arguments) {
+  if (arguments.wide && arguments.format != "csv")
+    return fail(ErrorCode::InvalidArgument, "--wide", "is for --format csv");
+  const bool named = arguments.columns != exporters::kColumnNames.front();
+  if (named && !arguments.wide && arguments.format != "trc")
+    return fail(ErrorCode::InvalidArgument, "--columns",
+                "is for --format trc, and csv with --wide");
+  if (arguments.columns == "motive" && arguments.format == "trc")
+    return fail(ErrorCode::InvalidArgument, "--columns motive",
+                "names bones, which TRC does not have; use --format csv --wide");
+  return {};
+}
+
+exporters::ColumnNames columns_of(const ExportArguments& arguments) {
+  const auto& names = exporters::kColumnNames;
+  const auto found = std::ranges::find(names, arguments.columns);
+  return static_cast<exporters::ColumnNames>(found - names.begin());
+}
+
 Result<int> run_export(const ExportArguments& arguments) {
+  if (auto ok = check_columns(arguments); !ok) return pass(ok);
   if (auto ok = may_write(arguments.out, {arguments.source}); !ok) return pass(ok);
   if (arguments.format == kFrames) return run_lines(arguments);
   auto source = read_fused_frames(arguments.source, listening(arguments));
@@ -168,6 +190,8 @@ Result<int> run_export(const ExportArguments& arguments) {
   exporters::ExportOptions how;
   how.file_name = std::filesystem::path(arguments.out).filename().string();
   how.units_per_metre = arguments.unit == "m" ? 1.0 : 100.0;
+  how.wide = arguments.wide;
+  how.columns = columns_of(arguments);
   const auto exported = exporters::exported(*take, format_of(arguments.format), how);
   if (!exported) return pass(exported);
   const auto written = write_files(*exported, arguments);
@@ -217,6 +241,10 @@ Run add_export(CLI::App& options) {
       ->capture_default_str();
   options.add_option("--unit", arguments->unit, "Of lengths in BVH")
       ->check(CLI::IsMember({"cm", "m"}))
+      ->capture_default_str();
+  options.add_flag("--wide", arguments->wide, "CSV with one row a frame");
+  options.add_option("--columns", arguments->columns, "Names of the columns of wide CSV and TRC")
+      ->check(CLI::IsMember({"chorus", "motive", "pose2sim"}))
       ->capture_default_str();
   add_authority_option(options);
   add_token_footer(options);

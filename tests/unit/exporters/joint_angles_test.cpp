@@ -1,5 +1,6 @@
 #include "common/exporters/joint_angles.h"
 
+#include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -89,6 +90,33 @@ TEST(JointAngles, DoNotLeapWhereSomebodyTurnsRound) {
   const std::size_t yaw = column_of(rows[0], "pelvis_rotation");
   for (std::size_t i = 2; i < rows.size(); ++i)
     EXPECT_NEAR(std::stod(rows[i][yaw]) - std::stod(rows[i - 1][yaw]), 8.0, 0.1) << i;
+}
+
+TEST(JointAngles, MotIsWhatOpenSimsReaderAsksFor) {
+  // Lines up to "endheader", of which "key=value" are facts; then "time" and labels; then rows of
+  // as many numbers, without an empty line or field between them.
+  const Take take = take_of({walk()}, 30.0);
+  const std::string mot = mot_of(take.persons.front(), 30.0).value();
+  const std::size_t end = mot.find("\nendheader\n");
+  ASSERT_NE(end, std::string::npos);
+  const std::string head = mot.substr(0, end);
+  EXPECT_EQ(head.substr(0, head.find('\n')), "Coordinates");
+  const auto rows = rows_of(mot.substr(end + 11), '\t');
+  for (const std::string& fact : std::vector<std::string>{
+           "version=1", "inDegrees=yes", "nRows=" + std::to_string(take.frames),
+           "nColumns=" + std::to_string(rows[0].size())})
+    EXPECT_NE(head.find("\n" + fact), std::string::npos) << fact;
+  ASSERT_EQ(rows.size(), take.frames + 1);
+  EXPECT_EQ(rows[0][0], "time");
+  EXPECT_EQ(std::set<std::string>(rows[0].begin(), rows[0].end()).size(), rows[0].size());
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    ASSERT_EQ(rows[r].size(), rows[0].size());
+    for (const std::string& field : rows[r]) {
+      std::size_t read = 0;
+      ASSERT_NO_THROW((void)std::stod(field, &read)) << field;
+      ASSERT_EQ(read, field.size()) << field;
+    }
+  }
 }
 
 TEST(JointAngles, RefuseNobody) {
