@@ -97,6 +97,20 @@ struct Fit {
   Eigen::Isometry3d a_from_b = Eigen::Isometry3d::Identity();
 };
 
+/// The alignment's own words name options of another command.
+Result<void> check_overlap(const Track& a, const Track& b, const CompareOptions& options) {
+  if (!options.clock_range || a.empty() || b.empty()) return {};
+  const double from = std::max(a.front().time, b.front().time);
+  const double to = std::min(a.back().time, b.back().time);
+  if (to + *options.clock_range >= from) return {};
+  return fail(
+      ErrorCode::NotFound, "comparison",
+      fmt::format("the two share no time: B {} {:.0f} s {}. If their clocks have nothing in "
+                  "common, say --any-lag",
+                  b.front().time > a.front().time ? "begins" : "ends", from - to,
+                  b.front().time > a.front().time ? "after A ends" : "before A begins"));
+}
+
 Result<void> find_lag(const Track& a, const Track& b, const CompareOptions& options, Fit& fit) {
   if (options.same_clock) return {};
   alignment::AlignmentConfig config;
@@ -104,8 +118,12 @@ Result<void> find_lag(const Track& a, const Track& b, const CompareOptions& opti
   config.max_gap = options.max_gap;
   const auto found = alignment::align_traces(trace_of(a), trace_of(b), config);
   if (!found) {
+    std::string why = found.error().message;
+    why.resize(std::min(why.size(), why.find(" Their clocks may differ")));  // --clock is not ours
     return fail(found.error().code, "lag",
-                found.error().message + "; if both have one clock, say --same-clock");
+                why +
+                    " If both have one clock, say --same-clock; if their clocks have nothing in "
+                    "common, say --any-lag");
   }
   fit.lag = found->clock_offset;
   fit.lag_sigma = found->clock_sigma;
@@ -330,6 +348,7 @@ Result<Comparison> compare(const People& a, const People& b, const CompareOption
   const Track& ours = longest(a).second;
   const Track& theirs = longest(b).second;
   Fit fit;
+  if (auto ok = check_overlap(ours, theirs, options); !ok) return pass(ok);
   if (auto ok = find_lag(ours, theirs, options, fit); !ok) return pass(ok);
   const auto frames = together(ours, theirs, fit.lag, options.max_gap);
   if (frames.size() < kFewestFrames)

@@ -87,6 +87,13 @@ class Lines {
   bool too_long_ = false;
 };
 
+/// A /frame document begins with a brace, perhaps after a byte order mark and spaces.
+bool may_be_lines(std::string_view start) {
+  if (start.starts_with("\xEF\xBB\xBF")) start.remove_prefix(3);
+  const std::size_t first = start.find_first_not_of(" \t\r\n");
+  return first == std::string_view::npos ? start.size() > 0 : start[first] == '{';
+}
+
 }  // namespace
 
 Result<resource::FrameResource> read_fused_frame(std::string_view json, const std::string& at) {
@@ -120,6 +127,12 @@ Result<Notes> each_fused_frame(const std::string& source, const TakeFrame& take)
   std::string start(mcap::kMagic.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   if (start == mcap::kMagic) return each_of_recording(source, take);
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  if (fs::is_regular_file(source, ignored) && !may_be_lines(start))
+    return fail(
+        ErrorCode::Malformed, source,
+        "is neither a recording (.mcap) nor lines of /frame documents as chorus fuse writes "
+        "them; files of other programs become recordings with chorus import");
   file.clear();
   file.seekg(0);
   return each_fused_line(file, source, take);

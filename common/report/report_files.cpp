@@ -83,13 +83,32 @@ std::string csv_of(const Report& report) {
   return out;
 }
 
+Result<void> may_write_report(const std::filesystem::path& file) {
+  constexpr std::size_t kLongestName = 240;  // file systems allow 255 bytes, ".partial" included
+  const std::string ending = file.extension().string();
+  if (ending != ".html" && ending != ".json" && ending != ".csv")
+    return fail(ErrorCode::InvalidArgument, file.string(),
+                "a report is written as .html, .json or .csv");
+  const std::string name = file.filename().string();
+  if (name.size() > kLongestName)
+    return fail(ErrorCode::InvalidArgument, name.substr(0, 40) + "...",
+                "is too long a name for a file (" + std::to_string(name.size()) +
+                    " bytes); use at most " + std::to_string(kLongestName));
+  std::error_code error;
+  const std::filesystem::path folder = file.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+    return fail(ErrorCode::NotFound, file.string(), "its folder is not there; make it first");
+  if (std::filesystem::is_directory(file, error))
+    return fail(ErrorCode::InvalidArgument, file.string(), "is a folder; name a file");
+  return {};
+}
+
 Result<void> write_report(const Report& report, const std::filesystem::path& file) {
+  if (auto ok = may_write_report(file); !ok) return ok;
   const std::string ending = file.extension().string();
   if (ending == ".html") return replace_file(file, html_of(report));
   if (ending == ".json") return replace_file(file, json_of(report));
-  if (ending == ".csv") return replace_file(file, csv_of(report));
-  return fail(ErrorCode::InvalidArgument, file.string(),
-              "a report is written as .html, .json or .csv");
+  return replace_file(file, csv_of(report));
 }
 
 Result<void> write_reports(const Report& report, const std::filesystem::path& folder,

@@ -82,6 +82,8 @@ Result<ComparedSource> read_compared(const std::string& source, const CompareArg
 }
 
 Result<int> run_compare(const CompareArguments& arguments) {
+  for (const std::string& file : arguments.out)
+    if (auto ok = report::may_write_report(file); !ok) return pass(ok);
   auto a = read_compared(arguments.a, arguments);
   if (!a) return pass(a);
   auto b = read_compared(arguments.b, arguments);
@@ -103,6 +105,7 @@ Result<int> run_compare(const CompareArguments& arguments) {
     if (!written) return pass(written);
     std::cerr << "wrote " << file << '\n';
   }
+  for (const std::string& note : what.notes) std::cerr << "note: " << printable(note) << '\n';
   std::cout << printable(report.verdict) << '\n';
   for (const std::string& difference : compared->differences)
     std::cout << printable("- " + difference) << '\n';

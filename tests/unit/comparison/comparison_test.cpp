@@ -52,6 +52,16 @@ CompareOptions one_clock() {
   return options;
 }
 
+TEST(Comparison, SaysThatTwoRecordingsShareNoTime) {
+  Planted hours;
+  hours.lag = 7200.0;
+  const auto found = compared(1, hours);
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().message, ::testing::HasSubstr("share no time"));
+  EXPECT_THAT(found.error().message, ::testing::HasSubstr("s after A ends"));
+  EXPECT_THAT(found.error().message, ::testing::HasSubstr("--any-lag"));
+}
+
 TEST(Comparison, CallsTwoDrawsOfOneMotionAlike) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const auto found = compared(seed, {}, one_clock());
