@@ -66,6 +66,7 @@ struct FusionServer::Impl {
   void follow_inertial(const std::vector<client::FollowedService>& sources);
   void take_status(const Status& next);
   void meet_the_site();
+  void move_in_the_site();
   [[nodiscard]] std::vector<OutputStatus> output_states() const;
   LookoutOptions lookout_options();
   service::RecordingViewsOptions recording_views_options();
@@ -115,11 +116,19 @@ struct FusionServer::Impl {
 void FusionServer::Impl::meet_the_site() {
   const SiteSettings& settings = config.at_start.site;
   if (settings.link.site.empty()) return;
+  nats::LinkConfig told = settings.link;
+  if (const auto own = own_place(settings, config.live.site_places)) told.places = {*own};
   link = std::make_unique<nats::CellLink>(
-      settings.link, clock, [this, feed = settings.outputs_show](const site::SiteView& view) {
+      std::move(told), clock, [this, feed = settings.outputs_show](const site::SiteView& view) {
         if (feed) outputs->publish(view.snapshot);
         site->show(std::make_shared<const site::SiteView>(view));
       });
+}
+
+/// Where our cell stands has been told anew.
+void FusionServer::Impl::move_in_the_site() {
+  const auto own = own_place(config.at_start.site, config.live.site_places);
+  if (link && own) link->place(*own);
 }
 
 /// With the connection to the other cells, if there are any.
@@ -363,10 +372,12 @@ std::uint16_t FusionServer::port() const { return impl_->http ? impl_->http->por
 
 void FusionServer::take(const LiveSettings& live) {
   Impl& s = *impl_;
+  const bool moved = live.site_places != s.config.live.site_places;
   {
     const std::scoped_lock lock(s.mutex);
     s.config.live = live;
   }
+  if (moved) s.move_in_the_site();
   if (const auto opened = s.outputs->apply(live.outputs); !opened)
     log::error("an output could not be opened", {{"reason", to_string(opened.error())}});
   s.lookout->remember_for(live.pipeline.association.remember);

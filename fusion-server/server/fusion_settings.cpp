@@ -340,7 +340,7 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   read_evaluation(root.child("evaluation"), trust, at_start);
   read_registration(root.child("registration"), settings);
   outputs::read_outputs(root.child("outputs"), settings.live.outputs);
-  read_site(root.child("site"), at_start.site);
+  read_site(root.child("site"), at_start.site, live.site_places);
   at_start.props = workplace::read_props(root);
   root.read("state_dir", at_start.state_dir);
   root.read("viewer_dir", at_start.viewer_dir);

@@ -39,6 +39,7 @@ struct LiveSettings {
   watch::WatchConfig watch;
   worn::WornConfig worn;  ///< From the section fusion.inertial.
   outputs::OutputsConfig outputs;
+  std::string site_places;  ///< Where the cells of the site stand; see read_site().
 
   bool operator==(const LiveSettings&) const = default;
 };

@@ -1,5 +1,8 @@
 #include "fusion-server/server/site_settings.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "common/base/file.h"
 
 namespace chorus::server {
@@ -26,19 +29,20 @@ void read_servers(ConfigReader& reader, nats::BrokerConfig& out) {
     reader.complain("password", "comes without a user");
 }
 
-void read_places_file(ConfigReader& reader, SiteSettings& out) {
-  reader.read("places", out.places_file);
-  if (out.places_file.empty()) return;
-  const auto text = read_file(out.places_file, kMostPlaces);
+void read_places_file(ConfigReader& reader, std::string& out) {
+  std::string file;
+  reader.read("places", file);
+  if (file.empty()) return;
+  auto text = read_file(file, kMostPlaces);
   if (!text) return reader.complain("places", to_string(text.error()));
-  auto places = nats::read_places(*text);
-  if (!places) return reader.complain("places", to_string(places.error()));
-  out.link.places = std::move(*places);
+  if (const auto places = nats::read_places(*text); !places)
+    return reader.complain("places", to_string(places.error()));
+  out = std::move(*text);
 }
 
 }  // namespace
 
-void read_site(ConfigReader reader, SiteSettings& out) {
+void read_site(ConfigReader reader, SiteSettings& out, std::string& places) {
   nats::LinkConfig& link = out.link;
   read_name(reader, "name", link.site);
   std::string cell;
@@ -46,13 +50,20 @@ void read_site(ConfigReader reader, SiteSettings& out) {
   if (auto id = site::CellId::parse(cell)) link.cell = std::move(*id);
   read_servers(reader, link.broker);
   reader.read("url", link.url);
-  read_places_file(reader, out);
+  read_places_file(reader, places);
   reader.read("outputs", out.outputs_show);
   reader.read_s("remember_s", link.decisions.remember, std::chrono::seconds(0),
                 std::chrono::seconds(3600));
   if (link.site.empty()) return;
   if (cell.empty()) reader.complain("cell", "is missing: this cell's name in the site");
   link.broker.name = link.site + "." + cell;
+}
+
+std::optional<site::CellPlace> own_place(const SiteSettings& settings, const std::string& places) {
+  const auto all = nats::read_places(places);
+  if (!all) return std::nullopt;
+  const auto own = std::ranges::find(*all, settings.link.cell, &site::CellPlace::cell);
+  return own == all->end() ? std::nullopt : std::optional(*own);
 }
 
 }  // namespace chorus::server

@@ -1,20 +1,27 @@
 // The section "site" of the configuration: how this cell meets the others of its hall.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "common/base/config_reader.h"
 #include "fusion-server/nats/cell_link.h"
 
 namespace chorus::server {
 
 struct SiteSettings {
-  nats::LinkConfig link;      ///< Without a name there is no site.
-  std::string places_file;    ///< Where the cells stand; empty: nothing is known of it.
+  nats::LinkConfig link;      ///< Without a name there is no site; without places.
   bool outputs_show = false;  ///< The outputs show everybody in the site, not only this cell's.
 
   bool operator==(const SiteSettings&) const = default;
 };
 
-/// The reader's finish() reports mistakes.
-void read_site(ConfigReader reader, SiteSettings& out);
+/// The reader's finish() reports mistakes.  `places`: the text of the file that says where the
+/// cells stand, which nats::read_places() takes; empty: nothing is known of it.
+void read_site(ConfigReader reader, SiteSettings& out, std::string& places);
+
+/// Where our own cell stands according to that text; none: it does not say.
+[[nodiscard]] std::optional<site::CellPlace> own_place(const SiteSettings& settings,
+                                                       const std::string& places);
 
 }  // namespace chorus::server

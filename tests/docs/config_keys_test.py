@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # Which code reads which configuration file.
 READERS = {
     "fusion.json": ["fusion-server/server", "fusion-server/outputs", "fusion-server/outlet", "fusion-server/vrpn", "fusion-server/dtrack",
-                    "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/service",
+                    "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "fusion-server/mqtt", "common/service",
                     "common/client", "common/workplace/prop.cpp"],
     "sensor.json": ["services/sensor", "common/service"],
     "evaluation.json": ["services/evaluation", "common/service/http_config.cpp", "common/service/log_config.cpp", "common/client"],
