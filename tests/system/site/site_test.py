@@ -1,10 +1,13 @@
 """Two cells that meet on a real nats-server: without it, with it, with strangers and liars on it, and after it was killed."""
 import json
+import shutil
+import subprocess
 import time
 import unittest
 
-from site_rig import Hall, Stranger, demo_hall, get_json, wait_for
+from site_rig import ROOT, Hall, Stranger, demo_hall, get_json, wait_for
 
+NODE = shutil.which("node")
 ENOUGH_HZ = 15  # of 30; a busy machine
 
 
@@ -17,6 +20,7 @@ class Site(Hall):
         self.start_server()
         ids = self.meet(a, b)
         self.strangers(a, b)
+        self.foreign_reader(a)
         self.lies(a, b)
         self.a_wrong_password()
         self.two_of_one_name(a, sensors["b"])
@@ -82,6 +86,42 @@ class Site(Hall):
         seen = wait_for("the reader gets people", lambda: self.people_in(reader.message()))
         near = self.people(a) or self.people(b)
         self.assertIn(seen["siteId"], near)
+
+    def foreign_reader(self, a):
+        """The NATS project's own client sees people where /site/frame has them, to a tenth of a millimetre."""
+        if NODE is None or not (ROOT / "tests/node_modules/nats").exists():
+            print("not compared with the client of the NATS project: needs node and npm ci in tests/")
+            return
+        password = json.loads((self.place / "site/reader.json").read_text())["password"]
+        reader = subprocess.Popen([NODE, ROOT / "tests/system/site/reader.mjs", str(self.server_port), password,
+                                   "chorus.hall.a.people", "600"], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(reader.stdout.close)
+        self.addCleanup(reader.wait)
+        self.addCleanup(reader.kill)
+        told, compared = {}, 0
+        while compared < 10:
+            line = reader.stdout.readline()
+            self.assertTrue(line, f"600 messages, and only {compared} frames of the same instants")
+            message = json.loads(line)["message"]
+            told[message["at"]] = message["people"]
+            if len(told) % 10:
+                continue
+            frame = get_json(a.url + "site/frame")
+            if frame["sensors"] != ["a"]:
+                continue
+            while frame["capturedNanoseconds"] not in told and int(message["at"]) <= int(frame["capturedNanoseconds"]):
+                message = json.loads(reader.stdout.readline())["message"]
+                told[message["at"]] = message["people"]
+            compared += self.same_place(frame, told.get(frame["capturedNanoseconds"], []))
+
+    def same_place(self, frame, people):
+        """Whether there was a person to compare; the site's space is the world of cell a."""
+        if len(people) != 1 or len(frame["bodies"]) != 1:
+            return False
+        pelvis = frame["bodies"][0]["joints"]["SpineBase"]
+        for ours, key in zip(people[0]["place"], "xyz"):
+            self.assertAlmostEqual(ours, pelvis[key], delta=1e-4)
+        return True
 
     @staticmethod
     def people_in(message):
