@@ -66,8 +66,9 @@ struct FusionServer::Impl {
   void follow_inertial(const std::vector<client::FollowedService>& sources);
   void take_status(const Status& next);
   void meet_the_site();
-  void move_in_the_site();
-  [[nodiscard]] std::vector<OutputStatus> output_states() const;
+  [[nodiscard]] std::vector<OutputStatus> output_states() const {
+    return with_site(outputs->states(), link.get());
+  }
   LookoutOptions lookout_options();
   service::RecordingViewsOptions recording_views_options();
   SensorDeskOptions sensor_desk_options(const std::string& folder);
@@ -123,22 +124,6 @@ void FusionServer::Impl::meet_the_site() {
         if (feed) outputs->publish(view.snapshot);
         site->show(std::make_shared<const site::SiteView>(view));
       });
-}
-
-/// Where our cell stands has been told anew.
-void FusionServer::Impl::move_in_the_site() {
-  const auto own = own_place(config.at_start.site, config.live.site_places);
-  if (link && own) link->place(*own);
-}
-
-/// With the connection to the other cells, if there are any.
-std::vector<OutputStatus> FusionServer::Impl::output_states() const {
-  std::vector<OutputStatus> all = outputs->states();
-  if (!link) return all;
-  const SinkCounters counters = link->counters();
-  all.push_back(
-      {std::string(link->name()), counters.clients == 0 ? counters.last_failure : "", counters});
-  return all;
 }
 
 LookoutOptions FusionServer::Impl::lookout_options() {
@@ -377,7 +362,8 @@ void FusionServer::take(const LiveSettings& live) {
     const std::scoped_lock lock(s.mutex);
     s.config.live = live;
   }
-  if (moved) s.move_in_the_site();
+  const auto own = own_place(s.config.at_start.site, live.site_places);
+  if (moved && s.link && own) s.link->place(*own);
   if (const auto opened = s.outputs->apply(live.outputs); !opened)
     log::error("an output could not be opened", {{"reason", to_string(opened.error())}});
   s.lookout->remember_for(live.pipeline.association.remember);

@@ -66,4 +66,12 @@ std::optional<site::CellPlace> own_place(const SiteSettings& settings, const std
   return own == all->end() ? std::nullopt : std::optional(*own);
 }
 
+std::vector<OutputStatus> with_site(std::vector<OutputStatus> all, const nats::CellLink* link) {
+  if (link == nullptr) return all;
+  const SinkCounters counters = link->counters();
+  all.push_back(
+      {std::string(link->name()), counters.clients == 0 ? counters.last_failure : "", counters});
+  return all;
+}
+
 }  // namespace chorus::server

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/config_reader.h"
 #include "fusion-server/nats/cell_link.h"
@@ -23,5 +24,10 @@ void read_site(ConfigReader reader, SiteSettings& out, std::string& places);
 /// Where our own cell stands according to that text; none: it does not say.
 [[nodiscard]] std::optional<site::CellPlace> own_place(const SiteSettings& settings,
                                                        const std::string& places);
+
+/// The outputs, and the connection to the other cells if there are any (null: none), which counts
+/// as one of them.
+[[nodiscard]] std::vector<OutputStatus> with_site(std::vector<OutputStatus> all,
+                                                  const nats::CellLink* link);
 
 }  // namespace chorus::server
