@@ -70,9 +70,9 @@ SensorTrial with_frame(const Asking& asking, const std::string& title, SensorTri
   }
   const auto frame = parse_json(answer->body, kTrialJson);
   const std::size_t bodies = frame ? part_at(*frame, "bodies").size() : 0;
-  trial.words = bodies == 0 ? title + " is there and sees nobody now."
-                            : fmt::format("{} is there and sees {} {}.", title, bodies,
-                                          bodies == 1 ? "person" : "people");
+  trial.words = bodies == 0   ? title + " is there and sees nobody now."
+                : bodies == 1 ? title + " is there and sees one person."
+                              : fmt::format("{} is there and sees {} people.", title, bodies);
   return trial;
 }
 

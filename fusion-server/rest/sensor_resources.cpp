@@ -110,6 +110,7 @@ void SensorResources::publish(const std::vector<SensorStatus>& sensors) {
     sensors_ = sensors;
     options.version = serving_->run + "-" + std::to_string(++version_);
   }
+  options.headers = {{"Accept-Post", "application/json"}};
   list_->publish(resource::document_of(std::move(node), std::move(options),
                                        serving_->place("sensors/"), resource::Kind::Container));
 }
