@@ -27,11 +27,11 @@ constexpr double kBone = 0.02;        // [m] of a bone's length in one picture
 constexpr double kShortBone = 0.03;   // [m]; shorter ones show no size
 constexpr double kLeastLength = 0.5;  // of a bone's length that is left without its noise
 constexpr int kScaleRounds = 3;
-constexpr double kLongestStep = 0.5;    // [s] the most that the state is predicted for at once
-constexpr double kNearestBody = 0.3;    // [m] from the camera
-constexpr double kUnseenTooLong = 3.0;  // [s] after which a joint that nobody saw is not expected
-constexpr double kUnlikelyBone = 3.0;   // [standard deviations] beyond it, a bone counts less
-constexpr std::size_t kFewest = 3;      // joints that place a body
+constexpr double kLongestHeldStep = 0.5;  // [s] the most that the state is predicted for at once
+constexpr double kNearestBody = 0.3;      // [m] from the camera
+constexpr double kUnseenTooLong = 3.0;    // [s] after which a joint that nobody saw is not expected
+constexpr double kUnlikelyBone = 3.0;     // [standard deviations] beyond it, a bone counts less
+constexpr std::size_t kFewest = 3;        // joints that place a body
 
 constexpr std::array kTorso{SpineBase,    SpineMid,      SpineShoulder, Neck,
                             ShoulderLeft, ShoulderRight, HipLeft,       HipRight};
@@ -107,7 +107,7 @@ std::vector<Span> spans_of(const PlacedBody& points, const Eigen::Vector3d& eye,
 }  // namespace
 
 void HeldBody::predict(double passed) {
-  passed_ = std::clamp(passed, 0.0, kLongestStep);
+  passed_ = std::clamp(passed, 0.0, kLongestHeldStep);
   const double kept = std::exp(-passed_ / kSpeedTime);
   const double way = kSpeedTime * (1.0 - kept);
   const double same = std::exp(-passed_ / kRatioTime);
