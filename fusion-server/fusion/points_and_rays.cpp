@@ -9,6 +9,7 @@
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/held_body.h"
 #include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/landmark_error.h"
 #include "fusion-server/fusion/learned_errors.h"
 #include "fusion-server/fusion/least_squares.h"
 
@@ -119,8 +120,10 @@ class PointsAndRays final : public Estimator {
     const auto source = hold(person, meetings);
     FusedBody body = joint_by_joint(person.id, [&](JointId joint) {
       const std::size_t j = index_of(joint);
-      return alone_ && (*alone_)[j].placed ? held_joint(meetings[j], (*alone_)[j])
-                                           : fuse_joint(j, instant.at, meetings[j]);
+      FusedJoint fused = alone_ && (*alone_)[j].placed ? held_joint(meetings[j], (*alone_)[j])
+                                                       : fuse_joint(j, instant.at, meetings[j]);
+      if (from_cameras(meetings[j].views)) state_landmark_error(fused, joint);
+      return fused;
     });
     hand_over(body, expected, source, passed);
     return body;

@@ -5,6 +5,7 @@
 
 #include "fusion-server/fusion/error_model.h"
 #include "fusion-server/fusion/fuse.h"
+#include "fusion-server/fusion/landmark_error.h"
 #include "tests/unit/fusion/cameras.h"
 #include "tests/unit/fusion/views.h"
 
@@ -177,15 +178,33 @@ TEST(PointsAndRays, PointsAndRaysWorkTogether) {
   EXPECT_TRUE(body.skeleton[JointId::Neck].orientation.isApprox(Eigen::Quaterniond::Identity()));
 }
 
-TEST(PointsAndRays, ARayBelievesItsOwnCovariance) {
+/// Of a neck between two rays that state an error of `sigma` [rad].
+double stated_by_rays(double sigma) {
   Cell cell;
   cell.config.common_sigma = 0.0;
   const Eigen::Vector3d neck(0.2, 1.4, 0.1);
   std::vector views{ray_view(1, neck), ray_view(2, neck)};
   for (SensorView& view : views)
     view.skeleton[JointId::Neck].covariance =
-        Covariance(Eigen::Matrix3d(1e-6 * Eigen::Matrix3d::Identity()));
-  EXPECT_NEAR(std::sqrt(cell.at(milliseconds(0), views).variance[kNeck]), 0.003, 0.001);
+        Covariance(Eigen::Matrix3d(sigma * sigma * Eigen::Matrix3d::Identity()));
+  return std::sqrt(cell.at(milliseconds(0), views).variance[kNeck]);
+}
+
+TEST(PointsAndRays, ARayBelievesItsOwnCovariance) {
+  EXPECT_NEAR(stated_by_rays(0.02) / stated_by_rays(0.01), 2.0, 0.1);
+  EXPECT_NEAR(stated_by_rays(0.02), 0.055, 0.01) << "0.06 m at 3 m, twice";
+}
+
+TEST(PointsAndRays, NoNumberOfCamerasKnowsAJointBetterThanItsLandmark) {
+  EXPECT_NEAR(stated_by_rays(0.001), landmark_error(JointId::Neck), 1e-6);
+  Cell cell;
+  const Eigen::Vector3d neck(0.2, 1.4, 0.1);
+  SensorView depth = neck_view(3, neck, 0.5, {0, 1, 3});
+  depth.skeleton[JointId::Neck].covariance =
+      Covariance(Eigen::Matrix3d(2.5e-5 * Eigen::Matrix3d::Identity()));
+  EXPECT_LT(std::sqrt(cell.at(milliseconds(0), {depth, ray_view(1, neck)}).variance[kNeck]), 0.01)
+      << "a depth sensor's joint is its own";
+  EXPECT_GT(landmark_error(JointId::ThumbLeft), landmark_error(JointId::SpineMid));
 }
 
 }  // namespace
