@@ -139,7 +139,7 @@ Result<void> Registrar::release(const SensorId& sensor) {
   if (!config_.sensors.contains(sensor))
     return fail(ErrorCode::NotFound, "sensors/" + sensor.str(), "this sensor is not followed");
   retries_.forget(sensor);
-  if (!registration_.sensors.contains(sensor)) return {};
+  if (!registration().sensors.contains(sensor)) return {};
   if (displace(sensor, fmt::format("{} is to be registered anew, as somebody asked", sensor.str())))
     return {};
   return fail(
