@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/quality/quality_report.h"
+#include "common/quality/sensor_findings.h"
 
 namespace chorus::quality {
 namespace {
@@ -15,35 +17,99 @@ using report::Judgement;
 // away in one instant of twenty is a gap in every second step.
 constexpr double kMissing = 0.05;
 constexpr double kMuchMissing = 0.25;
-constexpr double kMoved =
-    0.05;  // [m] the centre of a sensor's views changed between first and last third
-constexpr double kOffset = 0.15;  // [m] a sensor's views stand beside the fused bodies all the time
-constexpr double kClock = 0.03;   // [s]
-constexpr double kSilence = 2.0;  // [s]
-constexpr double kDisagrees = 2.5;  // times the median residual of the other sensors
-constexpr double kRates = 0.6;      // of the median rate of the sensors
-constexpr double kUnsure = 0.05;    // share of time with uncertain sides
+constexpr double kAlike = 0.03;        // joints whose shares differ by less are named together
+constexpr double kUnsure = 0.05;       // share of time with uncertain sides
+constexpr double kJumpsAMinute = 2.0;  // of one joint
+constexpr double kOverstated = 2.0;    // true errors, by the views, in stated ones
 
 using Findings = std::vector<Finding>;
 
-double rounded_mm(double metres) { return std::round(1e3 * metres); }
+std::string whole_percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
-double median(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Joints that are away alike: a hand is lost as a whole.
+struct Away {
+  double missing = 0.0;
+  double unseen = 0.0;
+  std::vector<std::string> joints;
+
+  [[nodiscard]] double share() const { return missing + unseen; }
+};
+
+/// Not every model of a body has these; a joint that is never there is none that is lost.
+bool never_there(const FusedQuality& fused, std::size_t joint) {
+  constexpr std::array kEnds{JointId::HandLeft,     JointId::HandRight, JointId::HandTipLeft,
+                             JointId::HandTipRight, JointId::ThumbLeft, JointId::ThumbRight,
+                             JointId::FootLeft,     JointId::FootRight};
+  return fused.joints[joint].missing >= 1.0 &&
+         std::ranges::find(kEnds, static_cast<JointId>(joint)) != kEnds.end();
+}
+
+std::vector<Away> joints_away(const FusedQuality& fused) {
+  std::vector<Away> out;
+  const bool told = !fused.shares.empty();  // who contributes
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const Away each{fused.joints[j].missing, told ? fused.joints[j].unseen : 0.0, {}};
+    if (each.share() <= kMissing || never_there(fused, j)) continue;
+    const auto alike = std::ranges::find_if(out, [&](const Away& other) {
+      return std::abs(other.missing - each.missing) < kAlike &&
+             std::abs(other.unseen - each.unseen) < kAlike;
+    });
+    Away& group = alike == out.end() ? out.emplace_back(each) : *alike;
+    group.missing = std::max(group.missing, each.missing);
+    group.unseen = std::max(group.unseen, each.unseen);
+    group.joints.emplace_back(kJointNames[j]);
+  }
+  return out;
 }
 
 void of_joints(const RecordingQuality& quality, Findings& out) {
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    const JointQuality& joint = quality.fused.joints[j];
-    if (joint.missing <= kMissing) continue;
-    out.push_back({joint.missing > kMuchMissing ? Judgement::Bad : Judgement::Doubtful,
-                   fmt::format("{} is missing in {:.0f} %", kJointNames[j], 100.0 * joint.missing),
+  for (const Away& away : joints_away(quality.fused)) {
+    const char* verb = away.joints.size() > 1 ? "are" : "is";
+    std::string how;
+    if (away.missing > 0.005) how = "missing in " + whole_percent(away.missing);
+    if (away.unseen > 0.005)
+      how += (how.empty() ? "" : " and ") + ("guessed in " + whole_percent(away.unseen));
+    out.push_back({away.share() > kMuchMissing ? Judgement::Bad : Judgement::Doubtful,
+                   fmt::format("{} {} {}", fmt::join(away.joints, ", "), verb, how),
                    "add or turn a sensor so that one more sees it"});
   }
+}
+
+void of_jumps(const RecordingQuality& quality, Findings& out) {
+  const FusedQuality& fused = quality.fused;
+  std::size_t worst = 0;
+  int all = 0;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    all += fused.joints[j].jumps;
+    if (fused.joints[j].jumps > fused.joints[worst].jumps) worst = j;
+  }
+  const JointQuality& joint = fused.joints[worst];
+  const double minutes = std::max(1.0, fused.seconds / 60.0);
+  if (static_cast<double>(joint.jumps) <= kJumpsAMinute * minutes) return;
+  out.push_back({Judgement::Doubtful,
+                 fmt::format("{} jumps {} times, first at {:.1f} s ({} jumps of all joints)",
+                             kJointNames[worst], joint.jumps, joint.first_jump_at, all),
+                 "look at that moment: a sensor may see something else there"});
+}
+
+/// Of all joints together; NaN: the views do not tell.
+double overstated(const RecordingQuality& quality) {
+  double found = 0.0;
+  double stated = 0.0;
+  for (const ViewError& each : quality.views) {
+    if (!(each.found > 0.0) || !(each.stated > 0.0)) continue;
+    found += each.found * each.found;
+    stated += each.stated * each.stated;
+  }
+  return std::sqrt(found / stated);
+}
+
+void of_stated_errors(const RecordingQuality& quality, Findings& out) {
+  const double ratio = overstated(quality);
+  if (!(ratio > kOverstated)) return;
+  out.push_back({Judgement::Doubtful,
+                 fmt::format("errors are {:.1f} times as large as stated, by the views", ratio),
+                 "do not rely on stated errors; register anew, or train the error model"});
 }
 
 void of_moments(const RecordingQuality& quality, Findings& out) {
@@ -73,47 +139,37 @@ void of_people(const RecordingQuality& quality, Findings& out) {
                      "walk a few steps forward, or add a sensor that sees people from the front"});
 }
 
-void of_sensor(const std::string& id, const SensorQuality& sensor, const RecordingQuality& quality,
-               Findings& out) {
-  const double change = (sensor.offset_last - sensor.offset_first).norm();
-  const double offset = std::min(sensor.offset_first.norm(), sensor.offset_last.norm());
-  if (change > kMoved)
-    out.push_back({Judgement::Bad,
-                   fmt::format("{} was moved: its views changed by {} mm against the fused bodies",
-                               id, rounded_mm(change)),
-                   "fix it and register anew"});
-  else if (offset > kOffset)
-    out.push_back(
-        {Judgement::Bad,
-         fmt::format("{} stands {} mm beside where it is registered", id, rounded_mm(offset)),
-         "register anew"});
-  if (std::abs(sensor.clock) > kClock)
-    out.push_back({Judgement::Bad,
-                   fmt::format("the clock of {} is off by {:.0f} ms", id, 1e3 * sensor.clock),
-                   "synchronise its host (chrony), or fuse anew with the clocks searched"});
-  if (sensor.longest_silence > kSilence)
-    out.push_back({Judgement::Doubtful,
-                   fmt::format("{} was silent for {:.1f} s", id, sensor.longest_silence),
-                   "look at its log and its network"});
-  std::vector<double> rates;
-  std::vector<double> residuals;
-  for (const auto& [other, figures] : quality.sensors) {
-    rates.push_back(figures.rate);
-    if (other.str() != id) residuals.push_back(figures.residual);
-  }
-  if (sensor.rate < kRates * median(rates))
-    out.push_back({Judgement::Doubtful,
-                   fmt::format("{} delivers {:.1f} frames/s, the others {:.1f}", id, sensor.rate,
-                               median(rates)),
-                   "look at the load of its host and its exposure time"});
-  if (sensor.residual > kDisagrees * median(residuals) && change <= kMoved && offset <= kOffset)
-    out.push_back({Judgement::Doubtful,
-                   fmt::format("{} disagrees with the others: {} mm, they {} mm", id,
-                               rounded_mm(sensor.residual), rounded_mm(median(residuals))),
-                   "check its lens, its model and what it looks at"});
-}
-
 }  // namespace
+
+std::vector<std::string> remarks_of(const RecordingQuality& quality) {
+  std::vector<std::string> out;
+  std::string never;
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    if (never_there(quality.fused, j))
+      never += (never.empty() ? "" : ", ") + std::string(kJointNames[j]);
+  if (!never.empty()) out.push_back("no sensor ever reports " + never);
+  if (quality.sensors.empty()) {
+    out.emplace_back("sensors' own frames are not in it: who disagrees is unknown");
+    return out;
+  }
+  if (quality.sensors.size() == 1)
+    out.emplace_back(
+        "it has one sensor, which nobody contradicts: errors of its place, its clock and "
+        "its depth do not show");
+  const auto compared = [](const auto& each) { return each.second.compared > 0; };
+  const auto directions = [](const auto& each) { return each.second.rays > 0.5; };
+  if (quality.verdict.empty())
+    out.emplace_back(
+        "no registration was recorded: where sensors stand is unknown, and so is who "
+        "disagrees");
+  else if (std::ranges::all_of(quality.sensors, directions))
+    out.emplace_back("its cameras see directions alone, which are not compared with the bodies");
+  else if (std::ranges::none_of(quality.sensors, compared))
+    out.emplace_back(
+        "no sensor's frame belongs to a fused body: do the recordings share a time, and "
+        "is the registration theirs?");
+  return out;
+}
 
 Findings findings_of(const RecordingQuality& quality) {
   Findings out;
@@ -131,8 +187,10 @@ Findings findings_of(const RecordingQuality& quality) {
                                quality.fused.pauses, quality.fused.longest_pause),
                    "look at the load of the fusion host"});
   of_moments(quality, out);
-  for (const auto& [id, sensor] : quality.sensors) of_sensor(id.str(), sensor, quality, out);
+  for (Finding& finding : sensor_findings(quality)) out.push_back(std::move(finding));
+  of_jumps(quality, out);
   of_joints(quality, out);
+  of_stated_errors(quality, out);
   of_people(quality, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Finding& a, const Finding& b) { return a.judgement > b.judgement; });

@@ -22,6 +22,7 @@ struct JointQuality {
   double tracked = 0.0;
   double inferred = 0.0;
   double missing = 0.0;
+  double unseen = 0.0;   ///< Tracked or inferred, but no sensor contributes: it is predicted.
   double carried = 0.0;  ///< The person is out of sight; the joint is where it is expected.
   int gaps = 0;          ///< Times at which it became missing.
   double longest_gap = 0.0;
@@ -31,7 +32,8 @@ struct JointQuality {
   /// 0.1 m/s (third differences while it moves faster).  NaN: never so.
   double jitter_at_rest = 0.0;
   double jitter_in_motion = 0.0;
-  int jumps = 0;        ///< Steps that no body makes: more than 0.1 m off uniform motion.
+  double first_jump_at = 0.0;  ///< After the first frame [s].
+  int jumps = 0;               ///< Steps that no body makes: more than 0.1 m off uniform motion.
   double stated = 0.0;  ///< Root mean square of the stated standard deviation per axis.  NaN: none.
 };
 

@@ -29,6 +29,7 @@ JointQuality JointCounts::quality() const {
   out.tracked = ratio(tracked, present);
   out.inferred = ratio(inferred, present);
   out.missing = ratio(missing, present);
+  out.unseen = ratio(unseen, present);
   out.carried = ratio(carried, present);
   out.gaps = gaps;
   out.longest_gap = longest_gap;
@@ -37,6 +38,7 @@ JointQuality JointCounts::quality() const {
   out.jitter_at_rest = root_mean(rest_squares, rest);
   out.jitter_in_motion = root_mean(motion_squares, motion);
   out.jumps = jumps;
+  out.first_jump_at = first_jump_at;
   out.stated = root_mean(stated_squares, stated);
   return out;
 }
@@ -57,6 +59,7 @@ void JointJudge::add(const resource::JointResource& joint, double at, bool carri
     counts.contributors += static_cast<std::size_t>(std::popcount(joint.contributors));
   }
   if (!seen) return places_.clear();
+  if (!carried && joint.contributors == 0) ++counts.unseen;
   const double variance = joint.covariance.known() ? joint.covariance.matrix().trace() / 3.0
                                                    : joint.variance.value_or(0.0);
   if (variance > 0.0 && !carried) {
@@ -82,7 +85,7 @@ void JointJudge::gap(bool missing, double at, JointCounts& counts) {
 }
 
 // The second difference of white noise has six times its variance, the third one twenty times.
-void JointJudge::motion(JointCounts& counts) const {
+void JointJudge::motion(JointCounts& counts) {
   if (places_.size() < 3) return;
   const auto back = [&](std::size_t n) -> const Place& { return places_[places_.size() - 1 - n]; };
   const double step = back(0).at - back(1).at;
@@ -90,7 +93,11 @@ void JointJudge::motion(JointCounts& counts) const {
   if (!(step > 0.0 && before > 0.0)) return;
   const Eigen::Vector3d velocity = (back(1).x_in_world - back(2).x_in_world) / before;
   const Eigen::Vector3d off = back(0).x_in_world - back(1).x_in_world - velocity * step;
-  if (off.norm() > kJump * std::max(1.0, 30.0 * step)) ++counts.jumps;
+  if (off.norm() > kJump * std::max(1.0, 30.0 * step)) {
+    if (++counts.jumps == 1) counts.first_jump_at = back(0).at;
+    places_.erase(places_.begin(), places_.end() - 1);  // the way back to uniform motion is no jump
+    return;
+  }
   const bool even = step < 1.5 * before && before < 1.5 * step;
   if (!even || off.norm() > kJump) return;
   if ((back(0).x_in_world - back(2).x_in_world).norm() / (step + before) < kSlow) {

@@ -15,8 +15,6 @@ using report::readable;
 using report::Section;
 using report::Table;
 
-constexpr std::size_t kMostInVerdict = 5;
-
 std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 std::string in_millimetres(double metres) {
   return std::isfinite(metres) ? readable(1e3 * metres) : "-";
@@ -64,32 +62,36 @@ Section findings_section(const std::vector<Finding>& findings) {
   return section;
 }
 
-Section joints(const FusedQuality& fused) {
+Section joints(const RecordingQuality& quality) {
+  const FusedQuality& fused = quality.fused;
   Section section{"joints", "Joints"};
   section.paragraphs = {
-      "Shares are of the instants in which a person is present. A carried joint is where it is "
+      "Shares are of the instants in which a person is present. A guessed joint is where it is "
+      "expected while no sensor sees it. A carried joint is where it is "
       "expected while nobody sees the person. Jitter is the noise per axis, by second differences "
       "at "
       "rest (below 0.1 m/s) and third ones in motion. Stated is the standard deviation per axis "
       "that the tracker gives; it covers slow errors too, so it should be larger than jitter at "
-      "rest."};
-  Table table{
-      "",
-      {"joint", "tracked", "inferred", "missing", "carried", "gaps", "longest [s]", "at [s]",
-       "sensors", "jitter at rest [mm]", "in motion [mm]", "stated [mm]", "jumps"},
-      {}};
+      "rest. The error by views is how large the error is by the disagreement of the sensors; what "
+      "all of them get wrong alike does not show in it."};
+  Table table{"",
+              {"joint", "tracked", "inferred", "missing", "guessed", "carried", "gaps",
+               "longest [s]", "at [s]", "sensors", "jitter at rest [mm]", "in motion [mm]",
+               "stated [mm]", "error by views [mm]", "jumps"},
+              {}};
   Plot plot{"Missing and inferred", {"joint"}, {"share [%]"}};
   report::Series missing{"missing", report::Mark::Bars};
   report::Series inferred{"inferred", report::Mark::Bars};
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const JointQuality& joint = fused.joints[j];
     const std::string name(kJointNames[j]);
-    table.rows.push_back(
-        {name, percent(joint.tracked), percent(joint.inferred), percent(joint.missing),
-         percent(joint.carried), std::to_string(joint.gaps), readable(joint.longest_gap),
-         readable(joint.longest_gap_at), readable(joint.sensors),
-         in_millimetres(joint.jitter_at_rest), in_millimetres(joint.jitter_in_motion),
-         in_millimetres(joint.stated), std::to_string(joint.jumps)});
+    table.rows.push_back({name, percent(joint.tracked), percent(joint.inferred),
+                          percent(joint.missing), percent(joint.unseen), percent(joint.carried),
+                          std::to_string(joint.gaps), readable(joint.longest_gap),
+                          readable(joint.longest_gap_at), readable(joint.sensors),
+                          in_millimetres(joint.jitter_at_rest),
+                          in_millimetres(joint.jitter_in_motion), in_millimetres(joint.stated),
+                          in_millimetres(quality.views[j].found), std::to_string(joint.jumps)});
     missing.x.push_back(static_cast<double>(j));
     missing.y.push_back(100.0 * joint.missing);
     inferred.x.push_back(static_cast<double>(j));
@@ -142,20 +144,21 @@ Section sensors(const RecordingQuality& quality) {
   Table table{"",
               {"sensor", "frames/s", "longest silence [s]", "late 95 % [ms]", "sees somebody",
                "share", "residual [mm]", "90 % [mm]", "below 2 m, 2-3, 3-4, farther [mm]",
-               "moved [mm]", "clock [ms]"},
+               "moved [mm]", "beside [mm]", "clock [ms]", "exchanged sides", "repeated"},
               {}};
   for (const auto& [id, sensor] : quality.sensors) {
     const auto share = quality.fused.shares.find(id.str());
     std::string distances;
     for (const double residual : sensor.by_distance)
       distances += (distances.empty() ? "" : ", ") + in_millimetres(residual);
-    table.rows.push_back({id.str(), readable(sensor.rate), readable(sensor.longest_silence),
-                          readable(1e3 * sensor.lateness), percent(sensor.sees),
-                          share == quality.fused.shares.end() ? "-" : percent(share->second),
-                          in_millimetres(sensor.residual), in_millimetres(sensor.residual_p90),
-                          distances,
-                          in_millimetres((sensor.offset_last - sensor.offset_first).norm()),
-                          readable(1e3 * sensor.clock)});
+    table.rows.push_back(
+        {id.str(), readable(sensor.rate), readable(sensor.longest_silence),
+         readable(1e3 * sensor.lateness), percent(sensor.sees),
+         share == quality.fused.shares.end() ? "-" : percent(share->second),
+         in_millimetres(sensor.residual), in_millimetres(sensor.residual_p90), distances,
+         in_millimetres((sensor.offset_last - sensor.offset_first).norm()),
+         in_millimetres(sensor.offset_in_sensor.norm()), readable(1e3 * sensor.clock),
+         percent(sensor.exchanged), percent(sensor.repeated)});
   }
   section.tables = {table};
   return section;
@@ -181,8 +184,9 @@ report::Report report_of(const RecordingQuality& quality) {
   out.verdict = sentence(findings);
   out.subject = {{"recording", quality.name},
                  {"registration", quality.verdict.empty() ? "not recorded" : quality.verdict}};
+  for (const std::string& remark : remarks_of(quality)) out.subject.emplace_back("remark", remark);
   for (const std::string& note : quality.notes) out.subject.emplace_back("note", note);
-  out.sections = {findings_section(findings), overview(quality), joints(quality.fused),
+  out.sections = {findings_section(findings), overview(quality), joints(quality),
                   people(quality.fused)};
   if (!quality.sensors.empty()) out.sections.push_back(sensors(quality));
   return out;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <optional>
 #include <vector>
+
+#include "common/body/bones.h"
+#include "common/quality/sensor_tally.h"
 
 namespace chorus::quality {
 namespace {
@@ -18,92 +21,12 @@ constexpr double kSamePerson = 0.6;      // [m] between the centres of a view an
 constexpr double kLongestBetween = 0.2;  // [s] between fused frames that are interpolated
 constexpr double kMoving = 0.4;          // [m/s]; slower motion says nothing of a clock
 constexpr double kWait = 2.0;            // [s] that a sensor's frame waits for the fused one
-constexpr std::size_t kMostSamples =
-    200'000;  // of each kind and sensor; then every further one replaces one
-constexpr std::size_t kMostWaiting = 8'192;  // frames: of 64 sensors at 60 Hz, two seconds
+constexpr std::size_t kMostOffsets = 200'000;  // of each kind and sensor: two hours at 30 Hz
+constexpr std::size_t kMostWaiting = 8'192;    // frames: of 64 sensors at 60 Hz, two seconds
 constexpr std::array kCentre{JointId::SpineBase, JointId::SpineMid, JointId::SpineShoulder};
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSides = 0.1;  // [m] a person's sides are apart by at least that, seen from there
 
 double seconds_of(Duration time) { return std::chrono::duration<double>(time).count(); }
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return kNan;
-  const auto place = std::min(values.size() - 1,
-                              static_cast<std::size_t>(share * static_cast<double>(values.size())));
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-// Keeps a bounded sample of a long series: beyond the limit, each new value takes the place of one
-// that is drawn by a fixed sequence.
-class Sample {
- public:
-  void add(double value) {
-    ++seen_;
-    if (values_.size() < kMostSamples) return values_.push_back(value);
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    const std::size_t place = (state_ >> 16U) % seen_;
-    if (place < values_.size()) values_[place] = value;
-  }
-  [[nodiscard]] double at(double share) const { return quantile(values_, share); }
-  [[nodiscard]] std::size_t seen() const { return seen_; }
-
- private:
-  std::vector<double> values_;
-  std::size_t seen_ = 0;
-  std::uint64_t state_ = 1;
-};
-
-struct Offset {
-  double at;
-  Eigen::Vector3d off;
-};
-
-Eigen::Vector3d median_of(const std::vector<Offset>& offsets, double from, double to) {
-  Eigen::Vector3d out = Eigen::Vector3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const Offset& each : offsets)
-      if (each.at >= from && each.at <= to) values.push_back(each.off[axis]);
-    const double value = quantile(std::move(values), 0.5);
-    out[axis] = std::isfinite(value) ? value : 0.0;
-  }
-  return out;
-}
-
-struct Judged {
-  std::size_t frames = 0;
-  std::size_t with_people = 0;
-  double first = 0.0;
-  double last = 0.0;
-  double longest_silence = 0.0;
-  Sample lateness, residuals, clocks;
-  std::array<Sample, 4> by_distance;
-  std::vector<Offset> offsets;
-
-  [[nodiscard]] SensorQuality quality() const;
-};
-
-SensorQuality Judged::quality() const {
-  SensorQuality out;
-  out.frames = frames;
-  if (frames > 1 && last > first) out.rate = static_cast<double>(frames - 1) / (last - first);
-  out.longest_silence = longest_silence;
-  out.lateness = lateness.at(0.95);
-  out.sees = frames == 0 ? 0.0 : static_cast<double>(with_people) / static_cast<double>(frames);
-  out.compared = residuals.seen();
-  out.residual = residuals.at(0.5);
-  out.residual_p90 = residuals.at(0.9);
-  out.clock = clocks.seen() < 30 ? kNan : clocks.at(0.5);
-  for (std::size_t i = 0; i < by_distance.size(); ++i) out.by_distance[i] = by_distance[i].at(0.5);
-  if (offsets.empty()) return out;
-  const double from = offsets.front().at;
-  const double third = (offsets.back().at - from) / 3.0;
-  out.offset_first = median_of(offsets, from, from + third);
-  out.offset_last = median_of(offsets, from + 2.0 * third, offsets.back().at);
-  return out;
-}
 
 // A fused body between two frames, with its velocity.
 struct Between {
@@ -135,14 +58,50 @@ std::size_t distance_bin(double distance) {
   return distance < 4.0 ? 2 : 3;
 }
 
+/// One view of a person, and the fused body that it belongs to.
+struct Compared {
+  const SensorFrame& frame;
+  const BodyFrame& view;
+  const Between& fused;
+  const Eigen::Isometry3d& world_from_sensor;
+  const FrameResource& later;
+};
+
+/// Whether the view fits better with left and right exchanged; none: the sides are too close to one
+/// another as seen, or too few are.
+std::optional<bool> fits_exchanged(const Compared& what) {
+  double as_it_is = 0.0;
+  double exchanged = 0.0;
+  double apart = 0.0;
+  for (const auto& [left, right] : kMirrorPairs) {
+    const auto there_left = what.fused.place(left);
+    const auto there_right = what.fused.place(right);
+    const Joint& l = what.view.skeleton[left];
+    const Joint& r = what.view.skeleton[right];
+    if (!there_left || !there_right || !l.seen() || !r.seen()) continue;
+    const Eigen::Vector3d seen_left = what.world_from_sensor * l.position;
+    const Eigen::Vector3d seen_right = what.world_from_sensor * r.position;
+    as_it_is += (seen_left - *there_left).squaredNorm() + (seen_right - *there_right).squaredNorm();
+    exchanged +=
+        (seen_left - *there_right).squaredNorm() + (seen_right - *there_left).squaredNorm();
+    apart = std::max(
+        apart, std::min((seen_left - seen_right).norm(), (*there_left - *there_right).norm()));
+  }
+  if (apart < kSides) return std::nullopt;
+  return exchanged < as_it_is;
+}
+
 }  // namespace
 
 struct SensorJudge::Impl {
   std::map<SensorId, Eigen::Isometry3d> places;
-  std::map<SensorId, Judged> judged;
+  std::map<SensorId, SensorTally> tallies;
   std::deque<SensorFrame> waiting;
   std::optional<FrameResource> before;
   std::optional<Timestamp> origin;
+  double last = 0.0;
+  ViewErrors errors;
+  std::vector<ViewResidual> views;
 
   [[nodiscard]] double time_of(Timestamp time) const {
     return origin ? seconds_of(time - *origin) : 0.0;
@@ -150,8 +109,9 @@ struct SensorJudge::Impl {
   void take(const SensorFrame& frame, const FrameResource& a, const FrameResource& b);
   void compare(const SensorFrame& frame, const BodyFrame& view, const FrameResource& a,
                const FrameResource& b);
-  void residuals(Judged& sensor, const BodyFrame& view, const Between& fused,
-                 const Eigen::Isometry3d& world_from_sensor);
+  void joints(const Compared& what, SensorTally& tally);
+  void trunk(const Compared& what, SensorTally& tally) const;
+  void view_residual(const Compared& what, std::size_t joint, const Eigen::Vector3d& off);
 };
 
 void SensorJudge::Impl::take(const SensorFrame& frame, const FrameResource& a,
@@ -179,32 +139,61 @@ void SensorJudge::Impl::compare(const SensorFrame& frame, const BodyFrame& view,
     nearest = (*at - x_in_world).norm();
     best.emplace(between);
   }
-  if (best) residuals(judged[frame.sensor], view, *best, place->second);
-  if (best && judged[frame.sensor].offsets.size() < kMostSamples)
-    judged[frame.sensor].offsets.push_back(
-        {time_of(frame.captured), x_in_world - *best->place(JointId::SpineBase)});
+  if (!best) return;
+  const Compared what{frame, view, *best, place->second, b};
+  SensorTally& tally = tallies[frame.sensor];
+  joints(what, tally);
+  trunk(what, tally);
+  if (const auto exchanged = fits_exchanged(what)) {
+    ++tally.sided;
+    if (*exchanged) ++tally.exchanged;
+  }
 }
 
-void SensorJudge::Impl::residuals(Judged& sensor, const BodyFrame& view, const Between& fused,
-                                  const Eigen::Isometry3d& world_from_sensor) {
+void SensorJudge::Impl::joints(const Compared& what, SensorTally& tally) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto id = static_cast<JointId>(j);
-    const Joint& joint = view.skeleton[id];
-    const auto there = fused.place(id);
+    const Joint& joint = what.view.skeleton[id];
+    const auto there = what.fused.place(id);
     if (joint.state != JointState::Tracked || !joint.seen() || !there) continue;
-    const Eigen::Vector3d off = world_from_sensor * joint.position - *there;
-    sensor.residuals.add(off.norm());
-    sensor.by_distance[distance_bin(joint.position.norm())].add(off.norm());
+    const Eigen::Vector3d off = what.world_from_sensor * joint.position - *there;
+    tally.residuals.add(off.norm());
+    tally.joints[j].add(off.norm());
+    tally.by_distance[distance_bin(joint.position.norm())].add(off.norm());
+    view_residual(what, j, off);
   }
+}
+
+void SensorJudge::Impl::view_residual(const Compared& what, std::size_t joint,
+                                      const Eigen::Vector3d& off) {
+  const auto& sensors = what.later.sensors;
+  const auto named = std::ranges::find(sensors, what.frame.sensor.str());
+  const auto& fused = what.fused.b.joints[joint];
+  if (named == sensors.end()) return;
+  const auto index = static_cast<std::size_t>(named - sensors.begin());
+  if (index >= kMaxSensors || (fused.contributors >> index & 1U) == 0) return;
+  const bool one = std::has_single_bit(fused.contributors);
+  if (!one && !fused.shares.known()) return;
+  const double variance = fused.covariance.known() ? fused.covariance.matrix().trace() / 3.0
+                                                   : fused.variance.value_or(0.0);
+  views.push_back(
+      {what.fused.b.id, joint, index, off, one ? 1.0 : fused.shares.of(index), variance});
+}
+
+void SensorJudge::Impl::trunk(const Compared& what, SensorTally& tally) const {
   Eigen::Vector3d off = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   for (const JointId id : kCentre) {
-    const auto there = fused.place(id);
-    if (!view.skeleton[id].seen() || !there) return;
-    off += (world_from_sensor * view.skeleton[id].position - *there) / kCentre.size();
-    velocity += fused.velocity(id) / kCentre.size();
+    const auto there = what.fused.place(id);
+    if (!what.view.skeleton[id].seen() || !there) return;
+    off += (what.world_from_sensor * what.view.skeleton[id].position - *there) / kCentre.size();
+    velocity += what.fused.velocity(id) / kCentre.size();
   }
-  if (velocity.norm() > kMoving) sensor.clocks.add(-off.dot(velocity) / velocity.squaredNorm());
+  const double at = time_of(what.frame.captured);
+  if (tally.offsets.size() < kMostOffsets)
+    tally.offsets.push_back({at, off, what.world_from_sensor.linear().transpose() * off});
+  if (velocity.norm() > kMoving && tally.clocks.size() < kMostOffsets)
+    tally.clocks.push_back({at, -off.dot(velocity) / velocity.squaredNorm()});
 }
 
 SensorJudge::SensorJudge() : impl_(std::make_unique<Impl>()) {}
@@ -218,15 +207,8 @@ void SensorJudge::place(std::map<SensorId, Eigen::Isometry3d> world_from_sensor)
 void SensorJudge::add(const SensorFrame& frame) {
   if (!impl_->origin) impl_->origin = frame.captured;
   const double at = impl_->time_of(frame.captured);
-  Judged& sensor = impl_->judged[frame.sensor];
-  if (sensor.frames == 0)
-    sensor.first = at;
-  else
-    sensor.longest_silence = std::max(sensor.longest_silence, at - sensor.last);
-  ++sensor.frames;
-  sensor.last = std::max(sensor.last, at);
-  if (!frame.bodies.empty()) ++sensor.with_people;
-  sensor.lateness.add(seconds_of(frame.received - frame.captured));
+  impl_->tallies[frame.sensor].add(frame, at);
+  impl_->last = std::max(impl_->last, at);
   impl_->waiting.push_back(frame);
   if (impl_->waiting.size() > kMostWaiting) impl_->waiting.pop_front();
 }
@@ -242,6 +224,8 @@ void SensorJudge::add(const FrameResource& fused) {
         impl_->take(frame, *impl_->before, fused);
     }
     waiting = std::move(later);
+    impl_->errors.add(impl_->views);
+    impl_->views.clear();
   }
   std::erase_if(waiting, [&](const SensorFrame& frame) {
     return seconds_of(frame.captured - fused.captured) > kWait;
@@ -251,8 +235,14 @@ void SensorJudge::add(const FrameResource& fused) {
 
 std::map<SensorId, SensorQuality> SensorJudge::finish() {
   std::map<SensorId, SensorQuality> out;
-  for (const auto& [id, sensor] : impl_->judged) out[id] = sensor.quality();
+  double from = 0.0;
+  for (const auto& [id, tally] : impl_->tallies) from = std::min(from, tally.first);
+  for (const auto& [id, tally] : impl_->tallies) out[id] = tally.quality(from, impl_->last);
   return out;
+}
+
+std::array<ViewError, kJointCount> SensorJudge::view_errors() const {
+  return impl_->errors.finish();
 }
 
 }  // namespace chorus::quality

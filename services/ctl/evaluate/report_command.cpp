@@ -2,19 +2,19 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "common/quality/quality_report.h"
+#include "common/record/cell_outline.h"
 #include "common/record/cell_stream.h"
 #include "common/record/recording_files.h"
 #include "common/report/report_files.h"
-#include "fusion-server/wire/registration_file.h"
-#include "fusion-server/wire/registration_nodes.h"
 #include "services/ctl/convert/fused_frames.h"
+#include "services/ctl/evaluate/recorded_quality.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
@@ -31,43 +31,69 @@ struct ReportArguments {
 };
 
 bool is_recording(const std::string& source) {
-  return std::filesystem::is_directory(source) || source.ends_with(".mcap");
+  std::error_code too_long;
+  return source.ends_with(".mcap") || std::filesystem::is_directory(source, too_long);
 }
 
-std::map<SensorId, Eigen::Isometry3d> places_of(const Registration& registration) {
-  std::map<SensorId, Eigen::Isometry3d> places;
-  for (const auto& [id, sensor] : registration.sensors) places[id] = sensor.world_from_sensor;
-  return places;
-}
-
-struct Reading {
-  quality::FusedJudge fused;
-  quality::SensorJudge sensors;
-  std::string verdict;
-  bool any_fused = false;
-
-  void take(const record::SessionItem& item) {
-    if (const auto* frame = std::get_if<SensorFrame>(&item)) return sensors.add(*frame);
-    if (const auto* frame = std::get_if<resource::FrameResource>(&item)) {
-      any_fused = true;
-      fused.add(*frame);
-      return sensors.add(*frame);
-    }
-    const auto registration = wire::read_registration(std::get<std::string>(item));
-    if (!registration) return;  // a recording without places still has fused frames to judge
-    verdict = wire::name_of(registration->verdict);
-    sensors.place(places_of(*registration));
+/// Recordings read side by side, in order of capture: a fused one and those of its sensors.
+class SideBySide {
+ public:
+  explicit SideBySide(const std::vector<record::CellLine>& lines) {
+    record::CellQuery query;
+    query.fused = true;
+    for (const record::CellLine& line : lines)
+      lanes_.push_back({record::CellStream(line.files, query), std::nullopt, false});
   }
+
+  /// None at the end.
+  Result<std::optional<record::SessionItem>> next() {
+    Lane* first = nullptr;
+    for (Lane& lane : lanes_) {
+      if (!lane.item && !lane.ended) {
+        auto item = lane.stream.next();
+        if (!item) return pass(item);
+        lane.item = std::move(*item);
+        lane.ended = !lane.item;
+      }
+      if (lane.item && (first == nullptr || time_of(*lane.item) < time_of(*first->item)))
+        first = &lane;
+    }
+    if (first == nullptr) return std::nullopt;
+    return std::exchange(first->item, std::nullopt);
+  }
+  [[nodiscard]] record::Notes notes() {
+    record::Notes out;
+    for (Lane& lane : lanes_)
+      for (std::string& note : record::notes_of(lane.stream.finish()))
+        out.push_back(std::move(note));
+    return out;
+  }
+
+ private:
+  struct Lane {
+    record::CellStream stream;
+    std::optional<record::SessionItem> item;
+    bool ended = false;
+  };
+
+  /// What is no frame holds from then on, and comes at once.
+  static Timestamp time_of(const record::SessionItem& item) {
+    if (const auto* frame = std::get_if<SensorFrame>(&item)) return frame->captured;
+    const auto* fused = std::get_if<resource::FrameResource>(&item);
+    return fused == nullptr ? Timestamp::min() : fused->captured;
+  }
+
+  std::vector<Lane> lanes_;
 };
 
 Result<quality::RecordingQuality> of_recordings(const std::vector<std::string>& sources) {
   std::vector<std::filesystem::path> inputs(sources.begin(), sources.end());
   const auto files = record::find_recordings(inputs);
   if (!files) return pass(files);
-  record::CellQuery query;
-  query.fused = true;
-  record::CellStream stream(*files, query);
-  Reading reading;
+  const auto lines = record::cell_lines(*files);
+  if (!lines) return pass(lines);
+  SideBySide stream(*lines);
+  RecordedQuality reading;
   Progress progress(std::cerr, on_terminal(), "reading");
   std::size_t items = 0;
   for (auto item = stream.next(); true; item = stream.next()) {
@@ -77,15 +103,15 @@ Result<quality::RecordingQuality> of_recordings(const std::vector<std::string>& 
     if (++items % 20'000 == 0) progress.show(0.0, fmt::format("{} frames", items));
   }
   progress.finish();
-  if (!reading.any_fused)
+  const auto notes = stream.notes();
+  if (!reading.any_fused()) {
+    for (const std::string& note : notes) std::cerr << "note: " << printable(note) << '\n';
     return fail(ErrorCode::NotFound, sources.front(),
                 "holds no fused frames. Fuse it and name both: chorus fuse " + sources.front() +
                     " --out fused.mcap && chorus report fused.mcap " + sources.front());
-  quality::RecordingQuality out;
-  out.fused = reading.fused.finish();
-  out.sensors = reading.sensors.finish();
-  out.verdict = reading.verdict;
-  out.notes = record::notes_of(stream.finish());
+  }
+  quality::RecordingQuality out = reading.finish();
+  out.notes = notes;
   return out;
 }
 
@@ -106,6 +132,8 @@ Result<quality::RecordingQuality> of_frames(const ReportArguments& arguments) {
 }
 
 Result<int> run_report(const ReportArguments& arguments) {
+  for (const std::string& file : arguments.out)
+    if (auto ok = report::may_write_report(file); !ok) return pass(ok);
   const bool recordings =
       std::all_of(arguments.sources.begin(), arguments.sources.end(), is_recording);
   if (!recordings && arguments.sources.size() > 1)
@@ -120,6 +148,9 @@ Result<int> run_report(const ReportArguments& arguments) {
     if (!written) return pass(written);
     std::cerr << "wrote " << file << '\n';
   }
+  for (const std::string& note : quality->notes) std::cerr << "note: " << printable(note) << '\n';
+  for (const std::string& remark : quality::remarks_of(*quality))
+    std::cerr << "note: " << printable(remark) << '\n';
   std::cout << printable(report.verdict) << '\n';
   for (const quality::Finding& finding : quality::findings_of(*quality))
     std::cout << printable(fmt::format("- {}: {}", finding.what, finding.advice)) << '\n';

@@ -23,6 +23,7 @@ RecordingQuality healthy() {
     SensorQuality sensor;
     sensor.rate = 30.0;
     sensor.residual = 0.03;
+    sensor.compared = 1000;
     quality.sensors[testing::sensor_id(id)] = sensor;
   }
   return quality;
@@ -39,22 +40,86 @@ TEST(Findings, OfAHealthyRecordingAreNone) {
   EXPECT_EQ(report_of(healthy()).judgement, report::Judgement::Good);
 }
 
+SensorQuality& sensor(RecordingQuality& quality, const char* id) {
+  return quality.sensors[testing::sensor_id(id)];
+}
+
 TEST(Findings, NameTheFaultyPart) {
   RecordingQuality quality = healthy();
-  quality.sensors[testing::sensor_id("s2")].offset_last = {0.08, 0.0, 0.0};
-  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s2 was moved")));
-  quality = healthy();
-  quality.sensors[testing::sensor_id("s3")].clock = -0.12;
-  EXPECT_THAT(what(quality), ElementsAre("the clock of s3 is off by -120 ms"));
-  quality = healthy();
   quality.fused.joints[6].missing = 0.14;
   EXPECT_THAT(what(quality), ElementsAre("WristLeft is missing in 14 %"));
   quality = healthy();
-  quality.sensors[testing::sensor_id("s1")].residual = 0.2;
+  sensor(quality, "s1").residual = 0.2;
   EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s1 disagrees with the others")));
   quality = healthy();
-  quality.sensors[testing::sensor_id("s1")].rate = 9.0;
+  sensor(quality, "s1").rate = 9.0;
   EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s1 delivers 9.0 frames/s, the others 30.0")));
+  quality = healthy();
+  sensor(quality, "s2").lateness = 0.4;
+  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s2 is late")));
+  quality = healthy();
+  sensor(quality, "s3").repeated = 0.5;
+  EXPECT_THAT(what(quality), ElementsAre("s3 says the same again in 50 % of its frames"));
+  quality = healthy();
+  sensor(quality, "s3").exchanged = 0.9;
+  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s3 exchanges left and right")));
+}
+
+TEST(Findings, BlameTheSensorThatMovedNotThoseThatTheFusedBodyMovedAwayFrom) {
+  RecordingQuality quality = healthy();
+  sensor(quality, "s1").offset_last = {-0.06, 0.0, 0.0};
+  sensor(quality, "s2").offset_last = {0.12, 0.0, 0.0};
+  sensor(quality, "s3").offset_last = {-0.06, 0.0, 0.0};
+  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s2 was moved: its views changed by 180 mm")));
+  quality = healthy();
+  sensor(quality, "s1").clock = sensor(quality, "s2").clock = 0.04;
+  sensor(quality, "s3").clock = -0.08;
+  EXPECT_THAT(what(quality), ElementsAre("the clock of s3 is off by -120 ms"));
+}
+
+TEST(Findings, OfTwoSensorsNameBoth) {
+  RecordingQuality quality = healthy();
+  quality.sensors.erase(testing::sensor_id("s3"));
+  sensor(quality, "s1").offset_last = {-0.06, 0.0, 0.0};
+  sensor(quality, "s2").offset_last = {0.06, 0.0, 0.0};
+  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s1 or s2 was moved")));
+}
+
+TEST(Findings, WhatAllSensorsDoAlikeIsNobodysFault) {
+  RecordingQuality quality = healthy();
+  for (auto& [id, figures] : quality.sensors) figures.offset_in_sensor = {0.0, 0.0, -0.12};
+  EXPECT_THAT(what(quality), ::testing::IsEmpty()) << "a depth bias is no place";
+}
+
+TEST(Findings, NameJointsThatAreLostTogetherOnce) {
+  RecordingQuality quality = healthy();
+  quality.fused.shares["s1"] = 1.0;
+  for (const JointId id : {JointId::WristLeft, JointId::HandLeft})
+    quality.fused.joints[index_of(id)].unseen = 0.3;
+  EXPECT_THAT(what(quality), ElementsAre("WristLeft, HandLeft are guessed in 30 %"));
+  for (auto& joint : quality.fused.joints) joint.unseen = 0.0;
+  for (const JointId id : {JointId::ThumbLeft, JointId::ThumbRight})
+    quality.fused.joints[index_of(id)].missing = 1.0;
+  EXPECT_THAT(what(quality), ::testing::IsEmpty()) << "this model of a body has no thumbs";
+  EXPECT_THAT(remarks_of(quality),
+              ::testing::Contains("no sensor ever reports ThumbLeft, ThumbRight"));
+}
+
+TEST(Findings, SayWhenErrorsAreLargerThanStated) {
+  RecordingQuality quality = healthy();
+  for (auto& each : quality.views) each = {0.06, 0.02};
+  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("errors are 3.0 times as large as stated")));
+}
+
+TEST(Findings, SayWhatCannotBeTold) {
+  RecordingQuality quality = healthy();
+  for (auto& [id, figures] : quality.sensors) figures.compared = 100;
+  EXPECT_THAT(remarks_of(quality), ::testing::IsEmpty());
+  quality.verdict = "";
+  EXPECT_THAT(remarks_of(quality), ElementsAre(HasSubstr("no registration was recorded")));
+  quality.verdict = "Good";
+  for (auto& [id, figures] : quality.sensors) figures.compared = 0;
+  EXPECT_THAT(remarks_of(quality), ElementsAre(HasSubstr("do the recordings share a time")));
 }
 
 TEST(Findings, PutTheWorstFirstAndIntoTheVerdict) {

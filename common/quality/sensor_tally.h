@@ -1,0 +1,45 @@
+// What is counted of one sensor.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/quality/sample.h"
+#include "common/quality/sensor_quality.h"
+
+namespace chorus::quality {
+
+struct SensorTally {
+  struct Offset {
+    double at;  ///< [s]
+    Eigen::Vector3d in_world;
+    Eigen::Vector3d in_sensor;
+  };
+  struct ClockError {
+    double at;
+    double late;  ///< [s]
+  };
+
+  std::size_t frames = 0;
+  std::size_t with_people = 0;
+  std::size_t rays = 0;
+  std::size_t repeated = 0;
+  double first = 0.0;
+  double last = 0.0;
+  double longest_silence = 0.0;
+  Sample lateness, residuals;
+  std::array<Sample, kJointCount> joints;
+  std::array<Sample, 4> by_distance;
+  std::vector<Offset> offsets;
+  std::vector<ClockError> clocks;
+  std::size_t sided = 0;  ///< Views that tell left from right.
+  std::size_t exchanged = 0;
+  std::vector<BodyFrame> before;  ///< Of its last frame with somebody.
+
+  /// A frame of the sensor, captured at `at` [s].
+  void add(const SensorFrame& frame, double at);
+  /// `from` and `to`: the recording's first and last capture [s].
+  [[nodiscard]] SensorQuality quality(double from, double to) const;
+};
+
+}  // namespace chorus::quality

@@ -1,0 +1,51 @@
+#include "common/quality/view_errors.h"
+
+#include <random>
+
+#include <gmock/gmock.h>
+
+namespace chorus::quality {
+namespace {
+
+constexpr std::size_t kTheWrist = 6;
+
+/// Views with independent noise, fused with these shares.
+ViewErrors fused_views(const std::vector<double>& sigmas, const std::vector<double>& shares,
+                       double stated) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  ViewErrors errors;
+  for (int i = 0; i < 20'000; ++i) {
+    std::vector<Eigen::Vector3d> views;
+    Eigen::Vector3d fused = Eigen::Vector3d::Zero();
+    for (std::size_t s = 0; s < sigmas.size(); ++s) {
+      views.push_back(sigmas[s] * Eigen::Vector3d(normal(random), normal(random), normal(random)));
+      fused += shares[s] * views[s];
+    }
+    std::vector<ViewResidual> step;
+    for (std::size_t s = 0; s < sigmas.size(); ++s)
+      step.push_back({1, kTheWrist, s, views[s] - fused, shares[s], stated * stated});
+    errors.add(step);
+  }
+  return errors;
+}
+
+TEST(ViewErrors, FindTheErrorOfTheMeanFromHowItsViewsDisagree) {
+  // sqrt(sum (w s)^2) = 5.48 mm
+  const auto wrist = fused_views({0.01, 0.02, 0.03}, {0.5, 0.3, 0.2}, 0.004).finish()[kTheWrist];
+  EXPECT_NEAR(wrist.found, std::sqrt(0.005 * 0.005 + 0.006 * 0.006 + 0.006 * 0.006), 0.0002);
+  EXPECT_NEAR(wrist.stated, 0.004, 1e-9);
+}
+
+TEST(ViewErrors, OfTwoViewsTheyFindItToo) {
+  const auto wrist = fused_views({0.02, 0.02}, {0.5, 0.5}, 0.01).finish()[kTheWrist];
+  EXPECT_NEAR(wrist.found, 0.02 / std::sqrt(2.0), 0.0006);
+}
+
+TEST(ViewErrors, OfOneViewAndOfNoneAreUnknown) {
+  EXPECT_TRUE(std::isnan(fused_views({0.02}, {1.0}, 0.01).finish()[kTheWrist].found));
+  EXPECT_TRUE(std::isnan(ViewErrors().finish()[0].found));
+}
+
+}  // namespace
+}  // namespace chorus::quality
