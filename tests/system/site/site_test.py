@@ -37,9 +37,9 @@ class Site(Hall):
     def meet(self, a, b):
         for cell, other in ((a, "b"), (b, "a")):
             wait_for("the other cell is heard", lambda cell=cell, other=other: self.states(cell).get(other) == "heard")
-            self.assertTrue(self.cells(cell)["siteCells"][other]["placed"])
+            wait_for("its place is known", lambda cell=cell, other=other: self.cells(cell)["siteCells"][other]["placed"])
         # Whom each named alone is one person: the ids are joined the first time that both see them.
-        wait_for("both know one person under one id", lambda: self.one_id(a, b))
+        wait_for("both see one person under one id", lambda: self.one_id(a, b) and self.seen_by(a) == set(demo_hall.CELLS))
         ids, owners = set(), set()
         deadline = time.monotonic() + 18  # one lap takes 15.7 s
         while time.monotonic() < deadline:
@@ -56,6 +56,9 @@ class Site(Hall):
     def one_id(self, a, b):
         here, there = self.people(a), self.people(b)
         return len(here) == 1 and here.keys() == there.keys()
+
+    def seen_by(self, cell):
+        return {name for person in self.people(cell).values() for name in person["cells"]}
 
     def frames_agree(self, a):
         """/site/frame has the person under the number that /site/people/ says, where it says."""
@@ -146,7 +149,7 @@ class Site(Hall):
         wait_for("b itself is heard all the same", lambda: self.states(a).get("b") == "heard")
 
     def a_wrong_password(self):
-        c = self.start_cell("c", {}, **{"site.password": "wrong"})
+        c = self.start_cell("c", {}, **{"site.password": "wrong", "registration.file": ""})
         wait_for("it says so", lambda: "refuses the user or the password" in self.cells(c).get("trouble", ""))
         self.assertFalse(self.cells(c)["connected"])
         self.assertTrue(c.alive())
