@@ -78,7 +78,7 @@ TEST(InitSite, WritesWhatTheFusionServerReadsAfterJoining) {
   EXPECT_EQ(again.code, kExitFailed);
   EXPECT_THAT(again.error, HasSubstr("already"));
   EXPECT_EQ(run_chorus({"init", "site", "--name", "hall", "--cell", "a", "--out", site}).code,
-            kExitFailed)
+            kExitUsage)
       << "nothing is overwritten";
 }
 
