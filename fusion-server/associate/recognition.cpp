@@ -24,7 +24,9 @@ constexpr double kSure = 5.0;     // Log odds by which the likeliest answer is c
 constexpr double kSureOfNewcomer = 3.0;
 // Log odds of being the same below which a track is questioned.
 constexpr double kInQuestion = 2.0;
-// Log odds by which another answer has to be likelier than the id in use.
+// Log odds by which another answer has to be likelier than the id in use, after a second in view;
+// half as much after two seconds, and so on: what is seen for longer is less of a swing of the
+// sensors.
 constexpr double kTurn = 2.0;
 // Log odds, against the likeliest other answer, below which an id is withheld.
 constexpr double kUnlikely = -0.5;
@@ -152,9 +154,10 @@ bool is_decided(const Question& question, const CostTable& table, std::size_t ro
     (i == known ? best : rival) = i == known ? odds : std::max(rival, odds);
   }
   if (!anybody) return true;
-  // An id in use is given up for a reason only: what is not clear yet may become so.
-  if (question.doubt && known != question.own && best - (-table.at(row, *question.own)) < kTurn)
-    return false;
+  // An id in use is given up for a clear reason only: what is not clear yet may become so.
+  const bool other = question.doubt && known != question.own;
+  const double turn = kTurn / std::max(1.0, sight_of(question.build));
+  if (other && best + table.at(row, *question.own) < turn) return false;
   if (is_looked_at(question.build)) return true;
   if (!question.doubt && instant - question.since > kNoBones) return true;
   return is_glance(question.build) && best - rival > (question.doubt ? kSure : kSureOfNewcomer);
