@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fusion-server/core/adoption.h"
 #include "tests/support/builders.h"
 #include "tests/unit/core/sessions.h"
 
