@@ -11,8 +11,8 @@
 namespace chorus::facing {
 namespace {
 
-constexpr Timestamp kStart{std::chrono::seconds(1'700'000'000)};
-constexpr Duration kFrame = std::chrono::milliseconds(33);
+constexpr Timestamp kFirstSight{std::chrono::seconds(1'700'000'000)};
+constexpr Duration kSightInterval = std::chrono::milliseconds(33);
 
 /// The view of a sensor at +z of somebody who faces `heading`, as a tracker shows it that took them
 /// to face it (`exchanged_labels`) or not.
@@ -31,14 +31,14 @@ class Watch {
   bool shows(double heading, bool exchanged_labels, JointState collar = JointState::Tracked) {
     Person person{PersonId{1}, {view_of(heading, exchanged_labels, collar)}};
     resolve_sides_by_shoulders(person, now_, memory_);
-    now_ += kFrame;
+    now_ += kSightInterval;
     facing_ = person.views.front().facing;
     return is_right(person.views.front(), body_at(Eigen::Vector3d::Zero(), heading));
   }
   [[nodiscard]] double facing() const { return facing_; }
 
  private:
-  Timestamp now_ = kStart;
+  Timestamp now_ = kFirstSight;
   double facing_ = 0.0;
   ShoulderMemory memory_;
 };
@@ -79,7 +79,7 @@ TEST(ShoulderSides, AreChosenByTheConfiguration) {
   config.by = SidesBy::Shoulders;
   SidesMemory memory;
   Person person{PersonId{1}, {view_of(deg(180), true, JointState::Inferred)}};
-  resolve_sides(person, kStart, memory, config);
+  resolve_sides(person, kFirstSight, memory, config);
   EXPECT_TRUE(is_right(person.views.front(), body_at(Eigen::Vector3d::Zero(), deg(180))));
   EXPECT_FALSE(person.sides_confidence);
   EXPECT_TRUE(memory.people.empty());

@@ -15,7 +15,7 @@ Misfit misfit(double scale, double turn, double side_on) {
   return {scale, turn, kSmall, kSmall, side_on};
 }
 
-BodyModel after(double length, const std::array<Misfit, 2>& misfits, const BodyModel& model = {}) {
+BodyModel model_after(double length, const std::array<Misfit, 2>& misfits, const BodyModel& model = {}) {
   MisfitSize size;
   for (double passed = 0.0; passed < length; passed += kFrame) size.learn(misfits, kFrame, model);
   return size.found(model);
@@ -28,14 +28,14 @@ TEST(MisfitSize, IsThatOfTheConfigurationUntilSomethingIsSeen) {
 
 TEST(MisfitSize, BecomesThatOfWhatIsFound) {
   const std::array found{misfit(0.02, 0.1, 1.0), misfit(-0.02, -0.1, 1.0)};
-  EXPECT_NEAR(after(30.0, found).scale, 0.02, 0.001);
-  EXPECT_NEAR(after(30.0, found).turn, 0.1, 0.005);
+  EXPECT_NEAR(model_after(30.0, found).scale, 0.02, 0.001);
+  EXPECT_NEAR(model_after(30.0, found).turn, 0.1, 0.005);
 }
 
 TEST(MisfitSize, OfSensorsThatAreRightFallsWithinSeconds) {
   const std::array found{misfit(0.0, 0.0, 1.0), misfit(0.0, 0.0, 0.8)};
-  EXPECT_LT(after(4.0, found).turn, 0.6 * BodyModel{}.turn);
-  EXPECT_GT(after(0.2, found).turn, 0.8 * BodyModel{}.turn);
+  EXPECT_LT(model_after(4.0, found).turn, 0.6 * BodyModel{}.turn);
+  EXPECT_GT(model_after(0.2, found).turn, 0.8 * BodyModel{}.turn);
 }
 
 TEST(MisfitSize, StaysWhereViewsSayNothing) {
@@ -45,21 +45,21 @@ TEST(MisfitSize, StaysWhereViewsSayNothing) {
     each.scale_variance = model.scale * model.scale;
     each.turn_variance = model.turn * model.turn;
   }
-  EXPECT_NEAR(after(30.0, found).scale, model.scale, 1e-6);
-  EXPECT_NEAR(after(30.0, found).turn, model.turn, 1e-6);
+  EXPECT_NEAR(model_after(30.0, found).scale, model.scale, 1e-6);
+  EXPECT_NEAR(model_after(30.0, found).turn, model.turn, 1e-6);
 }
 
 TEST(MisfitSize, FrontalViewsSayNothingOfTurns) {
   const std::array found{misfit(0.0, 0.0, 0.0), misfit(0.0, 0.0, 0.2)};
-  EXPECT_EQ(after(30.0, found).turn, BodyModel{}.turn);
+  EXPECT_EQ(model_after(30.0, found).turn, BodyModel{}.turn);
 }
 
 TEST(MisfitSize, WhatIsSwitchedOffStaysOff) {
   BodyModel model;
   model.turn = 0.0;
   const std::array found{misfit(0.02, 0.1, 1.0), misfit(0.02, 0.1, 1.0)};
-  EXPECT_EQ(after(30.0, found, model).turn, 0.0);
-  EXPECT_GT(after(30.0, found, model).scale, 0.0);
+  EXPECT_EQ(model_after(30.0, found, model).turn, 0.0);
+  EXPECT_GT(model_after(30.0, found, model).scale, 0.0);
 }
 
 }  // namespace

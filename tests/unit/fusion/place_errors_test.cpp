@@ -35,7 +35,7 @@ Person seen_by(const std::vector<int>& numbers, const Vector6& error) {
   return person;
 }
 
-FusionConfig by(Method method) {
+FusionConfig by_method(Method method) {
   FusionConfig config;
   config.method = method;
   return config;
@@ -57,8 +57,8 @@ TEST(PlaceErrors, AreAddedByEveryMethodAndMoveNoJoint) {
   for (const Method method :
        {Method::Otto, Method::Mean, Method::BestView, Method::InverseVariance, Method::BestSkeleton,
         Method::OttoKalman, Method::PointsAndRays, Method::BodyFilter}) {
-    const FusedBody exact = fuse(seen_by({1, 2, 3, 4}, Vector6::Zero()), kSensors, by(method));
-    const FusedBody open = fuse(seen_by({1, 2, 3, 4}, kAside), kSensors, by(method));
+    const FusedBody exact = fuse(seen_by({1, 2, 3, 4}, Vector6::Zero()), kSensors, by_method(method));
+    const FusedBody open = fuse(seen_by({1, 2, 3, 4}, kAside), kSensors, by_method(method));
     const std::size_t wrist = index_of(JointId::WristLeft);
     EXPECT_EQ(open.skeleton.joints[wrist].position, exact.skeleton.joints[wrist].position);
     const Eigen::Matrix3d more = open.skeleton.joints[wrist].covariance.matrix() -

@@ -16,26 +16,26 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string head_of(const Document& document, std::string_view accept) {
+std::string page_head_of(const Document& document, std::string_view accept) {
   const auto chosen = document.choose(accept);
   return chosen ? std::string((*chosen)->head()) : std::string();
 }
 
-std::string head_of(std::string type) {
+std::string page_head_of(std::string type) {
   std::vector<Variant> variants;
   variants.push_back({std::move(type), [] { return std::string("<p>"); }});
-  return head_of(Document(std::move(variants), {"1"}), "");
+  return page_head_of(Document(std::move(variants), {"1"}), "");
 }
 
 TEST(PageLines, EveryPageHasThemWhoeverMadeIt) {
   for (const char* type : {"text/html", "text/html; charset=utf-8", "TEXT/HTML", "image/svg+xml",
                            "application/xhtml+xml"}) {
-    EXPECT_THAT(head_of(type), HasSubstr("frame-ancestors 'none'\r\n")) << type;
-    EXPECT_THAT(head_of(type), HasSubstr("Content-Security-Policy: default-src 'none'; ")) << type;
-    EXPECT_THAT(head_of(type), HasSubstr("X-Frame-Options: DENY\r\n")) << type;
+    EXPECT_THAT(page_head_of(type), HasSubstr("frame-ancestors 'none'\r\n")) << type;
+    EXPECT_THAT(page_head_of(type), HasSubstr("Content-Security-Policy: default-src 'none'; ")) << type;
+    EXPECT_THAT(page_head_of(type), HasSubstr("X-Frame-Options: DENY\r\n")) << type;
   }
-  EXPECT_THAT(head_of("application/json"), Not(HasSubstr("Content-Security-Policy")));
-  EXPECT_THAT(head_of("text/plain"), Not(HasSubstr("Content-Security-Policy")));
+  EXPECT_THAT(page_head_of("application/json"), Not(HasSubstr("Content-Security-Policy")));
+  EXPECT_THAT(page_head_of("text/plain"), Not(HasSubstr("Content-Security-Policy")));
 }
 
 TEST(PageLines, FilesHaveThoseOfTheirPage) {
@@ -44,7 +44,7 @@ TEST(PageLines, FilesHaveThoseOfTheirPage) {
   std::ofstream(folder / "worker.js") << "1";
   const auto policy = [&](const FilesAre& about, const char* file) {
     StaticFiles files((folder / "").string(), about);
-    return head_of(**files.document(file), "");
+    return page_head_of(**files.document(file), "");
   };
   EXPECT_THAT(policy({{}, Page::Capture}, "index.html"), HasSubstr("'wasm-unsafe-eval'"));
   EXPECT_THAT(policy({{}, Page::Capture}, "worker.js"), HasSubstr("'wasm-unsafe-eval'"))
@@ -68,7 +68,7 @@ TEST(PageLines, ThePagesOwnImportMapMayRunAndNoOtherScriptInIt) {
   std::ofstream(folder / "index.html")
       << "<html><script type=\"importmap\">{}</script><script>evil()</script>";
   StaticFiles viewer((folder / "").string(), {{}, Page::Viewer});
-  EXPECT_THAT(head_of(**viewer.document("index.html"), ""),
+  EXPECT_THAT(page_head_of(**viewer.document("index.html"), ""),
               HasSubstr("script-src 'self' " + std::string(kHash) + "; connect-src 'self'"));
   EXPECT_THAT(page_lines(Page::Viewer), Not(HasSubstr("sha256")));
   EXPECT_THAT(page_lines(Page::Plain, "{}"), Not(HasSubstr("sha256"))) << "it runs no script";
