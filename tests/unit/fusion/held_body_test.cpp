@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kStep = 1.0 / 30.0;  // [s]
+constexpr double kBetweenSights = 1.0 / 30.0;  // [s]
 constexpr std::size_t kPelvis = index_of(JointId::SpineBase);
 
 PlacedBody body_at(const Eigen::Vector3d& place) {
@@ -44,8 +44,8 @@ struct Held {
 
   void by_several(const Eigen::Vector3d& velocity, const std::optional<double>& ratio, int frames) {
     for (int i = 0; i < frames; ++i) {
-      held.predict(kStep);
-      place += kStep * velocity;
+      held.predict(kBetweenSights);
+      place += kBetweenSights * velocity;
       held.take(body_at(place));
       if (ratio) held.compare(shown(1, body_at(place), ratio), body_at(place));
     }
@@ -56,8 +56,8 @@ struct Held {
                                                      int frames) {
     std::optional<PlacedBody> found;
     for (int i = 0; i < frames; ++i) {
-      held.predict(kStep);
-      place += kStep * velocity;
+      held.predict(kBetweenSights);
+      place += kBetweenSights * velocity;
       found = held.follow(shown(1, body_at(place), ratio));
     }
     if (!found) return {Eigen::Vector3d::Constant(1e9), Eigen::Matrix3d::Zero()};
@@ -103,7 +103,7 @@ TEST(HeldBody, StatesMoreTheLongerOneCameraIsLeft) {
 
 TEST(HeldBody, NothingIsHeldOfWhomSeveralHaveNotSeen) {
   HeldBody held{BodyModel{}};
-  held.predict(kStep);
+  held.predict(kBetweenSights);
   EXPECT_FALSE(held.follow(shown(1, body_at({0, 0, 0}), std::nullopt)));
   EXPECT_FALSE(held.follow(shown(1, body_at({0, 0, 0}), 0.0)))
       << "without lengths a guess is what it was";
