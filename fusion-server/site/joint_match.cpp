@@ -59,6 +59,15 @@ std::vector<Hypothesis> hypotheses_of(const std::vector<Row>& rows, const Common
 
 }  // namespace
 
+Likeliest likeliest_of(const JointMatch& match, std::size_t ours,
+                       const std::function<bool(std::size_t)>& allowed) {
+  Likeliest best{{}, match.none[ours]};
+  for (std::size_t j = 0; j < match.columns; ++j) {
+    if (match.at(ours, j) > best.probability && allowed(j)) best = {j, match.at(ours, j)};
+  }
+  return best;
+}
+
 JointMatch match_jointly(MatchSize size, std::span<const PossiblePair> pairs,
                          const CommonError& error) {
   std::vector<Row> rows(size.ours);

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +35,14 @@ struct JointMatch {
     return pairs[ours * columns + theirs];
   }
 };
+
+/// The best of a row: one of theirs, or nobody.
+struct Likeliest {
+  std::optional<std::size_t> theirs;
+  double probability = 0.0;
+};
+[[nodiscard]] Likeliest likeliest_of(const JointMatch& match, std::size_t ours,
+                                     const std::function<bool(std::size_t)>& allowed);
 
 struct MatchSize {
   std::size_t ours = 0;

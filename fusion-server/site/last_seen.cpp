@@ -37,6 +37,15 @@ void remember(LastSights& sights, const SiteId& id, const LastSight& sight) {
   if (!fresh && at->second.at < sight.at) at->second = sight;
 }
 
+Gone listed(const LastSights& sights) {
+  Gone gone;
+  for (const auto& [id, sight] : sights) {
+    gone.ids.push_back(id);
+    gone.sights.push_back(sight);
+  }
+  return gone;
+}
+
 void forget_before(LastSights& sights, Timestamp oldest) {
   std::erase_if(sights, [&](const auto& each) { return each.second.at < oldest; });
 }

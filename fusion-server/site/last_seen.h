@@ -29,6 +29,13 @@ struct Newcomer {
   associate::StatedBuild lengths;
 };
 
+/// The people of a map in its order, as match_returning() takes them.
+struct Gone {
+  std::vector<SiteId> ids;
+  std::vector<LastSight> sights;
+};
+[[nodiscard]] Gone listed(const LastSights& sights);
+
 /// Keeps the newer sight; those of before `oldest` are forgotten.
 void remember(LastSights& sights, const SiteId& id, const LastSight& sight);
 void forget_before(LastSights& sights, Timestamp oldest);

@@ -12,7 +12,7 @@ constexpr std::size_t kMaxAliases = 100'000;
 constexpr std::size_t kMaxSights = 10'000;
 constexpr int kLongestChain = 32;  // of aliases
 constexpr double kProbable = 0.5;
-constexpr double kEvidence = 0.45;  // [s]: half a second, less one period of the samples
+constexpr double kEvidence = 0.40;  // [s]: half a second, less a period of the samples
 // Two bodies are elsewhere from one another beyond this [m], besides what places explain.
 constexpr double kApart = 1.0;
 constexpr double kSigmas = 3.0;
@@ -21,6 +21,8 @@ constexpr double kMostBetween = 1.0;
 
 bool given_by(const std::optional<SiteId>& id, const SiteId& wanted) { return id && *id == wanted; }
 
+}  // namespace
+
 Newcomer newcomer_of(const HeardCell& ours, PersonId body) {
   const HeardBody& heard = ours.bodies.at(body);
   Newcomer newcomer{heard.last.since + ours.to_ours, heard.appeared, heard.last.lengths};
@@ -28,13 +30,22 @@ Newcomer newcomer_of(const HeardCell& ours, PersonId body) {
   return newcomer;
 }
 
-}  // namespace
-
 std::optional<Sample> where_is(const HeardCell& cell, PersonId body) {
   const auto found = cell.bodies.find(body);
   if (!cell.place || found == cell.bodies.end()) return std::nullopt;
   if (found->second.trail.samples().empty()) return std::nullopt;
   return in_site(cell.place->site_from_cell, found->second.trail.samples().back());
+}
+
+associate::Repeatability repeatability_in(const Hearing& hearing) {
+  associate::Repeatability most;
+  double learned = 0.0;
+  for (const auto& [id, cell] : *hearing.others) {
+    if (cell.learned <= learned) continue;
+    learned = cell.learned;
+    most = cell.repeatability;
+  }
+  return most;
 }
 
 bool far_apart(const HeardCell& theirs, const Sample& a, const Sample& b) {
@@ -219,8 +230,8 @@ bool Names::name_by_sight(const Hearing& hearing, PersonId body, OwnName& name) 
   return true;
 }
 
-std::map<SiteId, LastSight> Names::missing(const Hearing& hearing) const {
-  std::map<SiteId, LastSight> all;
+LastSights Names::missing(const Hearing& hearing) const {
+  LastSights all;
   for (const auto& [id, sight] : sights_) {
     if (aliases_.contains(id) || borne_by_another(hearing, id, PersonId{})) continue;
     if (tellings(hearing, id).empty()) all.emplace(id, sight);
@@ -229,38 +240,27 @@ std::map<SiteId, LastSight> Names::missing(const Hearing& hearing) const {
 }
 
 void Names::name_returning(const Hearing& hearing, const std::vector<PersonId>& bodies) {
-  const std::map<SiteId, LastSight> gone =
-      hearing.ours->place ? missing(hearing) : std::map<SiteId, LastSight>{};
+  const LastSights gone = hearing.ours->place ? missing(hearing) : LastSights{};
   std::vector<Newcomer> newcomers;
   for (const PersonId body : bodies) newcomers.push_back(newcomer_of(*hearing.ours, body));
-  std::vector<LastSight> sights;
-  std::vector<SiteId> ids;
-  for (const auto& [id, sight] : gone) {
-    ids.push_back(id);
-    sights.push_back(sight);
-  }
-  const JointMatch match = match_returning(newcomers, sights, hearing.ours->repeatability);
+  const Gone sights = listed(gone);
+  const JointMatch match = match_returning(newcomers, sights.sights, repeatability_in(hearing));
   std::set<SiteId> taken;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     OwnName& name = names_.at(bodies[i]);
+    const Likeliest best = likeliest_of(match, i, [&](std::size_t j) {
+      return !taken.contains(sights.ids[j]) && !name.refused.contains(sights.ids[j]);
+    });
+    const SiteId id = best.theirs ? sights.ids[*best.theirs] : new_id(hearing);
+    if (best.theirs) taken.insert(id);
+    give(hearing, name, id, best.probability);
     name.by_sight = false;
     name.candidates = gone;
-    std::optional<std::size_t> best;
-    double most = match.none[i];
-    for (std::size_t j = 0; j < ids.size(); ++j) {
-      if (match.at(i, j) <= most || taken.contains(ids[j]) || name.refused.contains(ids[j]))
-        continue;
-      best = j;
-      most = match.at(i, j);
-    }
-    const SiteId id = best ? ids[*best] : new_id(hearing);
-    give(hearing, name, id, most);
-    if (best) taken.insert(id);
-    tell(hearing, {best ? SiteEventKind::Returned : SiteEventKind::Named,
+    tell(hearing, {best.theirs ? SiteEventKind::Returned : SiteEventKind::Named,
                    {},
                    id,
                    {},
-                   best ? sights[*best].cell : CellId{}});
+                   best.theirs ? sights.sights[*best.theirs].cell : CellId{}});
   }
 }
 

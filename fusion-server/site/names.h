@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fusion-server/site/last_seen.h"
+#include "fusion-server/site/matching.h"
 #include "fusion-server/site/ownership.h"
 #include "fusion-server/site/site.h"
 
@@ -24,7 +25,7 @@ struct OwnName {
   Timestamp last;         ///< When the body was last told.
   bool by_sight = false;  ///< The name came from a cell that saw the person at the same time.
   /// Whom nobody saw when the body was named: for second thoughts, as lengths get known.
-  std::map<SiteId, LastSight> candidates;
+  LastSights candidates;
   std::set<SiteId> refused;            ///< Ids that turned out to be somebody else's.
   std::optional<Timestamp> disputed;   ///< Since when another cell has told `id` elsewhere.
   std::map<SiteId, Timestamp> rivals;  ///< Since when a match has borne another id.
@@ -95,7 +96,7 @@ class Names {
                                const Telling& teller) const;
   [[nodiscard]] bool borne_by_another(const Hearing& hearing, const SiteId& id,
                                       PersonId body) const;
-  [[nodiscard]] std::map<SiteId, LastSight> missing(const Hearing& hearing) const;
+  [[nodiscard]] LastSights missing(const Hearing& hearing) const;
 
   CellId own_;
   SiteConfig config_;
@@ -109,6 +110,10 @@ class Names {
 /// Where one of our bodies was last seen, in the site; none: our cell has no place, or the body was
 /// never seen.
 [[nodiscard]] std::optional<Sample> where_is(const HeardCell& cell, PersonId body);
+/// One of our bodies as it came.
+[[nodiscard]] Newcomer newcomer_of(const HeardCell& ours, PersonId body);
+/// How well lengths repeat from cell to cell: of the neighbour of whom most was learned.
+[[nodiscard]] associate::Repeatability repeatability_in(const Hearing& hearing);
 /// Two sights that are farther apart than people and places explain.
 [[nodiscard]] bool far_apart(const HeardCell& theirs, const Sample& a, const Sample& b);
 

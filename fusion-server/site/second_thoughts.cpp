@@ -21,37 +21,34 @@ constexpr double kSeenLong = 0.45;  // [s]
 void Names::reconsider(const Hearing& hearing) {
   std::vector<PersonId> young;
   std::vector<Newcomer> newcomers;
-  std::map<SiteId, LastSight> candidates;
+  LastSights candidates;
   for (const auto& [body, heard] : hearing.ours->bodies) {
     OwnName& name = names_.at(body);
     if (hearing.now - heard.found > config_.evidence + kYoung) name.candidates.clear();
     if (!name.id || name.by_sight || name.candidates.empty()) continue;
     young.push_back(body);
-    Newcomer newcomer{heard.last.since + hearing.ours->to_ours, heard.appeared, heard.last.lengths};
-    if (hearing.ours->place) newcomer.place = hearing.ours->place->site_from_cell * heard.appeared;
-    newcomers.push_back(newcomer);
+    newcomers.push_back(newcomer_of(*hearing.ours, body));
     candidates.insert(name.candidates.begin(), name.candidates.end());
   }
   if (young.empty()) return;
-  std::vector<LastSight> sights;
-  for (const auto& [id, sight] : candidates) sights.push_back(sight);
-  const JointMatch match = match_returning(newcomers, sights, hearing.ours->repeatability);
+  // Whom another cell has found again meanwhile is none of ours.
+  std::erase_if(candidates, [&](const auto& each) {
+    return !borne_by_another(hearing, each.first, PersonId{}) &&
+           !tellings(hearing, each.first).empty();
+  });
+  const Gone gone = listed(candidates);
+  const JointMatch match = match_returning(newcomers, gone.sights, repeatability_in(hearing));
   for (std::size_t i = 0; i < young.size(); ++i) {
     OwnName& name = names_.at(young[i]);
-    std::size_t column = 0;
-    std::optional<SiteId> best;
-    double most = match.none[i];
-    double present_one = candidates.contains(*name.id) ? 0.0 : match.none[i];
-    for (const auto& [id, sight] : candidates) {
-      const double probability = match.at(i, column++);
-      if (id == *name.id) present_one = probability;
-      if (probability > most && !name.refused.contains(id)) {
-        most = probability;
-        best = id;
-      }
-    }
-    name.certainty = present_one;
-    if (most > kDecided) follow_thought(hearing, young[i], best, most);
+    const auto own = std::ranges::find(gone.ids, *name.id);
+    name.certainty = own == gone.ids.end()
+                         ? match.none[i]
+                         : match.at(i, static_cast<std::size_t>(own - gone.ids.begin()));
+    const Likeliest best =
+        likeliest_of(match, i, [&](std::size_t j) { return !name.refused.contains(gone.ids[j]); });
+    std::optional<SiteId> thought;
+    if (best.theirs) thought = gone.ids[*best.theirs];
+    if (best.probability > kDecided) follow_thought(hearing, young[i], thought, best.probability);
   }
 }
 
@@ -116,7 +113,7 @@ void Names::dispute(const Hearing& hearing, PersonId body, OwnName& name) {
       tell(hearing, {SiteEventKind::Renamed, {}, {}, wrong, each.cell->id});
       return;
     }
-    if (each.body->named - name.held > 2 * kTie) each.cell->contradicting = true;
+    if (each.body->named - name.held > kTie) each.cell->contradicting = true;
   }
   if (!contradicted) name.disputed.reset();
 }

@@ -30,7 +30,7 @@ void Crossings::end(std::size_t person, const Visit& visit) {
   bool wrong = false;
   bool unsaid = false;
   for (const std::string& id : visit.ids) {
-    if (owner_.at(id) == person) continue;
+    if (id == visit.before || owner_.at(id) == person) continue;
     wrong = true;
     unsaid |= visit.unsaid.contains(id);
   }
