@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
     const std::string_view name = each.name;
     if (name != "faults" && name != "fusion" && name != "persons" && name != "camera" &&
         name != "registration" && name != "scale" && name != "inertial" && name != "ergonomics" &&
-        name != "positioner" && name != "hand" && name != "site")
+        name != "positioner" && name != "hand" && name != "site" && name != "report")
       continue;
     command->add_option("--only", options.only, "Run this case alone");
     command->add_flag("--list", options.list, "Name the cases and run none");

@@ -1,9 +1,5 @@
 // The cost of fusing a long recording: a cell of six sensors as its recorder writes it, fused by
 // the same program that users run.
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -18,6 +14,7 @@
 
 #include "common/record/cell_writer.h"
 #include "fusion-server/wire/registration_file.h"
+#include "tests/bench/live/chorus_run.h"
 #include "tests/bench/live/scratch_folder.h"
 #include "tests/bench/report/report.h"
 #include "tests/support/builders.h"
@@ -116,35 +113,6 @@ Result<void> record_cell(const fs::path& file, int people, int frames, std::uint
     }
   }
   return writer->close();
-}
-
-struct Cost {
-  double seconds = 0.0;
-  double rss_mb = 0.0;
-};
-
-/// Runs `chorus` from this program's folder and waits for it.
-Result<Cost> run_chorus(const std::vector<std::string>& arguments) {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "chorus";
-  std::vector<std::string> words{program.string()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const auto begun = std::chrono::steady_clock::now();
-  const pid_t child = fork();
-  if (child == 0) {
-    execv(argv.front(), argv.data());
-    _exit(127);
-  }
-  int status = 0;
-  rusage used{};
-  if (child < 0 || wait4(child, &status, 0, &used) != child || status != 0)
-    return fail(ErrorCode::Internal, "chorus " + arguments.front(), "did not succeed");
-  const auto elapsed = std::chrono::steady_clock::now() - begun;
-  constexpr double kKilobytes = 1024.0 / 1e6;
-  return Cost{std::chrono::duration<double>(elapsed).count(),
-              static_cast<double>(used.ru_maxrss) * kKilobytes};
 }
 
 Result<void> measure(Report& report, const OfflineCase& each, double minutes_each) {
