@@ -109,7 +109,7 @@ struct SensorJudge::Impl {
   void take(const SensorFrame& frame, const FrameResource& a, const FrameResource& b);
   void compare(const SensorFrame& frame, const BodyFrame& view, const FrameResource& a,
                const FrameResource& b);
-  void joints(const Compared& what, SensorTally& tally);
+  void joints(const Compared& what, bool exchanged, SensorTally& tally);
   void trunk(const Compared& what, SensorTally& tally) const;
   void view_residual(const Compared& what, std::size_t joint, const Eigen::Vector3d& off);
 };
@@ -142,18 +142,18 @@ void SensorJudge::Impl::compare(const SensorFrame& frame, const BodyFrame& view,
   if (!best) return;
   const Compared what{frame, view, *best, place->second, b};
   SensorTally& tally = tallies[frame.sensor];
-  joints(what, tally);
+  const auto exchanged = fits_exchanged(what);
+  if (exchanged) ++tally.sided;
+  if (exchanged.value_or(false)) ++tally.exchanged;
+  joints(what, exchanged.value_or(false), tally);
   trunk(what, tally);
-  if (const auto exchanged = fits_exchanged(what)) {
-    ++tally.sided;
-    if (*exchanged) ++tally.exchanged;
-  }
 }
 
-void SensorJudge::Impl::joints(const Compared& what, SensorTally& tally) {
+// A sensor that sees a back may name left right; its joints are compared with those they are.
+void SensorJudge::Impl::joints(const Compared& what, bool exchanged, SensorTally& tally) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto id = static_cast<JointId>(j);
-    const Joint& joint = what.view.skeleton[id];
+    const Joint& joint = what.view.skeleton[exchanged ? mirror(id) : id];
     const auto there = what.fused.place(id);
     if (joint.state != JointState::Tracked || !joint.seen() || !there) continue;
     const Eigen::Vector3d off = what.world_from_sensor * joint.position - *there;
@@ -193,7 +193,7 @@ void SensorJudge::Impl::trunk(const Compared& what, SensorTally& tally) const {
   if (tally.offsets.size() < kMostOffsets)
     tally.offsets.push_back({at, off, what.world_from_sensor.linear().transpose() * off});
   if (velocity.norm() > kMoving && tally.clocks.size() < kMostOffsets)
-    tally.clocks.push_back({at, -off.dot(velocity) / velocity.squaredNorm()});
+    tally.clocks.push_back({at, off, velocity});
 }
 
 SensorJudge::SensorJudge() : impl_(std::make_unique<Impl>()) {}

@@ -27,11 +27,16 @@ Eigen::Vector3d median_offset(const std::vector<SensorTally::Offset>& offsets, d
   return out;
 }
 
-double median_clock(const std::vector<SensorTally::ClockError>& clocks, double from, double to) {
+/// What the clock adds to a residual lies along the motion; a place that is wrong adds the same
+/// `standing` offset all the time.
+double median_clock(const std::vector<SensorTally::ClockError>& clocks, double from, double to,
+                    const Eigen::Vector3d& standing) {
   std::size_t count = 0;
   for (const auto& each : clocks) count += each.at >= from && each.at <= to ? 1U : 0U;
   if (count < kFewestClocks) return std::numeric_limits<double>::quiet_NaN();
-  return median_between(clocks, from, to, [](const auto& each) { return each.late; });
+  return median_between(clocks, from, to, [&](const SensorTally::ClockError& each) {
+    return -(each.off - standing).dot(each.velocity) / each.velocity.squaredNorm();
+  });
 }
 
 double share(std::size_t part, std::size_t whole) {
@@ -84,9 +89,10 @@ SensorQuality SensorTally::quality(double from, double to) const {
   out.offset_first = median_offset(offsets, from, from + third, &Offset::in_world);
   out.offset_last = median_offset(offsets, to - third, to, &Offset::in_world);
   out.offset_in_sensor = median_offset(offsets, from, to, &Offset::in_sensor);
-  out.clock = median_clock(clocks, from, to);
-  out.clock_first = median_clock(clocks, from, from + third);
-  out.clock_last = median_clock(clocks, to - third, to);
+  const Eigen::Vector3d standing = median_offset(offsets, from, to, &Offset::in_world);
+  out.clock = median_clock(clocks, from, to, standing);
+  out.clock_first = median_clock(clocks, from, from + third, out.offset_first);
+  out.clock_last = median_clock(clocks, to - third, to, out.offset_last);
   return out;
 }
 

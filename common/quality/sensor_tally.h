@@ -17,7 +17,8 @@ struct SensorTally {
   };
   struct ClockError {
     double at;
-    double late;  ///< [s]
+    Eigen::Vector3d off;       ///< Of the trunk [m].
+    Eigen::Vector3d velocity;  ///< [m/s]
   };
 
   std::size_t frames = 0;

@@ -36,6 +36,12 @@ resource::BodyResource published(const Skeleton<WorldSpace>& body, std::uint64_t
   return out;
 }
 
+/// Walkers of the simulator may walk through each other: each has a room of their own.
+Skeleton<WorldSpace> apart(Skeleton<WorldSpace> body, std::size_t person) {
+  for (Joint& joint : body.joints) joint.position.x() += 5.0 * static_cast<double>(person);
+  return body;
+}
+
 FusedFrames true_frames(std::uint64_t seed, std::size_t people) {
   synthetic::WalkerScript script;
   script.seed = seed;
@@ -50,8 +56,8 @@ FusedFrames true_frames(std::uint64_t seed, std::size_t people) {
     frame.space = resource::SpaceKind::World;
     frame.sensors = {"s1"};
     for (std::size_t person = 0; person < people; ++person)
-      frame.bodies.push_back(
-          published(truth(scene, person, frame.captured), person + 1, frame.captured));
+      frame.bodies.push_back(published(apart(truth(scene, person, frame.captured), person),
+                                       person + 1, frame.captured));
     frames.push_back(std::move(frame));
   }
   return frames;
