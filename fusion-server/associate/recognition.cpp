@@ -24,9 +24,7 @@ constexpr double kSure = 5.0;     // Log odds by which the likeliest answer is c
 constexpr double kSureOfNewcomer = 3.0;
 // Log odds of being the same below which a track is questioned.
 constexpr double kInQuestion = 2.0;
-// Log odds by which another answer has to be likelier than the id in use, after a second in view;
-// half as much after two seconds, and so on: what is seen for longer is less of a swing of the
-// sensors.
+// Log odds by which another answer has to be likelier than the id in use, after a second in view.
 constexpr double kTurn = 2.0;
 // Log odds, against the likeliest other answer, below which an id is withheld.
 constexpr double kUnlikely = -0.5;
@@ -57,6 +55,7 @@ struct Question {
   Build build;                          ///< Since then.
   std::optional<Doubt> doubt = {};      ///< Of a track with an id: that the person changed.
   std::optional<std::size_t> own = {};  ///< Who had the id before, as an index of the known people.
+  double turn = 0.0;  ///< Log odds by which another answer has to be likelier than the id in use.
 };
 
 struct Answer {
@@ -73,6 +72,12 @@ Missing missing_of(const Track& track, const Repeatability& repeatability) {
   return {track.id, track.build.all()[doubt->cut - 1].end, track.build.before(doubt->cut)};
 }
 
+/// What a turn needs, see Question::turn: less after a longer time in view, but where sensors show
+/// people larger and smaller for seconds, it takes so much longer.
+double turn_of(const Build& build, const Repeatability& repeatability) {
+  return kTurn / std::max(1.0, sight_of(build) / repeatability.size);
+}
+
 std::vector<Question> questions_of(std::vector<Candidate>& candidates, const Tracks& tracks,
                                    Timestamp instant, const AssociationConfig& config) {
   std::vector<Question> questions;
@@ -86,7 +91,8 @@ std::vector<Question> questions_of(std::vector<Candidate>& candidates, const Tra
     const auto doubt = track.build.doubt(tracks.repeatability);
     if (!doubt || doubt->odds > kInQuestion) continue;
     const Timestamp since = track.build.all()[doubt->cut].begin;
-    questions.push_back({&each, since, track.build.after(doubt->cut), doubt});
+    const Build build = track.build.after(doubt->cut);
+    questions.push_back({&each, since, build, doubt, {}, turn_of(build, tracks.repeatability)});
   }
   return questions;
 }
@@ -156,8 +162,7 @@ bool is_decided(const Question& question, const CostTable& table, std::size_t ro
   if (!anybody) return true;
   // An id in use is given up for a clear reason only: what is not clear yet may become so.
   const bool other = question.doubt && known != question.own;
-  const double turn = kTurn / std::max(1.0, sight_of(question.build));
-  if (other && best + table.at(row, *question.own) < turn) return false;
+  if (other && best + table.at(row, *question.own) < question.turn) return false;
   if (is_looked_at(question.build)) return true;
   if (!question.doubt && instant - question.since > kNoBones) return true;
   return is_glance(question.build) && best - rival > (question.doubt ? kSure : kSureOfNewcomer);
