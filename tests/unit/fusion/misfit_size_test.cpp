@@ -15,7 +15,8 @@ Misfit misfit(double scale, double turn, double side_on) {
   return {scale, turn, kSmall, kSmall, side_on};
 }
 
-BodyModel model_after(double length, const std::array<Misfit, 2>& misfits, const BodyModel& model = {}) {
+BodyModel model_after(double length, const std::array<Misfit, 2>& misfits,
+                      const BodyModel& model = {}) {
   MisfitSize size;
   for (double passed = 0.0; passed < length; passed += kFrame) size.learn(misfits, kFrame, model);
   return size.found(model);

@@ -57,7 +57,8 @@ TEST(PlaceErrors, AreAddedByEveryMethodAndMoveNoJoint) {
   for (const Method method :
        {Method::Otto, Method::Mean, Method::BestView, Method::InverseVariance, Method::BestSkeleton,
         Method::OttoKalman, Method::PointsAndRays, Method::BodyFilter}) {
-    const FusedBody exact = fuse(seen_by({1, 2, 3, 4}, Vector6::Zero()), kSensors, by_method(method));
+    const FusedBody exact =
+        fuse(seen_by({1, 2, 3, 4}, Vector6::Zero()), kSensors, by_method(method));
     const FusedBody open = fuse(seen_by({1, 2, 3, 4}, kAside), kSensors, by_method(method));
     const std::size_t wrist = index_of(JointId::WristLeft);
     EXPECT_EQ(open.skeleton.joints[wrist].position, exact.skeleton.joints[wrist].position);

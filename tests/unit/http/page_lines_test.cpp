@@ -31,7 +31,8 @@ TEST(PageLines, EveryPageHasThemWhoeverMadeIt) {
   for (const char* type : {"text/html", "text/html; charset=utf-8", "TEXT/HTML", "image/svg+xml",
                            "application/xhtml+xml"}) {
     EXPECT_THAT(page_head_of(type), HasSubstr("frame-ancestors 'none'\r\n")) << type;
-    EXPECT_THAT(page_head_of(type), HasSubstr("Content-Security-Policy: default-src 'none'; ")) << type;
+    EXPECT_THAT(page_head_of(type), HasSubstr("Content-Security-Policy: default-src 'none'; "))
+        << type;
     EXPECT_THAT(page_head_of(type), HasSubstr("X-Frame-Options: DENY\r\n")) << type;
   }
   EXPECT_THAT(page_head_of("application/json"), Not(HasSubstr("Content-Security-Policy")));
