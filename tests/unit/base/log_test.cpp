@@ -13,7 +13,7 @@
 namespace chorus {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::EndsWith;
 using testing::FailsWith;
 using ::testing::HasSubstr;
@@ -54,7 +54,7 @@ TEST(LogJson, IsOneObjectPerLineWithNumbersAsNumbers) {
                         {"nan", std::numeric_limits<double>::quiet_NaN()},
                         {"ok", false}});
   });
-  const json object = json::parse(line);
+  const Json object = Json::parse(line);
   EXPECT_EQ(object.at("level"), "debug");
   EXPECT_EQ(object.at("event"), "tick");
   EXPECT_EQ(object.at("count"), 3);
@@ -68,7 +68,7 @@ TEST(LogJson, BytesThatAreNoTextStillGiveALine) {
   const std::string line = logged(log::Level::Info, log::Format::Json, [] {
     log::error("bad", {{"bytes", std::string("\xff\xfe\0 \"x", 6)}});
   });
-  EXPECT_FALSE(json::parse(line).at("bytes").get<std::string>().empty());
+  EXPECT_FALSE(Json::parse(line).at("bytes").get<std::string>().empty());
 }
 
 TEST(LogLevel, DropsWhatIsBelow) {

@@ -11,11 +11,11 @@
 namespace chorus::registration {
 namespace {
 
-using Points = std::vector<Eigen::Vector3d>;
+using Cloud = std::vector<Eigen::Vector3d>;
 
 /// An asymmetric path with some vertical motion: no rotation maps it to itself.
-Points walk(std::size_t count) {
-  Points points;
+Cloud walk(std::size_t count) {
+  Cloud points;
   for (std::size_t i = 0; i < count; ++i) {
     const double t = 6.0 * static_cast<double>(i) / static_cast<double>(count);
     points.emplace_back(1.2 * std::sin(t) + 0.3 * std::sin(2.3 * t), 1.5 + 0.15 * std::sin(3.1 * t),
@@ -24,8 +24,8 @@ Points walk(std::size_t count) {
   return points;
 }
 
-Points moved(const Eigen::Isometry3d& by, const Points& points) {
-  Points out;
+Cloud moved(const Eigen::Isometry3d& by, const Cloud& points) {
+  Cloud out;
   for (const Eigen::Vector3d& x : points) out.push_back(by * x);
   return out;
 }
@@ -42,8 +42,8 @@ double off_at_the_walk(const Eigen::Isometry3d& found, const Eigen::Isometry3d& 
 }
 
 TEST(RefineByIcp, PullsANearbyStartOntoTheTarget) {
-  const Points target = walk(150);
-  const Points source = moved(tilted_motion().inverse(), target);
+  const Cloud target = walk(150);
+  const Cloud source = moved(tilted_motion().inverse(), target);
   const auto fit = refine_by_icp(source, target, nearly(tilted_motion()), 0.10);
   ASSERT_TRUE(fit);
   EXPECT_GT(off_at_the_walk(nearly(tilted_motion()), tilted_motion()), mm(15));
@@ -53,7 +53,7 @@ TEST(RefineByIcp, PullsANearbyStartOntoTheTarget) {
 }
 
 TEST(RefineByIcp, WritesNothingToStandardErrorWhenItFails) {
-  const Points target = walk(150);
+  const Cloud target = walk(150);
   const Eigen::Isometry3d far_away(Eigen::Translation3d(100, 0, 0));
   testing::internal::CaptureStderr();
   const auto fit = refine_by_icp(target, target, far_away, 0.10);
@@ -62,16 +62,16 @@ TEST(RefineByIcp, WritesNothingToStandardErrorWhenItFails) {
 }
 
 TEST(RefineByIcp, TheOtherWayRoundIsTheInverse) {
-  const Points target = walk(150);
-  const Points source = moved(tilted_motion().inverse(), target);
+  const Cloud target = walk(150);
+  const Cloud source = moved(tilted_motion().inverse(), target);
   const auto back = refine_by_icp(target, source, nearly(tilted_motion()).inverse(), 0.10);
   ASSERT_TRUE(back);
   EXPECT_LT(off_at_the_walk(back->target_from_source.inverse(), tilted_motion()), mm(1));
 }
 
 TEST(RefineByIcp, TheOrderOfThePointsDoesNotMatter) {
-  const Points target = walk(150);
-  Points source = moved(tilted_motion().inverse(), target);
+  const Cloud target = walk(150);
+  Cloud source = moved(tilted_motion().inverse(), target);
   const auto first = refine_by_icp(source, target, nearly(tilted_motion()), 0.10);
   std::shuffle(source.begin(), source.end(), std::mt19937(5));
   const auto second = refine_by_icp(source, target, nearly(tilted_motion()), 0.10);
@@ -80,8 +80,8 @@ TEST(RefineByIcp, TheOrderOfThePointsDoesNotMatter) {
 }
 
 TEST(RefineByIcp, PointsBeyondReachHaveNoSay) {
-  const Points target = walk(150);
-  Points source = moved(tilted_motion().inverse(), target);
+  const Cloud target = walk(150);
+  Cloud source = moved(tilted_motion().inverse(), target);
   for (std::size_t i = 0; i < 30; ++i) source[i] += Eigen::Vector3d(0, 1, 0);
   const auto fit = refine_by_icp(source, target, tilted_motion(), 0.10);
   ASSERT_TRUE(fit);
@@ -92,8 +92,8 @@ TEST(RefineByIcp, PointsBeyondReachHaveNoSay) {
 }
 
 TEST(RefineByIcp, LongWalksAreThinnedAndBrokenPointsLeftOut) {
-  Points target = walk(1000);
-  const Points source = moved(tilted_motion().inverse(), target);
+  Cloud target = walk(1000);
+  const Cloud source = moved(tilted_motion().inverse(), target);
   target[10].x() = std::nan("");
   const auto fit = refine_by_icp(source, target, nearly(tilted_motion()), 0.10);
   ASSERT_TRUE(fit);
@@ -103,18 +103,18 @@ TEST(RefineByIcp, LongWalksAreThinnedAndBrokenPointsLeftOut) {
 }
 
 TEST(RefineByIcp, TooFewPointsAndNoOverlapGiveNothing) {
-  const Points few = walk(9);
+  const Cloud few = walk(9);
   EXPECT_FALSE(refine_by_icp(few, few, Eigen::Isometry3d::Identity(), 0.10));
   EXPECT_FALSE(refine_by_icp({}, walk(50), Eigen::Isometry3d::Identity(), 0.10));
-  const Points far = moved(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50)), walk(50));
+  const Cloud far = moved(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50)), walk(50));
   EXPECT_FALSE(refine_by_icp(walk(50), far, Eigen::Isometry3d::Identity(), 0.10));
 }
 
 TEST(RefineByIcp, ALineOrASpotIsNoCrashAndNoWildPlace) {
-  Points line;
+  Cloud line;
   for (int i = 0; i < 60; ++i) line.emplace_back(0.05 * i, 1.5, 3.0);
-  const Points spot(60, Eigen::Vector3d(0, 1.5, 3.0));
-  for (const Points& cloud : {line, spot}) {
+  const Cloud spot(60, Eigen::Vector3d(0, 1.5, 3.0));
+  for (const Cloud& cloud : {line, spot}) {
     const auto fit = refine_by_icp(cloud, cloud, Eigen::Isometry3d::Identity(), 0.10);
     if (!fit) continue;
     ASSERT_TRUE(fit->target_from_source.matrix().allFinite());
@@ -123,7 +123,7 @@ TEST(RefineByIcp, ALineOrASpotIsNoCrashAndNoWildPlace) {
 }
 
 TEST(IcpFromYawSeeds, NeedsNoStart) {
-  const Points target = walk(150);
+  const Cloud target = walk(150);
   for (const double yaw : {0.0, 1.0, 2.2, 3.1, 4.4, 5.5}) {
     const Eigen::Isometry3d truth = some_motion(yaw);
     const auto fit = icp_from_yaw_seeds(moved(truth.inverse(), target), target);
@@ -135,8 +135,8 @@ TEST(IcpFromYawSeeds, NeedsNoStart) {
 }
 
 TEST(IcpFromYawSeeds, ATenthOfStrayPointsIsTrimmed) {
-  const Points target = walk(150);
-  Points source = moved(some_motion(1.0).inverse(), target);
+  const Cloud target = walk(150);
+  Cloud source = moved(some_motion(1.0).inverse(), target);
   for (std::size_t i = 0; i < source.size(); i += 12) source[i].y() += 0.8;
   const auto fit = icp_from_yaw_seeds(source, target);
   ASSERT_TRUE(fit);
