@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 /// A person who stands at (1, -2) and faces +z.
-std::string frame_text(int index) {
+std::string origin_frame_text(int index) {
   const auto at = [](double left) { return Json{{"x", 1.0 + left}, {"y", 1.0}, {"z", -2.0}}; };
   const Json joints{{"SpineBase", at(0)},
                     {"HipLeft", at(0.1)},
@@ -37,7 +37,7 @@ Json origin_asked(const ScriptedServer& server) {
 
 TEST(Origin, ThePersonIsWatchedOnOneConnection) {
   std::vector<std::string> frames;
-  for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
+  for (int i = 0; i < 40; ++i) frames.push_back(origin_frame_text(i));
   const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
   EXPECT_EQ(done.code, kExitOk) << done.error;
@@ -52,7 +52,7 @@ TEST(Origin, ThePersonIsWatchedOnOneConnection) {
 
 TEST(Origin, HereIsWhereTheNamedJointIs) {
   std::vector<std::string> frames;
-  for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
+  for (int i = 0; i < 40; ++i) frames.push_back(origin_frame_text(i));
   const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
   const Outcome done = run_chorus(
       {"origin", "--url", server.url(), "--here", "--seconds", "0.6", "--with", "ShoulderLeft"});
@@ -62,7 +62,7 @@ TEST(Origin, HereIsWhereTheNamedJointIs) {
 
 TEST(Origin, IsNotSetInAWorldThatWasChangedMeanwhile) {
   std::vector<std::string> frames;
-  for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
+  for (int i = 0; i < 40; ++i) frames.push_back(origin_frame_text(i));
   const ScriptedServer server(ScriptedServer::Texts{
       {"/frame", frames}, {"/registration", {R"({"version": 3})", R"({"version": 4})"}}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
@@ -217,7 +217,7 @@ TEST(Origin, ReportsTheServersAnswerAsJson) {
 TEST(Origin, WhoeverMovesDoesNotSetIt) {
   std::vector<std::string> frames;
   for (int i = 0; i < 40; ++i) {
-    Json frame = Json::parse(frame_text(i));
+    Json frame = Json::parse(origin_frame_text(i));
     for (auto& joint : frame["bodies"][0]["joints"])
       joint["x"] = joint["x"].get<double>() + 0.2 * (i % 2);
     frames.push_back(frame.dump());
@@ -231,7 +231,7 @@ TEST(Origin, WhoeverMovesDoesNotSetIt) {
 
 TEST(Origin, TheSameFrameTwiceIsOneLook) {
   std::vector<std::string> frames;  // of one time, but not the same text
-  for (std::size_t i = 0; i < 40; ++i) frames.push_back(frame_text(1) + std::string(i, ' '));
+  for (std::size_t i = 0; i < 40; ++i) frames.push_back(origin_frame_text(1) + std::string(i, ' '));
   const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}, {"/registration", {"{}"}}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.5"});
   EXPECT_EQ(done.code, kExitFailed);
