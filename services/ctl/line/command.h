@@ -34,9 +34,10 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 16> kRecordingCommandNames{
-    "import", "replay", "view",  "fuse",   "export",  "train-error", "calibrate", "characterise",
-    "align",  "scan",   "glove", "report", "compare", "score",       "evaluate",  "position"};
+inline constexpr std::array<std::string_view, 17> kRecordingCommandNames{
+    "import",    "replay",       "view",     "fuse",     "export", "train-error",
+    "calibrate", "characterise", "align",    "scan",     "glove",  "report",
+    "compare",   "score",        "evaluate", "position", "site"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -59,6 +60,7 @@ Run add_evaluate(CLI::App& options);
 Run add_scan(CLI::App& options);
 Run add_glove(CLI::App& options);
 Run add_report(CLI::App& options);
+Run add_site(CLI::App& options);
 Run add_compare(CLI::App& options);
 Run add_score(CLI::App& options);
 Run add_position(CLI::App& options);

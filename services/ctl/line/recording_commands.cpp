@@ -155,6 +155,15 @@ constexpr std::array kRecordingCommands{
             "--out out\n"
             "Writes corrected.bvh, position.mcap and report.html.  More: docs/guide/suit.md.",
             &add_position},
+    Command{"site", "Finds where the cells of a site stand to one another",
+            "Examples:\n"
+            "  chorus site register a=http://10.0.0.5:8080/ b=http://10.0.0.6:8080/ --out "
+            "places.json\n"
+            "  chorus site register a=a.mcap b=b.mcap        what both fused of one walk\n"
+            "  chorus site register --mark a:1,2=b:-3,0.5 --mark a:1,4=b:-3,2.5\n"
+            "Exit code 0: every cell has a place; 1: one has none, and why is printed.  More: "
+            "docs/how/halls.md.",
+            &add_site},
 };
 
 }  // namespace
