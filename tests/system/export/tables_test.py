@@ -171,7 +171,7 @@ class Export(unittest.TestCase):
         for source, words in [
                 (self.at / "rec", ["is of sensor cam0", "in its own space", "chorus fuse"]),
                 (self.at / "nothing", ["no such file"]),
-                (CAMERAS + "/fusion.json", ["fusion.json:1"]),
+                (CAMERAS + "/fusion.json", ["fusion.json", "neither a recording"]),
                 ("http://127.0.0.1:1/", ["is chorus-fusion running there?"])]:
             code, _, error = chorus("export", source, "--format", "csv", "--out", self.at / "x")
             self.assertEqual(code, 1, error)
