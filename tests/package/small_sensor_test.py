@@ -13,7 +13,7 @@ BIN = Path(os.environ["CHORUS_BIN"])
 NEEDED = re.compile(r"\(NEEDED\)\s+Shared library: \[([^\]]+)\]")
 # Names of libraries that are in every Debian root, or are small.
 SMALL = ("libc", "libm", "libstdc++", "libgcc_s", "ld-linux", "libfmt", "libspdlog", "libserd-0", "libzstd", "libcrypto", "libssl", "libz", "libexpat",
-         "libjpeg")
+         "libjpeg", "liblz4", "libcrypt")
 LARGE = ("libopencv", "libpcl")
 
 
