@@ -115,6 +115,10 @@ run_nightly() {
   for one in address thread; do tests/run.sh --sanitize "$one" || failed=yes; done
   run_fuzz "${CHORUS_FUZZ_SECONDS:-600}" \
     -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1 -D_GLIBCXX_ASSERTIONS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all" || failed=yes
+  step "tests of minutes"
+  cmake --preset dev "${launcher[@]}" --log-level=WARNING && cmake --build build/dev -j "$jobs"
+  npm_packages tests && npm_packages services/viewer
+  ctest --test-dir build/dev --output-on-failure -L '^nightly$' || failed=yes
   [ -z "$failed" ]
 }
 
@@ -147,7 +151,7 @@ step "tests"
 # Many tests wait for their child processes: so run two more than there are cores. Those with a COST start first, else they end alone.
 rc=0
 summary=$(mktemp)
-ctest --test-dir build/dev --output-on-failure -j "$(( $(nproc) + 2 ))" "$@" | tee "$summary" || rc=$?
+ctest --test-dir build/dev --output-on-failure -j "$(( $(nproc) + 2 ))" -LE '^nightly$' "$@" | tee "$summary" || rc=$?
 step "skipped, and what they wait for"
 python3 -B tests/skipped.py build/dev
 step "summary"

@@ -137,8 +137,8 @@ test('a whole day by the keyboard', async () => {
   await keys.press('tab', 'Look at a recording');
   await keys.press('button', 'look at day');
   await keys.says('A recording is shown: day');
-  await page.waitForFunction(() => window.chorusViewer.fusedJoints > 20);
   await keys.press('button', 'Play');
+  await page.waitForFunction(() => window.chorusViewer.fusedJoints > 20); // at 0:00.0 nobody has been seen yet
   await page.waitForFunction(() => /0:0[1-9]/.test(document.getElementById('instant').textContent));
   await keys.type(/^mark/, 'halfway');
   await keys.press('button', 'Mark');
