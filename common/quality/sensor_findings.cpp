@@ -15,7 +15,8 @@ namespace {
 
 using report::Judgement;
 
-// Limits: twice and more of what healthy simulated recordings show (docs/benchmarks/report.md).
+// Limits, set by judgement: chorus-bench report measures whom they blame, and has not been run
+// whole (docs/benchmarks/report.md).
 constexpr double kMoved = 0.05;      // [m] between the first and the last third
 constexpr double kBeside = 0.08;     // [m] all the time, in the sensor's axes
 constexpr double kClock = 0.03;      // [s]

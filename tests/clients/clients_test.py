@@ -127,7 +127,7 @@ class Clients(Rig):
         self.assertTrue(copy.read_bytes().startswith(b"\x89MCAP0\r\n"))
         self.assertEqual(tracker.recorded(tracker.record(seconds=1))["state"], "finished")
 
-    @unittest.skipUnless(shutil.which("mcs") and shutil.which("mono"), "needs mono-mcs and mono-runtime")
+    @unittest.skipUnless(shutil.which("mcs") and shutil.which("mono"), "runs where mcs and mono are installed (Debian: mono-mcs, mono-runtime)")
     def test_csharp_draws_a_recorded_stream_and_shows_that_it_ended(self):
         server, tracker = self.given()
         wait_for("somebody", lambda: tracker.frame().people)

@@ -79,7 +79,7 @@ class SuitGuide(unittest.TestCase):
                 self.assertNotEqual(done.returncode, 0)
                 self.assertIn(said, done.stderr)
 
-    @unittest.skipUnless(RUNNER.exists(), "needs npm ci in services/pose-runner/")
+    @unittest.skipUnless(RUNNER.exists(), "runs after npm ci in services/pose-runner/")
     def test_the_line_with_a_video_does_what_the_page_says(self):
         line = next(each for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE) for each in block.splitlines()
                     if each.startswith("chorus position"))
