@@ -20,7 +20,7 @@ constexpr double kMuchMissing = 0.25;
 constexpr double kAlike = 0.03;        // joints whose shares differ by less are named together
 constexpr double kUnsure = 0.05;       // share of time with uncertain sides
 constexpr double kJumpsAMinute = 2.0;  // of one joint
-constexpr double kOverstated = 2.0;    // true errors, by the views, in stated ones
+constexpr double kUnderstated = 2.0;   // found error over stated error
 
 using Findings = std::vector<Finding>;
 
@@ -92,8 +92,8 @@ void of_jumps(const RecordingQuality& quality, Findings& out) {
                  "look at that moment: a sensor may see something else there"});
 }
 
-/// Of all joints together; NaN: the views do not tell.
-double overstated(const RecordingQuality& quality) {
+/// Found error over stated error of all joints together; NaN: the views do not tell.
+double understated(const RecordingQuality& quality) {
   double found = 0.0;
   double stated = 0.0;
   for (const ViewError& each : quality.views) {
@@ -105,8 +105,8 @@ double overstated(const RecordingQuality& quality) {
 }
 
 void of_stated_errors(const RecordingQuality& quality, Findings& out) {
-  const double ratio = overstated(quality);
-  if (!(ratio > kOverstated)) return;
+  const double ratio = understated(quality);
+  if (!(ratio > kUnderstated)) return;
   out.push_back({Judgement::Doubtful,
                  fmt::format("errors are {:.1f} times as large as stated, by the views", ratio),
                  "do not rely on stated errors; register anew, or train the error model"});

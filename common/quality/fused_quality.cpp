@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/quality/joint_judge.h"
+#include "common/quality/sample.h"
 
 namespace chorus::quality {
 namespace {
@@ -70,13 +71,6 @@ struct Person {
 
 // How long each pair of bodies has been in one place.
 using Pairs = std::map<std::pair<std::uint64_t, std::uint64_t>, double>;
-
-double median_step(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -217,7 +211,7 @@ FusedQuality FusedJudge::finish() {
   Impl& all = *impl_;
   FusedQuality out = std::move(all.out);
   out.seconds = all.last;
-  const double usual = median_step(all.steps);
+  const double usual = all.steps.empty() ? 0.0 : quantile(all.steps, 0.5);
   out.rate = usual > 0.0 ? 1.0 / usual : 0.0;
   for (const double step : all.long_steps) {
     if (step <= 3.0 * usual) continue;

@@ -15,15 +15,15 @@ namespace {
 
 using report::Judgement;
 
-// Limits, set by judgement: chorus-bench report measures whom they blame, and has not been run
-// whole (docs/benchmarks/report.md).
+// Limits, set by judgement: chorus-bench report measures whom they blame, and that is too many
+// (docs/benchmarks/report.md).
 constexpr double kMoved = 0.05;      // [m] between the first and the last third
 constexpr double kBeside = 0.08;     // [m] all the time, in the sensor's axes
 constexpr double kClock = 0.03;      // [s]
 constexpr double kClockStep = 0.04;  // [s] between the first and the last third
 constexpr double kSilence = 2.0;     // [s]
-constexpr double kDisagrees = 2.0;   // times the median residual of the other sensors
-constexpr double kJointOff = 0.1;    // [m] one joint, when the others' is a half of it
+constexpr double kDisagrees = 2.0;   // times the median residual of all (of two: the other one's)
+constexpr double kJointOff = 0.1;    // [m] one joint, when that median of it is a half or less
 constexpr double kRates = 0.6;       // of the median rate of the sensors
 constexpr double kLate = 0.15;       // [s] later than the others
 constexpr double kRepeats = 0.1;     // of the frames with somebody
@@ -42,14 +42,17 @@ class Beside {
     for (const auto& [other, figures] : quality.sensors)
       if (other != id || !pair) all_.push_back(&figures);
     speaks_ = !pair || quality.sensors.begin()->first == id;
-    if (pair && speaks_) pair_ = name + " or " + std::next(quality.sensors.begin())->first.str();
+    if (pair)
+      pair_ = quality.sensors.begin()->first.str() + " or " +
+              std::next(quality.sensors.begin())->first.str();
   }
 
   const SensorQuality& own;
   const std::string name;
 
-  /// Of two sensors the first speaks for both.
+  /// Of two sensors the first speaks for both, where they differ from one another alike.
   [[nodiscard]] bool speaks() const { return speaks_; }
+  [[nodiscard]] bool paired() const { return !pair_.empty(); }
   [[nodiscard]] const std::string& culprit() const { return pair_.empty() ? name : pair_; }
   [[nodiscard]] bool alone() const { return alone_; }
 
@@ -169,26 +172,31 @@ std::optional<std::size_t> wrong_joint(const Beside& sensor) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto of = [j](const SensorQuality& each) { return each.joints[j]; };
     const double usual = sensor.usual(of);
-    if (!(of(sensor.own) > most) || of(sensor.own) < kDisagrees * usual) continue;
+    if (!(of(sensor.own) > most) || !(of(sensor.own) >= kDisagrees * usual)) continue;
     most = of(sensor.own);
     worst = j;
   }
   return worst;
 }
 
+/// Of two sensors each is compared with the other one: whom the fused bodies follow less has the
+/// larger residuals.
 void of_residuals(const Beside& sensor, std::vector<Finding>& out) {
-  if (sensor.alone() || !sensor.speaks() || !compared(sensor.own)) return;
+  if (sensor.alone() || !compared(sensor.own)) return;
   const double usual = sensor.usual([](const auto& each) { return each.residual; });
   if (sensor.own.residual > kDisagrees * usual) {
-    out.push_back({Judgement::Doubtful,
-                   fmt::format("{} disagrees with the others: {} mm, they {} mm", sensor.culprit(),
-                               rounded_mm(sensor.own.residual), rounded_mm(usual)),
-                   "check its lens, its model and what it looks at"});
+    const std::string whom = sensor.paired() ? "the other one" : "the others";
+    out.push_back(
+        {Judgement::Doubtful,
+         fmt::format("{} disagrees with {}: {} mm of {}, usual {} mm", sensor.culprit(), whom,
+                     rounded_mm(sensor.own.residual), sensor.name, rounded_mm(usual)),
+         "check its lens, its model and what it looks at"});
   } else if (const auto joint = wrong_joint(sensor)) {
-    out.push_back({Judgement::Doubtful,
-                   fmt::format("{} sees {} {} mm from where the others do", sensor.culprit(),
-                               kJointNames[*joint], rounded_mm(sensor.own.joints[*joint])),
-                   "look at its picture: it may take a thing for the joint"});
+    out.push_back(
+        {Judgement::Doubtful,
+         fmt::format("{} sees {} {} mm from where the fused body has it", sensor.culprit(),
+                     kJointNames[*joint], rounded_mm(sensor.own.joints[*joint])),
+         "look at its picture: it may take a thing for the joint"});
   }
 }
 

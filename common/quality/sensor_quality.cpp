@@ -21,8 +21,7 @@ constexpr double kSamePerson = 0.6;      // [m] between the centres of a view an
 constexpr double kLongestBetween = 0.2;  // [s] between fused frames that are interpolated
 constexpr double kMoving = 0.4;          // [m/s]; slower motion says nothing of a clock
 constexpr double kWait = 2.0;            // [s] that a sensor's frame waits for the fused one
-constexpr std::size_t kMostOffsets = 200'000;  // of each kind and sensor: two hours at 30 Hz
-constexpr std::size_t kMostWaiting = 8'192;    // frames: of 64 sensors at 60 Hz, two seconds
+constexpr std::size_t kMostWaiting = 8'192;  // frames: of 64 sensors at 60 Hz, two seconds
 constexpr std::array kCentre{JointId::SpineBase, JointId::SpineMid, JointId::SpineShoulder};
 constexpr double kSides = 0.1;  // [m] a person's sides are apart by at least that, seen from there
 
@@ -190,10 +189,8 @@ void SensorJudge::Impl::trunk(const Compared& what, SensorTally& tally) const {
     velocity += what.fused.velocity(id) / kCentre.size();
   }
   const double at = time_of(what.frame.captured);
-  if (tally.offsets.size() < kMostOffsets)
-    tally.offsets.push_back({at, off, what.world_from_sensor.linear().transpose() * off});
-  if (velocity.norm() > kMoving && tally.clocks.size() < kMostOffsets)
-    tally.clocks.push_back({at, off, velocity});
+  tally.offsets.add({at, off, what.world_from_sensor.linear().transpose() * off});
+  if (velocity.norm() > kMoving) tally.clocks.add({at, off, velocity});
 }
 
 SensorJudge::SensorJudge() : impl_(std::make_unique<Impl>()) {}

@@ -40,7 +40,7 @@ struct SensorQuality {
     return none;
   }();
   /// Median of the trunk's residuals [m], in world axes, in the first and in the last third of the
-  /// recording.
+  /// recording; NaN: nothing was compared then.
   Eigen::Vector3d offset_first = Eigen::Vector3d::Zero();
   Eigen::Vector3d offset_last = Eigen::Vector3d::Zero();
   /// The same of the whole recording in the sensor's axes (z: along its view).

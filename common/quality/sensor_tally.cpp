@@ -8,31 +8,29 @@ namespace {
 constexpr std::size_t kFewestClocks = 30;
 
 template <class Entry, class Value>
-double median_between(const std::vector<Entry>& entries, double from, double to,
-                      const Value& value) {
+double median_between(const Thinned<Entry>& entries, double from, double to, const Value& value) {
   std::vector<double> values;
-  for (const Entry& each : entries)
+  for (const Entry& each : entries.values())
     if (each.at >= from && each.at <= to) values.push_back(value(each));
   return quantile(std::move(values), 0.5);
 }
 
-Eigen::Vector3d median_offset(const std::vector<SensorTally::Offset>& offsets, double from,
-                              double to, Eigen::Vector3d SensorTally::Offset::*which) {
-  Eigen::Vector3d out = Eigen::Vector3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double value =
+/// NaN: nothing was compared between these times.
+Eigen::Vector3d median_offset(const Thinned<SensorTally::Offset>& offsets, double from, double to,
+                              Eigen::Vector3d SensorTally::Offset::*which) {
+  Eigen::Vector3d out;
+  for (int axis = 0; axis < 3; ++axis)
+    out[axis] =
         median_between(offsets, from, to, [&](const auto& each) { return (each.*which)[axis]; });
-    out[axis] = std::isfinite(value) ? value : 0.0;
-  }
   return out;
 }
 
 /// What the clock adds to a residual lies along the motion; a place that is wrong adds the same
 /// `standing` offset all the time.
-double median_clock(const std::vector<SensorTally::ClockError>& clocks, double from, double to,
+double median_clock(const Thinned<SensorTally::ClockError>& clocks, double from, double to,
                     const Eigen::Vector3d& standing) {
   std::size_t count = 0;
-  for (const auto& each : clocks) count += each.at >= from && each.at <= to ? 1U : 0U;
+  for (const auto& each : clocks.values()) count += each.at >= from && each.at <= to ? 1U : 0U;
   if (count < kFewestClocks) return std::numeric_limits<double>::quiet_NaN();
   return median_between(clocks, from, to, [&](const SensorTally::ClockError& each) {
     return -(each.off - standing).dot(each.velocity) / each.velocity.squaredNorm();

@@ -10,6 +10,9 @@
 namespace chorus::quality {
 
 struct SensorTally {
+  /// Views of each kind that are kept: 11 MB a sensor, every view of one person in two hours.
+  static constexpr std::size_t kMostOffsets = 200'000;
+
   struct Offset {
     double at;  ///< [s]
     Eigen::Vector3d in_world;
@@ -31,8 +34,8 @@ struct SensorTally {
   Sample lateness, residuals;
   std::array<Sample, kJointCount> joints;
   std::array<Sample, 4> by_distance;
-  std::vector<Offset> offsets;
-  std::vector<ClockError> clocks;
+  Thinned<Offset> offsets{kMostOffsets};
+  Thinned<ClockError> clocks{kMostOffsets};
   std::size_t sided = 0;  ///< Views that tell left from right.
   std::size_t exchanged = 0;
   std::vector<BodyFrame> before;  ///< Of its last frame with somebody.

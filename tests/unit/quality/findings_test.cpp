@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <gmock/gmock.h>
 
 #include "common/quality/quality_report.h"
@@ -83,6 +85,31 @@ TEST(Findings, OfTwoSensorsNameBoth) {
   sensor(quality, "s1").offset_last = {-0.06, 0.0, 0.0};
   sensor(quality, "s2").offset_last = {0.06, 0.0, 0.0};
   EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s1 or s2 was moved")));
+}
+
+TEST(Findings, OfTwoSensorsAreTheSameWhicheverDisagrees) {
+  for (const char* id : {"s1", "s2"}) {
+    RecordingQuality quality = healthy();
+    quality.sensors.erase(testing::sensor_id("s3"));
+    sensor(quality, id).residual = 0.2;
+    EXPECT_THAT(what(quality), ElementsAre("s1 or s2 disagrees with the other one: 200 mm of " +
+                                           std::string(id) + ", usual 30 mm"));
+    sensor(quality, id).residual = 0.03;
+    for (auto& [name, figures] : quality.sensors) figures.joints.fill(0.03);
+    sensor(quality, id).joints[6] = 0.2;
+    EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s1 or s2 sees WristLeft 200 mm from")));
+    for (auto& [name, figures] : quality.sensors)
+      if (name != testing::sensor_id(id)) figures.joints[6] = std::nan("");
+    EXPECT_THAT(what(quality), ::testing::IsEmpty()) << "nobody else sees it";
+  }
+}
+
+TEST(Findings, DoNotCallASensorMovedThatSawNobodyInTheEnd) {
+  RecordingQuality quality = healthy();
+  for (auto& [id, figures] : quality.sensors)
+    figures.offset_first = figures.offset_last = {0.06, 0.0, 0.0};
+  sensor(quality, "s2").offset_last.fill(std::nan(""));
+  EXPECT_THAT(what(quality), ::testing::IsEmpty());
 }
 
 TEST(Findings, WhatAllSensorsDoAlikeIsNobodysFault) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "common/quality/sensor_tally.h"
 #include "tests/support/builders.h"
 #include "tests/unit/quality/standing_person.h"
 
@@ -62,6 +63,42 @@ TEST(SensorQuality, ShowsASensorThatWasMoved) {
 TEST(SensorQuality, TellsAClockErrorFromMotion) {
   EXPECT_NEAR(judged({Eigen::Vector3d::Zero(), 2}).at(testing::sensor_id("s2")).clock, 2 / 30.0,
               0.005);
+}
+
+TEST(Thinned, SpansTheWholeSeriesInItsOrder) {
+  Thinned<int> all(10);
+  Thinned<int> thinned(10);
+  for (int i = 0; i < 10; ++i) all.add(i);
+  for (int i = 0; i < 1'000; ++i) thinned.add(i);
+  EXPECT_THAT(all.values(), ::testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
+  EXPECT_THAT(thinned.values(), ::testing::ElementsAre(0, 128, 256, 384, 512, 640, 768, 896));
+}
+
+SensorTally moved_in_the_last_third(int views) {
+  SensorTally tally;
+  for (int i = 0; i < views; ++i) {
+    const double at = 300.0 * i / views;
+    const Eigen::Vector3d off(at < 200.0 ? 0.0 : 0.1, 0.0, 0.0);
+    tally.offsets.add({at, off, off});
+    tally.clocks.add({at, off, Eigen::Vector3d::UnitZ()});
+  }
+  return tally;
+}
+
+TEST(SensorQuality, ShowsASensorThatWasMovedLateInALongRecording) {
+  for (const int views : {900, 700'000}) {
+    const SensorQuality found = moved_in_the_last_third(views).quality(0.0, 300.0);
+    EXPECT_NEAR((found.offset_last - found.offset_first).x(), 0.1, 1e-9) << views;
+    EXPECT_NEAR(found.clock_last, 0.0, 1e-9) << views;
+  }
+}
+
+TEST(SensorQuality, KnowsNoPlaceOfATimeInWhichItSawNobody) {
+  SensorTally tally;
+  for (int i = 0; i < 100; ++i) tally.offsets.add({1.0 * i, {0.1, 0.0, 0.0}, {0.1, 0.0, 0.0}});
+  const SensorQuality found = tally.quality(0.0, 300.0);
+  EXPECT_NEAR(found.offset_first.x(), 0.1, 1e-9);
+  EXPECT_TRUE(std::isnan(found.offset_last.x())) << "not 0: it was not moved by 0.1 m";
 }
 
 TEST(SensorQuality, ComparesNothingWithoutPlaces) {
