@@ -120,8 +120,7 @@ class Parameters {
 std::vector<std::string> labels_of(const Take& take) {
   std::vector<std::string> labels;
   for (const PersonTrack& track : take.persons) {
-    const std::string prefix =
-        take.persons.size() > 1 ? "P" + std::to_string(track.person.value) + ":" : "";
+    const std::string prefix = prefix_of(take, track, ":");
     for (const std::string_view name : kJointNames) labels.push_back(prefix + std::string(name));
   }
   return labels;

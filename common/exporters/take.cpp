@@ -141,4 +141,9 @@ Result<Take> make_take(std::vector<FusedSample> samples, const TakeOptions& opti
   return take;
 }
 
+std::string prefix_of(const Take& take, const PersonTrack& track, std::string_view separator) {
+  if (take.persons.size() < 2) return "";
+  return "P" + std::to_string(track.person.value) + std::string(separator);
+}
+
 }  // namespace chorus::exporters

@@ -10,6 +10,8 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/result.h"
@@ -69,6 +71,11 @@ inline constexpr std::size_t kMaxPoses = 500'000;
 /// one instant; more than kMaxPoses.
 [[nodiscard]] Result<Take> make_take(std::vector<FusedSample> samples,
                                      const TakeOptions& options = {});
+
+/// What comes before the names of a person's markers and columns: "P3" and the separator; of a take
+/// of one person nothing.
+[[nodiscard]] std::string prefix_of(const Take& take, const PersonTrack& track,
+                                    std::string_view separator = "_");
 
 /// The instant of a frame.
 [[nodiscard]] Timestamp instant_of(const Take& take, std::size_t frame);

@@ -48,8 +48,7 @@ std::string trc_of(const Take& take, std::string_view file_name, ColumnNames nam
   text += properties(take, markers);
   text += "Frame#\tTime";
   for (const PersonTrack& track : take.persons) {
-    const std::string prefix =
-        take.persons.size() > 1 ? "P" + std::to_string(track.person.value) + "_" : "";
+    const std::string prefix = prefix_of(take, track);
     for (const NamedJoint& each : joints)
       text.append("\t").append(prefix).append(each.name).append("\t\t");
   }

@@ -81,8 +81,7 @@ std::string chorus_columns(const Take& take) {
 std::string pose2sim_columns(const Take& take) {
   std::string text = "frame,time_s";
   for (const PersonTrack& track : take.persons) {
-    const std::string prefix =
-        take.persons.size() > 1 ? "P" + std::to_string(track.person.value) + "_" : "";
+    const std::string prefix = prefix_of(take, track);
     for (const NamedJoint& each : kPose2SimMarkers)
       for (const char axis : kAxes)
         text.append(",").append(prefix).append(each.name).append("_").append(1, axis).append("_m");
