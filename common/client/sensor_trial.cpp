@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "common/base/json.h"
+#include "common/base/shortened.h"
+#include "common/base/strong_id.h"
 #include "common/client/service_client.h"
 #include "common/http/client.h"
 #include "common/http/status.h"
@@ -17,6 +19,7 @@ constexpr http::ClientLimits kTrialLimits{.max_body_bytes = 1u << 20,
                                           .connect_timeout = std::chrono::milliseconds(1500),
                                           .answer_timeout = std::chrono::milliseconds(2500)};
 constexpr JsonLimits kTrialJson{1u << 20, 32};
+constexpr std::size_t kTitle = 80;  // [bytes] of a stranger's title, which every page is shown
 
 SensorTrial bad(std::string words) { return {false, std::move(words), {}}; }
 
@@ -76,9 +79,17 @@ SensorTrial with_frame(const Asking& asking, const std::string& title, SensorTri
   return trial;
 }
 
+/// A service puts its run into its ETags.
+bool of_run(const http::ClientResponse& answer, const std::string& run) {
+  const auto etag = answer.headers.find("etag");
+  return !run.empty() && etag != answer.headers.end() &&
+         etag->second.find(run) != std::string::npos;
+}
+
 }  // namespace
 
-SensorTrial try_sensor(const std::string& url, const std::string& token, const tls::Trust& trust) {
+SensorTrial try_sensor(const std::string& url, const std::string& token, const tls::Trust& trust,
+                       const std::string& own_run) {
   auto parsed = http::parse_url(url);
   if (!parsed)
     return bad(fmt::format("{}: an address looks like http://192.168.1.20:8081/.",
@@ -89,13 +100,16 @@ SensorTrial try_sensor(const std::string& url, const std::string& token, const t
   const auto answer = asking.get("");
   if (!answer) return bad(unanswered(asking.url, answer.error()));
   if (answer->status != http::status::kOk) return refused(answer->status, !token.empty());
+  if (of_run(*answer, own_run))
+    return bad("This is the address of this server itself: type that of a sensor.");
   const auto self = parse_json(answer->body, kTrialJson);
   if (!self || !self->is_object() || !self->contains("frame"))
     return bad(
         "What is there answers, but does not describe itself as a sensor: is the port right?");
   SensorTrial trial;
-  trial.sensor_id = text_at(*self, "sensorId", "");
-  return with_frame(asking, text_at(*self, "title", "A sensor"), std::move(trial));
+  if (const auto id = SensorId::parse(text_at(*self, "sensorId", ""))) trial.sensor_id = id->str();
+  return with_frame(asking, shortened(text_at(*self, "title", "A sensor"), kTitle),
+                    std::move(trial));
 }
 
 }  // namespace chorus::client
