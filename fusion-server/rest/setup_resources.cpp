@@ -117,8 +117,7 @@ struct Setup {
     if (!wish) return pass(wish);
     const auto sensor = sensor_of(*wish, false);
     if (!sensor) return pass(sensor);
-    control.attempt(*sensor);
-    return done({}, http::status::kAccepted);
+    return done(control.attempt(*sensor), http::status::kAccepted);
   }
   [[nodiscard]] Done preview(std::string_view body) const {
     const auto wishes = parse_sensor_wishes(body);

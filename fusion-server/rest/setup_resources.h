@@ -39,7 +39,8 @@ struct SetupControl {
   using Wishes = std::vector<client::FollowedService>;
   std::function<SetupFacts()> facts;
   std::function<void()> search;
-  std::function<void(const client::FollowedService&)> attempt;
+  /// Conflict: this address, or too many others, are being tried.
+  std::function<Result<void>(const client::FollowedService&)> attempt;
   std::function<Result<std::string>(const Wishes&)> preview;
   std::function<Result<void>(const Wishes&)> add;
   std::function<Result<void>(const SensorId&, bool silent)> silence;

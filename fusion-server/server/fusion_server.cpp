@@ -159,6 +159,7 @@ SensorDeskOptions FusionServer::Impl::sensor_desk_options(const std::string& fol
     return config.live.sensors;
   };
   options.changed = [this] { sensors_changed(); };
+  options.run = serving.run;
   return options;
 }
 

@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::uintmax_t kMostChangesBytes = 1u << 20;
 constexpr std::size_t kMostTrials = 32;
+/// Under way at once, one after the other: each takes eight seconds at most.
+constexpr std::ptrdiff_t kMostRunning = 4;
 /// Finding takes a second or two; an operator waits no longer than this.
 constexpr auto kSearch = std::chrono::seconds(6);
 
@@ -102,26 +104,40 @@ void SensorDesk::search() {
   });
 }
 
-void SensorDesk::attempt(const client::FollowedService& sensor) {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (!told_.trials.contains(sensor.url) && told_.trials.size() >= kMostTrials)
-      told_.trials.erase(told_.trials.begin());
-    told_.trials[sensor.url] = {};
-  }
+/// Makes room by forgetting an outcome, never a trial that is under way.
+Result<void> SensorDesk::begin_trial(const std::string& url) {
+  const auto running = [](const auto& trial) { return trial.second.running; };
+  const std::scoped_lock lock(mutex_);
+  auto& trials = told_.trials;
+  const auto same = trials.find(url);
+  if (same != trials.end() && same->second.running)
+    return fail(ErrorCode::Conflict, "setup/try",
+                "this address is being tried already: wait for what comes of it");
+  if (std::ranges::count_if(trials, running) >= kMostRunning)
+    return fail(ErrorCode::Conflict, "setup/try",
+                "other addresses are being tried: try this one when they are done");
+  if (same == trials.end() && trials.size() >= kMostTrials)
+    trials.erase(std::ranges::find_if_not(trials, running));
+  trials[url] = {};
+  return {};
+}
+
+Result<void> SensorDesk::attempt(const client::FollowedService& sensor) {
+  if (auto begun = begin_trial(sensor.url); !begun) return begun;
   worker_.post([this, sensor] {
-    auto result = client::try_sensor(sensor.url, sensor.token, options_.trust());
+    auto result = client::try_sensor(sensor.url, sensor.token, options_.trust(), options_.run);
     const std::scoped_lock lock(mutex_);
     if (const auto trial = told_.trials.find(sensor.url); trial != told_.trials.end())
       trial->second = {false, std::move(result)};
   });
+  return {};
 }
 
 rest::SetupControl SensorDesk::control() {
   rest::SetupControl control;
   control.facts = [this] { return facts(); };
   control.search = [this] { search(); };
-  control.attempt = [this](const client::FollowedService& sensor) { attempt(sensor); };
+  control.attempt = [this](const client::FollowedService& sensor) { return attempt(sensor); };
   control.preview = [this](const Services& more) -> Result<std::string> {
     return with(more).map([](const SensorChanges& next) { return text_of(next, Tokens::Hidden); });
   };

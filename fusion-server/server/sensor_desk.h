@@ -17,6 +17,7 @@ struct SensorDeskOptions {
   std::function<tls::Trust()> trust;     ///< The authorities accepted for https.
   std::function<Services()> configured;  ///< The sensors of the configuration.
   std::function<void()> changed;         ///< Called after each change, to follow other sensors.
+  std::string run;                       ///< Of this server, which is no sensor of its own.
 };
 
 /// Thread-safe.
@@ -37,7 +38,8 @@ class SensorDesk {
   [[nodiscard]] Result<void> put(Result<SensorChanges> next);
   [[nodiscard]] SensorChanges changes() const;
   void search();
-  void attempt(const client::FollowedService& sensor);
+  [[nodiscard]] Result<void> attempt(const client::FollowedService& sensor);
+  [[nodiscard]] Result<void> begin_trial(const std::string& url);
 
   SensorDeskOptions options_;
   mutable std::mutex mutex_;  ///< Guards the members below.

@@ -1,11 +1,16 @@
 #include "fusion-server/server/sensor_changes.h"
 
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <filesystem>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fusion-server/server/sensor_desk.h"
+#include "tests/support/free_port.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::server {
@@ -62,7 +67,7 @@ struct Desk {
 
   [[nodiscard]] SensorDeskOptions options() {
     return {folder.path().string(), [] { return tls::Trust(); }, [this] { return configured; },
-            [this] { ++changed; }};
+            [this] { ++changed; }, "run1"};
   }
 };
 
@@ -94,6 +99,72 @@ TEST(SensorDesk, AFileThatCannotBeReadIsNotWrittenOver) {
   const auto refused = desk.control().add({a_service("s2", 8082)});
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("mend or delete it"));
+}
+
+/// Takes connections and answers nothing, until it is closed.
+struct Mute {
+  Mute() {
+    const sockaddr_in address = testing::loopback(port);
+    EXPECT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    EXPECT_EQ(::listen(socket, 8), 0);
+  }
+  ~Mute() { close(); }
+  void close() { ::close(std::exchange(socket, -1)); }
+  [[nodiscard]] client::FollowedService at(const std::string& path) const {
+    return {named("s"), "http://127.0.0.1:" + std::to_string(port) + "/" + path, "", {}};
+  }
+
+  std::uint16_t port = testing::free_port();
+  int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+};
+
+bool is_done(const rest::SetupControl& control, const std::string& url) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (std::chrono::steady_clock::now() < end) {
+    const auto trials = control.facts().trials;
+    if (const auto found = trials.find(url); found != trials.end() && !found->second.running)
+      return true;
+    std::this_thread::yield();
+  }
+  return false;
+}
+
+TEST(SensorDesk, TriesFewAddressesAtOnceAndEachOnce) {
+  Desk rig;
+  Mute mute;
+  SensorDesk desk(rig.options());
+  const auto control = desk.control();
+  for (const char* path : {"a", "b", "c", "d"}) EXPECT_TRUE(control.attempt(mute.at(path)));
+  const auto again = control.attempt(mute.at("a"));
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().code, ErrorCode::Conflict);
+  EXPECT_THAT(again.error().message, HasSubstr("this address is being tried already"));
+  const auto fifth = control.attempt(mute.at("e"));
+  ASSERT_FALSE(fifth);
+  EXPECT_EQ(fifth.error().code, ErrorCode::Conflict);
+  EXPECT_EQ(control.facts().trials.size(), 4u);
+  mute.close();
+  EXPECT_TRUE(is_done(control, mute.at("d").url));
+  EXPECT_TRUE(control.attempt(mute.at("a"))) << "to be tried again";
+}
+
+TEST(SensorDesk, ForgetsAnOutcomeButNoTrialThatIsUnderWay) {
+  Desk rig;
+  Mute mute;
+  SensorDesk desk(rig.options());
+  const auto control = desk.control();
+  for (int i = 100; i < 131; ++i) {
+    const std::string no_url = "x" + std::to_string(i);  // after http:// in the alphabet
+    ASSERT_TRUE(control.attempt({named("s"), no_url, "", {}}));
+    ASSERT_TRUE(is_done(control, no_url));
+  }
+  ASSERT_TRUE(control.attempt(mute.at("")));
+  ASSERT_TRUE(control.attempt({named("s"), "y", "", {}}));
+  const auto trials = control.facts().trials;
+  EXPECT_EQ(trials.size(), 32u);
+  EXPECT_TRUE(trials.contains(mute.at("").url));
+  EXPECT_FALSE(trials.contains("x100"));
+  mute.close();
 }
 
 }  // namespace
