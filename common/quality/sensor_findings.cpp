@@ -27,7 +27,7 @@ constexpr double kJointOff = 0.1;    // [m] one joint, when that median of it is
 constexpr double kRates = 0.6;       // of the median rate of the sensors
 constexpr double kLate = 0.15;       // [s] later than the others
 constexpr double kRepeats = 0.1;     // of the frames with somebody
-constexpr double kExchanges = 0.7;   // of the views; a sensor that sees backs exchanges some
+constexpr double kExchanges = 0.7;   // of the views from the front
 
 double rounded_mm(double metres) { return std::round(1e3 * metres); }
 double rounded_ms(double seconds) { return std::round(1e3 * seconds); }
@@ -159,8 +159,8 @@ void of_delivery(const Beside& sensor, std::vector<Finding>& out) {
 bool of_sides(const Beside& sensor, std::vector<Finding>& out) {
   if (sensor.alone() || !(sensor.own.exchanged > kExchanges)) return false;
   out.push_back({Judgement::Doubtful,
-                 fmt::format("{} exchanges left and right in {:.0f} % of its views", sensor.name,
-                             100.0 * sensor.own.exchanged),
+                 fmt::format("{} exchanges left and right in {:.0f} % of its views from the front",
+                             sensor.name, 100.0 * sensor.own.exchanged),
                  "check whether its picture is mirrored"});
   return true;
 }

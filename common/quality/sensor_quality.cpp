@@ -24,6 +24,7 @@ constexpr double kWait = 2.0;            // [s] that a sensor's frame waits for 
 constexpr std::size_t kMostWaiting = 8'192;  // frames: of 64 sensors at 60 Hz, two seconds
 constexpr std::array kCentre{JointId::SpineBase, JointId::SpineMid, JointId::SpineShoulder};
 constexpr double kSides = 0.1;  // [m] a person's sides are apart by at least that, seen from there
+constexpr double kFront = 0.5;  // cosine: a sensor within 60 degrees of where the chest points
 
 double seconds_of(Duration time) { return std::chrono::duration<double>(time).count(); }
 
@@ -90,6 +91,18 @@ std::optional<bool> fits_exchanged(const Compared& what) {
   return exchanged < as_it_is;
 }
 
+/// Whether the sensor stands before the fused body, as seen from above.  Behind it sensors take a
+/// back for a front, which says nothing of a mirrored picture.
+bool sees_the_front(const Compared& what) {
+  const auto left = what.fused.place(JointId::ShoulderLeft);
+  const auto right = what.fused.place(JointId::ShoulderRight);
+  if (!left || !right) return false;
+  const Eigen::Vector3d front = (*left - *right).cross(Eigen::Vector3d::UnitY());
+  Eigen::Vector3d there = what.world_from_sensor.translation() - 0.5 * (*left + *right);
+  there.y() = 0.0;
+  return front.dot(there) > kFront * front.norm() * there.norm();
+}
+
 }  // namespace
 
 struct SensorJudge::Impl {
@@ -142,8 +155,10 @@ void SensorJudge::Impl::compare(const SensorFrame& frame, const BodyFrame& view,
   const Compared what{frame, view, *best, place->second, b};
   SensorTally& tally = tallies[frame.sensor];
   const auto exchanged = fits_exchanged(what);
-  if (exchanged) ++tally.sided;
-  if (exchanged.value_or(false)) ++tally.exchanged;
+  if (exchanged && sees_the_front(what)) {
+    ++tally.sided;
+    tally.exchanged += *exchanged ? 1U : 0U;
+  }
   joints(what, exchanged.value_or(false), tally);
   trunk(what, tally);
 }

@@ -50,7 +50,8 @@ struct SensorQuality {
   double clock = 0.0;
   double clock_first = 0.0;
   double clock_last = 0.0;
-  /// Share of its views that fit the fused body better with left and right exchanged.
+  /// Share of its views from the front that fit the fused body better with left and right
+  /// exchanged.
   double exchanged = 0.0;
   /// Residual by distance from the sensor: below 2 m, 2-3, 3-4, farther [m]; NaN: none there.
   std::array<double, 4> by_distance{};

@@ -36,7 +36,7 @@ struct SensorTally {
   std::array<Sample, 4> by_distance;
   Thinned<Offset> offsets{kMostOffsets};
   Thinned<ClockError> clocks{kMostOffsets};
-  std::size_t sided = 0;  ///< Views that tell left from right.
+  std::size_t sided = 0;  ///< Views from the front that tell left from right.
   std::size_t exchanged = 0;
   std::vector<BodyFrame> before;  ///< Of its last frame with somebody.
 

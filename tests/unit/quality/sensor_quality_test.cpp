@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "common/body/bones.h"
 #include "common/quality/sensor_tally.h"
 #include "tests/support/builders.h"
 #include "tests/unit/quality/standing_person.h"
@@ -99,6 +100,29 @@ TEST(SensorQuality, KnowsNoPlaceOfATimeInWhichItSawNobody) {
   const SensorQuality found = tally.quality(0.0, 300.0);
   EXPECT_NEAR(found.offset_first.x(), 0.1, 1e-9);
   EXPECT_TRUE(std::isnan(found.offset_last.x())) << "not 0: it was not moved by 0.1 m";
+}
+
+// The person of boxes looks along +z, wherever it walks.
+TEST(SensorQuality, CountsExchangedSidesInViewsFromTheFrontAlone) {
+  const std::map<SensorId, Eigen::Isometry3d> places{
+      {testing::sensor_id("s1"), Eigen::Isometry3d(Eigen::Translation3d(0, 1, 6))},
+      {testing::sensor_id("s2"), Eigen::Isometry3d(Eigen::Translation3d(0, 1, -6))}};
+  SensorJudge judge;
+  judge.place(places);
+  for (int i = 0; i < 100; ++i) {
+    for (const auto& [id, place] : places) {
+      SensorFrame frame = view(id.str(), i, {});
+      auto& skeleton = frame.bodies.front().skeleton;
+      for (const auto& [left, right] : kMirrorPairs) std::swap(skeleton[left], skeleton[right]);
+      for (Joint& joint : skeleton.joints) joint.position = place.inverse() * joint.position;
+      judge.add(frame);
+    }
+    judge.add(frame_at(i, {body_at(1, path(i))}));
+  }
+  auto sensors = judge.finish();
+  EXPECT_EQ(sensors.at(testing::sensor_id("s1")).exchanged, 1.0) << "its picture is mirrored";
+  EXPECT_EQ(sensors.at(testing::sensor_id("s2")).exchanged, 0.0) << "it takes a back for a front";
+  EXPECT_LT(sensors.at(testing::sensor_id("s2")).residual, 1e-6);
 }
 
 TEST(SensorQuality, ComparesNothingWithoutPlaces) {
