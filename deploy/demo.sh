@@ -383,16 +383,19 @@ while true; do
   for child in "${children[@]}"; do
     if kill -0 "$child" 2>/dev/null; then
       alive+=("$child")
-    else
+    elif [[ "$child" != "$fusion_pid" ]]; then
       echo "a sensor ended; the tracker goes on without it (see $base/sensors/)"
     fi
   done
   children=("${alive[@]}")
-  verdict=0 ended=''
-  wait -n -p ended "${children[@]}" || verdict=$?
-  if [[ "$ended" == "$watch_pid" ]]; then finish_scores; finish_judging; exit "$verdict"; fi
+  # Asked before each wait: when it ends together with a sensor, only the sensor is waited for.
   if ! kill -0 "$fusion_pid" 2>/dev/null; then
+    verdict=0
+    wait "$fusion_pid" || verdict=$?
     show_logs
     fail "the fusion server ended by itself with code $verdict; logs in $logs/"
   fi
+  verdict=0 ended=''
+  wait -n -p ended "${children[@]}" || verdict=$?
+  if [[ "$ended" == "$watch_pid" ]]; then finish_scores; finish_judging; exit "$verdict"; fi
 done

@@ -25,7 +25,8 @@ START_WITHIN_S = 120  # loaded machines are slow
 
 def demo(port, *arguments, cwd=ROOT):
     return subprocess.Popen([str(ROOT / "deploy/demo.sh"), "--bin", str(BIN), "--port", str(port), *arguments], cwd=cwd,
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True,
+                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # tests may run in the background
 
 
 class Demo(unittest.TestCase):
