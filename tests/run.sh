@@ -133,16 +133,22 @@ if [ "${1:-}" = --fuzz ]; then
   exit
 fi
 [ -z "$sanitizer" ] || run_sanitized "$@"
-npm_packages tests
-npm_packages services/viewer
 if [ "${1:-}" = --strict ]; then
+  npm_packages services/viewer
   run_strict
   exit
 fi
-npm_packages services/pose-runner
 
+# The build needs none of these, and they wait for the network; which tests there are depends on them.
+modules=(tests services/viewer services/pose-runner)
+(for folder in "${modules[@]}"; do npm_packages "$folder"; done) &
+npm=$!
 step "build (dev, $jobs at a time)"
-cmake --preset dev "${launcher[@]}" --log-level=WARNING
+configure_dev() { cmake --preset dev "${launcher[@]}" --log-level=WARNING; }
+configure_dev
+cmake --build build/dev -j "$jobs"
+wait "$npm" || { echo "npm could not install what tests need: see above" >&2; exit 1; }
+configure_dev
 cmake --build build/dev -j "$jobs"
 step "every header compiles alone"
 cmake --build build/dev -j "$jobs" --target headers_alone
