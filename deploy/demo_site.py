@@ -17,7 +17,6 @@ import urllib.request
 import demo_hall
 
 START_WITHIN_S = 60
-SETTLE_S = 5  # until the cells have connected and named who is there
 
 
 def fail(words):
@@ -70,29 +69,42 @@ class Hall:
                   "--port", str(self.port + 2), "--tls", tls, "--store", self.folder / "store", "--out", site)
         self.start("nats-server", "nats-server", "-c", site / "nats-server.conf")
 
-    def start_cell(self, cell, first_port):
-        ports = {f"{cell}{i + 1}": first_port + i for i in range(demo_hall.SENSORS_PER_CELL)}
-        for name, port in ports.items():
+    def sensor_ports(self, cell):
+        first = self.port + 3 + demo_hall.CELLS.index(cell) * demo_hall.SENSORS_PER_CELL
+        return {f"{cell}{i + 1}": first + i for i in range(demo_hall.SENSORS_PER_CELL)}
+
+    def start_sensors(self, cell):
+        for name, port in self.sensor_ports(cell).items():
             self.start(name, self.bin / "chorus-sensor", *demo_hall.sensor_arguments(name, port, self.folder))
+
+    def start_cell(self, cell):
         config = self.folder / f"{cell}.fusion.json"
         config.write_text("{}\n", encoding="utf-8")
         self.made("site", "--join", self.folder / "site" / f"{cell}.json", "--out", config)
         port = self.port + demo_hall.CELLS.index(cell)
         self.start(f"fusion-{cell}", self.bin / "chorus-fusion", "--config", config,
-                   *demo_hall.fusion_arguments(cell, port, ports, self.folder))
+                   *demo_hall.fusion_arguments(cell, port, self.sensor_ports(cell), self.folder))
 
     def start_all(self):
+        """The sensors last: cells that do not hear one another yet would name the same person twice."""
         demo_hall.write(self.folder)
         self.start_server()
-        for i, cell in enumerate(demo_hall.CELLS):
-            self.start_cell(cell, self.port + 3 + i * demo_hall.SENSORS_PER_CELL)
+        for cell in demo_hall.CELLS:
+            self.start_cell(cell)
+        self.wait_until("meet", self.connected)
+        for cell in demo_hall.CELLS:
+            self.start_sensors(cell)
+        self.wait_until("see anybody", self.people)
+
+    def wait_until(self, what, holds):
+        """Until it holds in each cell."""
         deadline = time.monotonic() + START_WITHIN_S
-        while not all(self.connected(cell) for cell in demo_hall.CELLS):
+        while not all(holds(cell) for cell in demo_hall.CELLS):
             for name, child in self.children.items():
                 if child.poll() is not None:
                     fail(f"{name} ended; its log is {self.folder / name}.log\n" + (self.folder / f"{name}.log").read_text()[-1000:])
             if time.monotonic() > deadline:
-                fail(f"the cells did not meet within {START_WITHIN_S} s; logs are in {self.folder}")
+                fail(f"the cells did not {what} within {START_WITHIN_S} s; logs are in {self.folder}")
             time.sleep(0.2)
 
     def connected(self, cell):
@@ -118,10 +130,9 @@ def watch(hall, seconds):
                               for cell, people in now.items())
             print(f"[{elapsed:6.1f} s] {words}", flush=True)
             before = now
-        if elapsed > SETTLE_S:
-            for people in now.values():
-                ids |= people.keys()
-                answered |= set(people.values())
+        for people in now.values():
+            ids |= people.keys()
+            answered |= set(people.values())
         time.sleep(0.1)
     print(f"\nids: {', '.join(sorted(ids)) or 'none'}; cells that answered: {', '.join(sorted(answered)) or 'none'}")
     return len(ids) == 1 and answered == set(demo_hall.CELLS)
