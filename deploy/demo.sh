@@ -390,8 +390,7 @@ while true; do
   children=("${alive[@]}")
   # Asked before each wait: when it ends together with a sensor, only the sensor is waited for.
   if ! kill -0 "$fusion_pid" 2>/dev/null; then
-    verdict=0
-    wait "$fusion_pid" || verdict=$?
+    verdict=0; wait "$fusion_pid" || verdict=$?
     show_logs
     fail "the fusion server ended by itself with code $verdict; logs in $logs/"
   fi
