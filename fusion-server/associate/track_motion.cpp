@@ -75,10 +75,15 @@ void turn_velocity(Track& track, const Eigen::Vector3d& seen) {
 }
 
 void update_velocity(Track& track, std::vector<Footprint> prints, const Eigen::Vector3d& centre,
-                     double elapsed) {
+                     Timestamp instant) {
   auto way = way_between(track.footprints, prints);
-  // If both instants have rays only, the points where they meet are compared.
-  if (prints.empty() && track.footprints.empty()) way = centre - track.core;
+  double elapsed = seconds(instant - track.placed);
+  // If both instants have rays only, the points where they meet are compared; `core` is of the
+  // last instant in view, footprints are of the last one that placed the person.
+  if (prints.empty() && track.footprints.empty()) {
+    way = centre - track.core;
+    elapsed = seconds(instant - track.seen);
+  }
   if (track.hits > 0 && elapsed > 0 && way) turn_velocity(track, *way / elapsed);
   track.footprints = std::move(prints);
 }
@@ -169,7 +174,7 @@ void update(Candidate& candidate, Timestamp instant) {
   }
   std::vector<Footprint> prints = footprints_of(candidate.sights);
   cut(track, prints, instant);
-  update_velocity(track, std::move(prints), *found, elapsed);
+  update_velocity(track, std::move(prints), *found, instant);
   if (track.hits == 0) track.found = instant;
   const Spans spans = spans_of(candidate.sights, track.joints);
   const double lasted = track.hits == 0 ? 0.0 : std::clamp(elapsed, 0.0, kLongest);

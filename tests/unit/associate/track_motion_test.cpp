@@ -71,6 +71,44 @@ TEST(TrackMotion, VelocityFollowsTheWalkAndIsNeverAbsurd) {
   EXPECT_LE(wild.tracks.people.at(0).velocity.norm(), 4.0 + 1e-9);
 }
 
+/// The person as a depth sensor shows them, and as a camera without depth does.
+PlacedView by_depth(const Eigen::Vector3d& place) { return {view_at(place), place}; }
+PlacedView by_rays(const Eigen::Vector3d& place) {
+  PlacedView sight{view_at(place, 2)};
+  sight.view.eye = {0, 1.4, -3.5};
+  for (Joint& joint : sight.view.skeleton.joints) {
+    if (!joint.seen()) continue;
+    joint.position = (joint.position - sight.view.eye).normalized();
+    joint.measurement = Measurement::Ray;
+  }
+  sight.rays = true;
+  return sight;
+}
+
+TEST(TrackMotion, WhomACameraAloneHasFollowedIsPlacedAgainWithoutALeapOfSpeed) {
+  Track track;
+  Timestamp instant = from_unix_ns(1'790'000'000'000'000'000);
+  Eigen::Vector3d place(-1, 1, 0);
+  const auto see = [&](std::vector<PlacedView> sights) {
+    instant += kMotionFrame;
+    place.x() += kFrameSeconds;  // 1 m/s
+    Candidate candidate = predict(track, instant, {});
+    for (PlacedView& each : sights) candidate.sights.push_back(std::move(each));
+    update(candidate, instant);
+    track = candidate.track;
+  };
+  const auto next = [&] {
+    return Eigen::Vector3d(place + kFrameSeconds * Eigen::Vector3d::UnitX());
+  };
+  for (int i = 0; i < 40; ++i) see({by_depth(next()), by_rays(next())});
+  for (int i = 0; i < 30; ++i) see({by_rays(next())});
+  ASSERT_EQ(track.seen, instant);
+  ASSERT_EQ(instant - track.placed, 30 * kMotionFrame);
+  EXPECT_NEAR(track.velocity.x(), 1.0, 0.2);
+  see({by_depth(next()), by_rays(next())});
+  EXPECT_NEAR(track.velocity.x(), 1.0, 0.2) << "the way of a second is no way of a frame";
+}
+
 TEST(TrackMotion, HeightDoesNotSeparateAPersonFromItsTrack) {
   Floor floor;
   floor.walk(0.0, 5);
