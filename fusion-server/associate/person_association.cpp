@@ -170,7 +170,9 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
     // Whom one camera without depth alone sees is tracked for `coast` after others have seen them.
     const bool recent = instant - track.seen <= config.carry;
     const bool shown = track.named && !track.withheld && is_settled(track, config);
-    if (recent && shown) people.push_back(person_of(candidate));
+    if (!recent || !shown) continue;
+    candidate.track.published = instant;
+    people.push_back(person_of(candidate));
   }
   keep_the_best(people);
   return people;

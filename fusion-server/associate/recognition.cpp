@@ -66,8 +66,7 @@ struct Answer {
 Track& track_of(const Question& question) { return question.candidate->track; }
 
 /// What is remembered of a track that ends: if its person probably changed, the one before.
-Missing missing_of(const Track& track, const Repeatability& repeatability) {
-  const auto doubt = track.build.doubt(repeatability);
+Missing missing_of(const Track& track, const std::optional<Doubt>& doubt) {
   if (!doubt || doubt->odds >= 0) return {track.id, track.seen, track.build.whole()};
   return {track.id, track.build.all()[doubt->cut - 1].end, track.build.before(doubt->cut)};
 }
@@ -88,11 +87,11 @@ std::vector<Question> questions_of(std::vector<Candidate>& candidates, const Tra
       questions.push_back({&each, track.found, track.build.whole()});
       continue;
     }
-    const auto doubt = track.build.doubt(tracks.repeatability);
-    if (!doubt || doubt->odds > kInQuestion) continue;
-    const Timestamp since = track.build.all()[doubt->cut].begin;
-    const Build build = track.build.after(doubt->cut);
-    questions.push_back({&each, since, build, doubt, {}, turn_of(build, tracks.repeatability)});
+    if (!each.doubt || each.doubt->odds > kInQuestion) continue;
+    const Timestamp since = track.build.all()[each.doubt->cut].begin;
+    const Build build = track.build.after(each.doubt->cut);
+    questions.push_back(
+        {&each, since, build, each.doubt, {}, turn_of(build, tracks.repeatability)});
   }
   return questions;
 }
@@ -105,7 +104,7 @@ std::vector<Known> known_people(std::vector<Question>& questions,
   for (const Missing& each : tracks.missing) known.push_back({each.id, each.seen, each.build});
   for (const Candidate& each : candidates) {
     if (!each.track.named || !each.track.admitted || each.track.seen == instant) continue;
-    Missing gone = missing_of(each.track, tracks.repeatability);
+    Missing gone = missing_of(each.track, each.doubt);
     if (can_be_missing(gone.build)) known.push_back({gone.id, gone.seen, gone.build, &each});
   }
   for (Question& question : questions) {
@@ -168,6 +167,27 @@ bool is_decided(const Question& question, const CostTable& table, std::size_t ro
   return is_glance(question.build) && best - rival > (question.doubt ? kSure : kSureOfNewcomer);
 }
 
+/// True if the id of `own` is given to somebody else for certain.
+bool is_given_up(std::optional<std::size_t> own, const std::vector<Question>& questions,
+                 const std::vector<Answer>& answers) {
+  for (std::size_t i = 0; own && i < answers.size(); ++i) {
+    if (answers[i].decided && answers[i].known == own && questions[i].own != own) return true;
+  }
+  return false;
+}
+
+/// Whoever gives up an id to somebody else gets their own answer at the same time, along the whole
+/// chain of those who do.
+void decide_exchanges(const std::vector<Question>& questions, std::vector<Answer>& answers) {
+  for (bool more = true; more;) {
+    more = false;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      if (answers[i].decided || !is_given_up(questions[i].own, questions, answers)) continue;
+      answers[i].decided = more = true;
+    }
+  }
+}
+
 /// The answers that together are likeliest.
 std::vector<Answer> answers_of(const std::vector<Question>& questions, const CostTable& table,
                                Timestamp instant) {
@@ -175,14 +195,7 @@ std::vector<Answer> answers_of(const std::vector<Question>& questions, const Cos
   std::vector<Answer> answers;
   for (std::size_t i = 0; i < questions.size(); ++i)
     answers.push_back({chosen[i], is_decided(questions[i], table, i, chosen[i], instant)});
-  // Whoever gives up an id to somebody else does so at the same time.
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    for (std::size_t k = 0; k < answers.size(); ++k) {
-      if (!answers[k].decided || !answers[k].known || answers[k].known == questions[k].own)
-        continue;
-      if (answers[k].known == questions[i].own) answers[i].decided = true;
-    }
-  }
+  decide_exchanges(questions, answers);
   return answers;
 }
 
@@ -213,6 +226,15 @@ void split(const Question& question, Tracks& tracks) {
   track.found = question.since;
   track.named = false;
   track.withheld = false;
+  track.published.reset();
+}
+
+/// What was published of a track under its id since its person changed; none if nothing was.
+std::optional<Correction> wrongly_published(const Question& question) {
+  const Track& track = track_of(question);
+  if (!question.doubt || !track.admitted || !track.published) return std::nullopt;
+  if (*track.published < question.since) return std::nullopt;
+  return Correction{track.id, {}, question.since, *track.published};
 }
 
 /// Gives a missing person's id to the track.
@@ -239,16 +261,22 @@ void learn(const Track& track, Repeatability& repeatability) {
     repeatability.learn(all.back().build, usual);
 }
 
+/// Computes the doubt about a track, and by it the person's usual build.
+void renew_usual(Candidate& candidate, const Repeatability& repeatability) {
+  candidate.doubt = candidate.track.build.doubt(repeatability);
+  candidate.track.usual = missing_of(candidate.track, candidate.doubt).build;
+}
+
 /// Names those for whom it is decided.
 std::vector<Correction> apply(const std::vector<Question>& questions,
                               const std::vector<Answer>& answers, const std::vector<Known>& known,
                               std::vector<Candidate>& candidates, Tracks& tracks) {
   std::vector<std::size_t> changed;
-  std::vector<PersonId> before;
+  std::vector<std::optional<Correction>> wrong;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!answers[i].decided || (questions[i].own && answers[i].known == questions[i].own)) continue;
     changed.push_back(i);
-    before.push_back(questions[i].doubt ? track_of(questions[i]).id : PersonId{});
+    wrong.push_back(wrongly_published(questions[i]));
     if (questions[i].doubt) split(questions[i], tracks);
   }
   std::vector<Correction> corrections;
@@ -261,7 +289,10 @@ std::vector<Correction> apply(const std::vector<Question>& questions,
       track.id = PersonId{tracks.next_id++};
     }
     track.named = true;
-    if (question.doubt) corrections.push_back({before[i], track.id, question.since, track.seen});
+    renew_usual(*question.candidate, tracks.repeatability);
+    if (!wrong[i]) continue;
+    wrong[i]->person = track.id;
+    corrections.push_back(*wrong[i]);
   }
   return corrections;
 }
@@ -269,7 +300,8 @@ std::vector<Correction> apply(const std::vector<Question>& questions,
 }  // namespace
 
 void miss(const Track& track, Tracks& tracks) {
-  if (track.named && track.admitted) add_missing(missing_of(track, tracks.repeatability), tracks);
+  if (track.named && track.admitted)
+    add_missing(missing_of(track, track.build.doubt(tracks.repeatability)), tracks);
 }
 
 void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config) {
@@ -287,7 +319,12 @@ void forget(PersonId person, Tracks& tracks) {
 std::vector<Correction> recognise(std::vector<Candidate>& candidates, Tracks& tracks,
                                   Timestamp instant, const AssociationConfig& config) {
   for (const Candidate& each : candidates) {
-    if (each.track.seen == instant) learn(each.track, tracks.repeatability);
+    // A view that only turns the track adds nothing to its build.
+    if (each.track.placed == instant) learn(each.track, tracks.repeatability);
+  }
+  for (Candidate& each : candidates) {
+    each.doubt = each.track.build.doubt(tracks.repeatability);
+    if (each.track.placed == instant) each.track.usual = missing_of(each.track, each.doubt).build;
   }
   std::vector<Question> questions = questions_of(candidates, tracks, instant, config);
   const std::vector<Known> known = known_people(questions, candidates, tracks, instant);
@@ -301,8 +338,6 @@ std::vector<Correction> recognise(std::vector<Candidate>& candidates, Tracks& tr
   }
   auto corrections = apply(questions, answers, known, candidates, tracks);
   std::erase_if(candidates, [](const Candidate& each) { return each.track.id == PersonId{}; });
-  for (Candidate& each : candidates)
-    each.track.usual = missing_of(each.track, tracks.repeatability).build;
   return corrections;
 }
 

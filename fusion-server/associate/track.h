@@ -28,7 +28,7 @@ struct Track {
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   PlanError error = PlanError::Zero();                 ///< Of `core`, as far as sensors state it.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
-  /// The bodies that sensors showed when the person was last seen.
+  /// The bodies that sensors showed when the person was last placed.
   std::vector<Footprint> footprints = {};
   /// For how many instants in a row another track, which a merger would keep, has been on the same
   /// spot without a sensor that sees both.
@@ -49,6 +49,7 @@ struct Track {
   bool named = false;
   /// True while the person now in view is probably not the one who has the id.
   bool withheld = false;
+  std::optional<Timestamp> published = {};  ///< When last published under this id.
 };
 
 /// A person who left, or who was not found for too long, and whose build is known.
@@ -73,6 +74,7 @@ struct Candidate {
   Eigen::Vector3d predicted = Eigen::Vector3d::Zero();  ///< Where the core is expected [m].
   double gate = 0.0;  ///< How far from there the person is looked for [m].
   std::vector<PlacedView> sights = {};
+  std::optional<Doubt> doubt = {};  ///< That the person changed, as recognise() found it.
 };
 
 }  // namespace chorus::associate

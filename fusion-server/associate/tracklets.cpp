@@ -54,7 +54,8 @@ std::optional<Doubt> Tracklets::doubt(const Repeatability& repeatability) const 
   for (std::size_t cut = 1; cut < tracklets_.size(); ++cut) {
     before.add(tracklets_[cut - 1].build);
     if (sight_of(before) < kKnown || !(sight_of(after[cut]) > 0)) continue;
-    const double odds = tracklets_[cut].continuity + likeness(before, after[cut], repeatability);
+    const double odds =
+        tracklets_[cut].continuity + likeness(stated(before), stated(after[cut]), repeatability);
     if (!most || odds < most->odds) most = {cut, odds};
   }
   return most;

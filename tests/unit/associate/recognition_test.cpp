@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -46,6 +47,7 @@ struct RecognitionRoom {
   int sensors = 4;
   std::uint64_t first_body = 1;  ///< The sensors' own id of the first of those who are seen.
   std::vector<Correction> corrections = {};
+  std::map<PersonId, Timestamp> last_published = {};
 
   std::vector<Person> see(const std::vector<Somebody>& people) {
     instant += kFrameInterval;
@@ -57,6 +59,7 @@ struct RecognitionRoom {
     Grouping grouping = group(std::move(scene), tracks, config);
     tracks = std::move(grouping.tracks);
     std::ranges::move(grouping.corrections, std::back_inserter(corrections));
+    for (const Person& person : grouping.people) last_published[person.id] = instant;
     return std::move(grouping.people);
   }
   std::vector<Person> see_for(double time, const std::vector<Somebody>& people) {
@@ -179,6 +182,7 @@ TEST(Turn, WhoseViewsGoOverToSomebodyElseLosesTheId) {
   EXPECT_EQ(room.corrections[0].published, kFirst);
   EXPECT_EQ(room.corrections[0].person, people[0].id);
   EXPECT_NEAR(seconds(room.corrections[0].since - changed), 0.0, 1.1) << "a tracklet at most";
+  EXPECT_EQ(room.corrections[0].until, room.last_published.at(kFirst));
   room.see_for(5.0, {});
   EXPECT_EQ(room.see_for(2.0, {{0.0}}).at(0).id, kFirst) << "and who was lost is remembered";
 }
@@ -241,6 +245,7 @@ Candidate candidate(std::uint64_t id, double size, bool gone) {
   out.track.hits = 100;
   out.track.found = gone ? kStart : kStart + std::chrono::seconds(10);
   out.track.seen = gone ? kStart + std::chrono::seconds(5) : kStart + std::chrono::seconds(15);
+  out.track.placed = out.track.seen;
   out.track.admitted = out.track.named = gone;
   std::vector<PlacedView> views;
   for (int sensor = 0; sensor < 4; ++sensor) views.push_back({view_of({0.0, size}, sensor, 1)});
@@ -281,7 +286,7 @@ Candidate found_again(double before, double size, double time) {
   for (int sensor = 0; sensor < 4; ++sensor) views.push_back({view_of({0.0, size}, sensor, 1)});
   out.track.build.cut(1.5);
   out.track.build.add(spans_of(views, {}), kNow, time);
-  out.track.seen = kNow;
+  out.track.seen = out.track.placed = kNow;
   out.sights = views;
   return out;
 }
@@ -291,9 +296,57 @@ TEST(Recognition, AnIdThatNobodyHasSeenIsNotMissed) {
   tracks.next_id = 10;
   std::vector<Candidate> candidates{found_again(1.0, 1.2, 2.0)};
   candidates[0].track.admitted = false;
-  recognise(candidates, tracks, kNow, {});
+  EXPECT_TRUE(recognise(candidates, tracks, kNow, {}).empty()) << "and nothing is corrected";
   EXPECT_EQ(candidates[0].track.id, PersonId{10}) << "somebody else";
   EXPECT_TRUE(tracks.missing.empty()) << "it was never published";
+}
+
+TEST(Recognition, WhatWasWithheldAllTheTimeIsNotCorrected) {
+  for (const bool withheld : {true, false}) {
+    Tracks tracks;
+    tracks.next_id = 10;
+    std::vector<Candidate> candidates{found_again(1.0, 1.2, 2.0)};
+    candidates[0].track.published = withheld ? kNow - std::chrono::seconds(10) : kNow;
+    EXPECT_EQ(recognise(candidates, tracks, kNow, {}).size(), withheld ? 0u : 1u);
+    EXPECT_EQ(candidates[0].track.id, PersonId{10});
+    EXPECT_FALSE(candidates[0].track.published) << "the new id was not published yet";
+  }
+}
+
+TEST(Recognition, ASecondInViewIsLearnedOnceHoweverLongACameraAloneFollows) {
+  Tracks tracks;
+  tracks.next_id = 10;
+  std::vector<Candidate> candidates{found_again(1.0, 1.0, 1.0)};
+  recognise(candidates, tracks, kNow, {});
+  const double learned = tracks.repeatability.seconds;
+  EXPECT_EQ(learned, Repeatability{}.seconds + 1.0);
+  for (int i = 1; i < 90; ++i) {
+    candidates[0].track.seen = kNow + i * kFrameInterval;
+    recognise(candidates, tracks, candidates[0].track.seen, {});
+  }
+  EXPECT_EQ(tracks.repeatability.seconds, learned);
+}
+
+/// A track under `id`, of somebody of size `before`, that now follows somebody of size `now`.
+Candidate gone_over(std::uint64_t id, double before, double now, double time) {
+  Candidate out = found_again(before, now, time);
+  out.track.id = PersonId{id};
+  return out;
+}
+
+TEST(Recognition, OfThreeWhoTookEachOthersPlaceNobodyVanishes) {
+  // The last one is known well enough; the others give up their ids one after the other, against
+  // the order of the tracks.
+  Tracks tracks;
+  tracks.next_id = 10;
+  std::vector<Candidate> candidates{gone_over(1, 1.0, 1.16, 0.2), gone_over(2, 1.08, 1.0, 0.2),
+                                    gone_over(3, 1.16, 1.08, 2.0)};
+  recognise(candidates, tracks, kNow, {});
+  ASSERT_EQ(candidates.size(), 3u);
+  EXPECT_EQ(candidates[0].track.id, PersonId{3});
+  EXPECT_EQ(candidates[1].track.id, PersonId{1});
+  EXPECT_EQ(candidates[2].track.id, PersonId{2});
+  EXPECT_TRUE(tracks.missing.empty());
 }
 
 enum class Shown { AsBefore, NotAtAll, AsAnother };
