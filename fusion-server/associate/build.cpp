@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/base/median.h"
+#include "common/base/square.h"
 
 namespace chorus::associate {
 namespace {
@@ -58,8 +58,6 @@ constexpr double kSlowShare = 1.7;
 constexpr double kErrorTime = 1.5;
 constexpr double kFrameShare = 0.1;  // [s]
 
-double squared(double value) { return value * value; }
-
 struct Mean {
   double sum = 0.0;
   double count = 0.0;
@@ -94,11 +92,11 @@ Located tracked_points(const Skeleton<WorldSpace>& body) {
 }
 
 double variance_of(const Build& build, std::size_t span) {
-  const double by_views = squared(kOwnInOneView) / std::max(1.0, build.views);
+  const double by_views = square(kOwnInOneView) / std::max(1.0, build.views);
   const double time = build.sight[span];
   const double by_time =
       kLastingShare + kSlowShare / (1.0 + time / kErrorTime) + kFrameShare / time;
-  return (squared(kOwnLength) + by_views) * by_time;
+  return (square(kOwnLength) + by_views) * by_time;
 }
 
 struct Difference {
@@ -126,7 +124,7 @@ Difference difference(const StatedBuild& one, const StatedBuild& other) {
   all.own /= all.count;
   all.size /= weights;
   for (std::size_t i = 0; i < kSpans; ++i) {
-    if (in_both(one, other, i)) all.rest += squared(one.mean[i] - other.mean[i] - all.size);
+    if (in_both(one, other, i)) all.rest += square(one.mean[i] - other.mean[i] - all.size);
   }
   return all;
 }
@@ -190,7 +188,9 @@ void Build::add(const Build& other) {
 }
 
 double sight_of(const Build& build) {
-  return median(std::vector<double>(build.sight.begin(), build.sight.end()));
+  std::array<double, kSpans> sight = build.sight;
+  std::ranges::nth_element(sight, sight.begin() + kSpans / 2);
+  return sight[kSpans / 2];
 }
 
 StatedBuild stated(const Build& build) {
@@ -214,7 +214,7 @@ void Repeatability::learn(const StatedBuild& now, const StatedBuild& usual) {
     ratio += (std::min(squares / expected, kMostOff) - ratio) / seconds;
     ratio = std::max(1.0, ratio);
   };
-  follow(size, squared(off.size), kSizeShare * off.own / off.count);
+  follow(size, square(off.size), kSizeShare * off.own / off.count);
   follow(lengths, off.rest, (off.count - 1.0) * off.own);
 }
 
@@ -228,8 +228,8 @@ double likeness(const StatedBuild& one, const StatedBuild& other,
   if (!(off.count > 0)) return 0.0;
   const double own_size = repeatability.size * kSizeShare * off.own / off.count;
   const double own_length = repeatability.lengths * off.own;
-  return odds_of(squared(off.size), 1.0, own_size, 2.0 * squared(kOthersSize)) +
-         odds_of(off.rest, off.count - 1.0, own_length, 2.0 * squared(kOthersLength));
+  return odds_of(square(off.size), 1.0, own_size, 2.0 * square(kOthersSize)) +
+         odds_of(off.rest, off.count - 1.0, own_length, 2.0 * square(kOthersLength));
 }
 
 }  // namespace chorus::associate
