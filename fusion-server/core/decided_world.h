@@ -25,7 +25,6 @@ struct DecidedWorld {
 
   Hindsight hindsight;  ///< Instants that may be fused again.
   pipeline::Smoother smoother;
-  std::vector<Snapshot> smoothed;  ///< Not fetched yet.
   PendingInstant pending;
   /// The places before, from which bodies fade to those in use; set until the next instant.
   std::optional<Registration> replaced;

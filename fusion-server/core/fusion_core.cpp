@@ -101,8 +101,8 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
                     {},
                     parts_of(step.snapshot),
                     world_.pending.awaited.extension};
-  reports_ = step.snapshot.reports;
-  for (const SensorReport& report : reports_) {
+  told_.reports = step.snapshot.reports;
+  for (const SensorReport& report : told_.reports) {
     const bool spoke = report.basis == Basis::Exact || report.basis == Basis::Interpolated;
     if (!spoke && registration().sensors.contains(report.sensor))
       answered.without.push_back(report.sensor);
@@ -146,7 +146,7 @@ void FusionCore::smooth(const pipeline::Inputs& in, const pipeline::Perceived& s
   auto now = pipeline::perception_of(in, pipeline::taking_part(registration(), config), seen);
   for (pipeline::Step& step : world_.smoother.take(std::move(now), config)) {
     fade_.apply(step.snapshot.bodies, step.snapshot.instant);
-    world_.smoothed.push_back(std::move(step.snapshot));
+    told_.smoothed.push_back(std::move(step.snapshot));
   }
 }
 
@@ -171,7 +171,7 @@ Result<void> FusionCore::register_anew(const SensorId& sensor) {
   Registration before = registration();
   if (auto released = registrar_.release(sensor); !released) return released;
   if (!before.sensors.contains(sensor)) return {};
-  guard_.displaced(sensor);
+  guard_.released();
   strays_.forget();
   change_places(std::move(before));
   return {};

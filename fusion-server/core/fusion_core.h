@@ -42,7 +42,7 @@ class FusionCore {
   [[nodiscard]] std::optional<Snapshot> amended(Timestamp now);
   /// Snapshots of seconds ago, fused again with what has been seen since (pipeline/smoother.h),
   /// each once; none unless SmoothingConfig::live.  Call it after each tick.
-  [[nodiscard]] std::vector<Snapshot> smoothed() { return std::exchange(world_.smoothed, {}); }
+  [[nodiscard]] std::vector<Snapshot> smoothed() { return std::exchange(told_.smoothed, {}); }
   /// For how long nothing will be due unless a frame arrives.
   [[nodiscard]] Duration idle(Timestamp now);
 
@@ -77,7 +77,7 @@ class FusionCore {
   /// The whole progress except storage and commands, which are handled elsewhere.
   [[nodiscard]] RegistrationProgress progress(Timestamp now) const;
 
-  [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return reports_; }
+  [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return told_.reports; }
   /// Whether the weights in reports() mean anything to the method in use.
   [[nodiscard]] bool uses_weights() const {
     return pipeline::uses_weights(config_.pipeline.fusion.method);
@@ -101,6 +101,12 @@ class FusionCore {
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:
+  /// What is told beside the snapshots; a change of places takes nothing of it back.
+  struct Told {
+    std::vector<SensorReport> reports;
+    std::vector<Snapshot> smoothed;  ///< Not fetched yet.
+  };
+
   void change_places(Registration before);
   void leave_world();
   [[nodiscard]] bool is_stray(const SensorId& sensor) const;
@@ -120,7 +126,7 @@ class FusionCore {
   Registrar registrar_;
   DecidedWorld world_;
   CrossFade fade_;
-  std::vector<SensorReport> reports_;
+  Told told_;
   Guard guard_;
   Strays strays_;
   worn::Wear wear_;

@@ -88,6 +88,11 @@ void Guard::displaced(const SensorId& sensor) {
   watch_.forget();
 }
 
+void Guard::released() {
+  finding_.reset();
+  watch_.forget();
+}
+
 void Guard::replaced(const Registration& before, const Registration& now) {
   if (!same_places(before, now)) watch_.forget();
   finding_.reset();

@@ -46,7 +46,10 @@ class Guard {
 
   /// Call this when the sensor has lost its place; its alarm lasts until it has a new one.
   void displaced(const SensorId& sensor);
-  /// How often that happened.
+  /// Call this when a sensor has lost its place because somebody asked: what was found so far is
+  /// given up, and nothing is told of it.
+  void released();
+  /// How often displaced() took an alarm.
   [[nodiscard]] std::uint64_t times_displaced() const noexcept { return times_displaced_; }
   /// Drops the current finding, and the alarms of sensors that have a place again; all alarms if no
   /// sensor has a place. If any place has changed, what was learned about shifts is forgotten, too.

@@ -118,6 +118,22 @@ TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
   EXPECT_LT(run(std::chrono::seconds(2)), usual + 0.005);
 }
 
+TEST_F(Pushed, ASensorThatSomebodyAskedToPlaceAnewIsNotToldOfAsMoved) {
+  run(std::chrono::seconds(40));
+  const auto session = core_.start_session(std::chrono::minutes(5), kStart + t_);
+  ASSERT_TRUE(session) << "while it lasts no sensor loses its place";
+  pushed_ = 1;
+  push_ = 0.08;
+  run(std::chrono::seconds(8));
+  const SensorId moved = sensor_id("s2");
+  ASSERT_TRUE(core_.guard().alarm_of(moved));
+  ASSERT_TRUE(core_.cancel_session(*session, kStart + t_));
+  ASSERT_TRUE(core_.register_anew(moved));
+  EXPECT_FALSE(core_.registration().sensors.contains(moved));
+  EXPECT_FALSE(core_.guard().alarm_of(moved));
+  EXPECT_EQ(core_.displaced(), 0u);
+}
+
 TEST_F(Pushed, APlaceThatWasChangedOnPurposeIsNoAlarm) {
   run(std::chrono::seconds(40));
   ASSERT_TRUE(core_.move_origin({1.0, 2.0, 0.5}));

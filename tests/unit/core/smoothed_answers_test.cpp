@@ -85,6 +85,20 @@ TEST(SmoothedAnswers, IncludeFramesThatCameTooLateForTheFirstAnswer) {
   EXPECT_GT(complete(all.smoothed, all.smoothed.size()), 0.95);
 }
 
+TEST(SmoothedAnswers, AreNotLostWhenPlacesChangeBeforeTheyAreFetched) {
+  FusionCore core(smoothing(), ring());
+  std::size_t ticks = 0;
+  for (Duration t{0}; t < std::chrono::seconds(3); t += milliseconds(11)) {
+    for (int i = 0; i < kSensors; ++i) core.take(sight(i, t));
+    while (core.tick(kStart + t)) ++ticks;
+  }
+  ASSERT_TRUE(core.register_anew(sensor_id("s3")));
+  ASSERT_FALSE(core.registration().sensors.contains(sensor_id("s3")));
+  const auto smoothed = core.smoothed();
+  EXPECT_NEAR(static_cast<double>(ticks - smoothed.size()), 60.0, 2.0);
+  EXPECT_TRUE(core.smoothed().empty()) << "each once";
+}
+
 TEST(SmoothedAnswers, ChangeNothingThatIsAnsweredAtOnce) {
   const LiveAndSmoothed with = answers(smoothing());
   const LiveAndSmoothed without = answers(of_three<CoreConfig>());
