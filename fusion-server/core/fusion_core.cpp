@@ -278,7 +278,7 @@ void FusionCore::change_places(Registration before) {
 
 void FusionCore::forget(PersonId person) {
   associate::forget(person, memory_.tracks);
-  memory_.sides.people.erase(person);
+  pipeline::forget(person, memory_);
   memory_.seating.leave(person);
   world_.hindsight.forget();  // earlier answers are not given again with this person
   world_.smoother = {};

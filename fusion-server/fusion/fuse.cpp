@@ -62,6 +62,14 @@ FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   return body;
 }
 
+void Memory::forget(PersonId person) {
+  std::erase_if(estimators_, [&](const auto& entry) { return entry.first.first == person; });
+  last_.erase(person);
+  several_.erase(person);
+  place_errors_.erase(person);
+  limbs_.erase(person);
+}
+
 void Memory::keep_only(const std::set<PersonId>& tracked) {
   std::erase_if(estimators_,
                 [&](const auto& entry) { return !tracked.contains(entry.first.first); });

@@ -34,6 +34,7 @@ class Memory {
   /// their last pose.  When the configuration changes, all memory is cleared.
   [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
                                             const Instant& instant, const FusionConfig& config);
+  void forget(PersonId person);
   /// Forgets people who are no longer tracked.
   void keep_only(const std::set<PersonId>& tracked);
 

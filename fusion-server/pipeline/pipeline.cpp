@@ -180,6 +180,20 @@ std::vector<SensorId> taking_part(const Registration& registration, const Pipeli
   return sensors;
 }
 
+void forget(PersonId person, Memory& memory) {
+  memory.sides.people.erase(person);
+  std::erase_if(memory.sides.shoulders,
+                [&](const auto& entry) { return entry.first.first == person; });
+  memory.fusion.forget(person);
+}
+
+void forget(const std::vector<Correction>& corrections, Memory& memory) {
+  for (const Correction& each : corrections) {
+    forget(each.published, memory);
+    forget(each.person, memory);
+  }
+}
+
 void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
   for (Person& person : people) {
     for (SensorView& view : person.views) {
@@ -226,6 +240,7 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion, memory.seating};
   perceived.people = std::move(grouped.people);
   perceived.corrections = std::move(grouped.corrections);
+  forget(perceived.corrections, perceived.memory);
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
   forget_the_gone(perceived.memory);

@@ -64,6 +64,12 @@ struct Memory {
   Seating seating;
 };
 
+/// Forgets what fusion and sides have learned of a person.
+void forget(PersonId person, Memory& memory);
+/// Forgets it of the people who were published under each other's ids: since then, one has taught
+/// what is kept under the other's.
+void forget(const std::vector<Correction>& corrections, Memory& memory);
+
 /// The result of all stages before fusion: the people at an instant, each with all views.
 struct Perceived {
   std::vector<Person> people;

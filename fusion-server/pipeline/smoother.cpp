@@ -38,8 +38,9 @@ std::vector<fusion::BodyAt> course_of(const std::deque<Step>& fused, PersonId pe
 }  // namespace
 
 Perception perception_of(const Inputs& in, std::vector<SensorId> sensors, const Perceived& seen) {
-  Perception now{in, std::move(sensors),       seen.people, seen.reports, {},
-                 {}, seen.registration_version};
+  Perception now{in, std::move(sensors), seen.people, seen.reports, {}, {}};
+  now.registration_version = seen.registration_version;
+  now.corrections = seen.corrections;
   for (const associate::Track& track : seen.memory.tracks.people) now.tracked.insert(track.id);
   for (const auto& [person, sides] : seen.memory.sides.people) {
     if (sides.seen == in.instant) now.sides.emplace(person, sides.filter.step());
@@ -99,6 +100,7 @@ void Smoother::fuse_oldest(const PipelineConfig& config) {
   seen.registration_version = now.registration_version;
   seen.memory = std::move(memory_);
   seen.memory.fusion.keep_only(now.tracked);
+  forget(now.corrections, seen.memory);
   fused_.push_back(fuse(std::move(seen), now.in, std::move(now.sensors), config));
   memory_ = std::exchange(fused_.back().memory, {});
 }

@@ -23,6 +23,7 @@ struct Perception {
   std::set<PersonId> tracked;                   ///< Everybody, seen or not.
   std::map<PersonId, facing::SidesStep> sides;  ///< Of those whose sides were resolved.
   std::uint64_t registration_version = 0;
+  std::vector<Correction> corrections = {};
 };
 
 [[nodiscard]] Perception perception_of(const Inputs& in, std::vector<SensorId> sensors,

@@ -207,7 +207,7 @@ TEST(FourRealCameras, OneMeasuredDistanceScalesPlacesAndPeopleWithNothingElseCon
   ASSERT_TRUE(unknown) << unknown.error().message;
   EXPECT_EQ(unknown->registration.verdict, Verdict::Provisional);
   EXPECT_THAT(unknown->registration.reasons,
-              testing::Contains(testing::HasSubstr("scale unknown")));
+              ::testing::Contains(::testing::HasSubstr("scale unknown")));
 
   const SensorId a = recording.tracks[0].sensor;
   const SensorId b = recording.tracks[2].sensor;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "fusion-server/fusion/methods.h"
+#include "tests/support/builders.h"
 #include "tests/unit/pipeline/ring.h"
 
 namespace chorus::pipeline {
@@ -203,6 +204,47 @@ TEST(StepProperty, MovingAllSensorsByOneTransformMovesTheResult) {
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const Eigen::Vector3d expected = moved_from_world * before.skeleton.joints[i].position;
     EXPECT_LT((expected - after.skeleton.joints[i].position).norm(), 1e-9);
+  }
+}
+
+/// Four sensors that see two people, one of them larger; `exchanged`: under each other's ids.
+void push_two(Histories& histories, Timestamp instant, bool exchanged) {
+  for (int i = 0; i < 4; ++i) {
+    SensorFrame frame;
+    frame.sensor = sensor(i);
+    frame.captured = instant;
+    for (const int k : {0, 1}) {
+      Skeleton<WorldSpace> body = testing::standing_person();
+      for (Joint& joint : body.joints) {
+        joint.position *= (k == 0) == exchanged ? 1.1 : 1.0;
+        joint.position.x() += 1.2 * k - 0.6;
+      }
+      frame.bodies.push_back({BodyId{static_cast<std::uint64_t>(k)}, instant,
+                              to_sensor(ring_place(i, 4).inverse(), body)});
+    }
+    histories[sensor(i)].push(std::move(frame));
+  }
+}
+
+TEST(Step, WhoGetsAnotherIdIsNotFusedByWhatTheOtherTaught) {
+  constexpr int kExchange = 180;
+  const PipelineConfig config;
+  Histories histories;
+  Step last;
+  for (int i = 0; i < 300 && last.snapshot.corrections.empty(); ++i) {
+    const Timestamp instant = kStart + i * milliseconds(33);
+    push_two(histories, instant, i >= kExchange);
+    last = step({instant, instant, static_cast<std::uint64_t>(i)}, histories, ring_registration(4),
+                last.memory, config);
+    ASSERT_TRUE(i > kExchange || last.snapshot.corrections.empty()) << i;
+  }
+  ASSERT_EQ(last.snapshot.corrections.size(), 2u);
+  ASSERT_EQ(last.people.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const FusedBody alone = fusion::fuse(last.people[i], last.snapshot.sensors, config.fusion);
+    EXPECT_EQ(last.snapshot.bodies[i].id, alone.id);
+    EXPECT_EQ(last.snapshot.bodies[i].variance, alone.variance) << "nothing is remembered";
+    EXPECT_EQ(last.memory.sides.people.at(alone.id).seen, last.snapshot.instant);
   }
 }
 
