@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "common/base/square.h"
 #include "common/geometry/ray.h"
 
 namespace chorus::fusion {
@@ -27,16 +28,14 @@ constexpr double kBone = 0.02;        // [m] of a bone's length in one picture
 constexpr double kShortBone = 0.03;   // [m]; shorter ones show no size
 constexpr double kLeastLength = 0.5;  // of a bone's length that is left without its noise
 constexpr int kScaleRounds = 3;
-constexpr double kLongestHeldStep = 0.5;  // [s] the most that the state is predicted for at once
-constexpr double kNearestBody = 0.3;      // [m] from the camera
-constexpr double kUnseenTooLong = 3.0;    // [s] after which a joint that nobody saw is not expected
-constexpr double kUnlikelyBone = 3.0;     // [standard deviations] beyond it, a bone counts less
-constexpr std::size_t kFewest = 3;        // joints that place a body
+constexpr double kNearestBody = 0.3;    // [m] from the camera
+constexpr double kUnseenTooLong = 3.0;  // [s] after which a joint that nobody saw is not expected
+constexpr double kUnlikelyBone = 3.0;   // [standard deviations] beyond it, a bone counts less
+constexpr std::size_t kFewest = 3;      // joints that place a body
 
+// Broader than in_trunk(): shoulders and hips turn with the trunk, the head does not.
 constexpr std::array kTorso{SpineBase,    SpineMid,      SpineShoulder, Neck,
                             ShoulderLeft, ShoulderRight, HipLeft,       HipRight};
-
-double square(double x) { return x * x; }
 
 /// Mean of where the joints of one body are from the same joints of another; over the torso if that
 /// has enough of them.
@@ -107,7 +106,8 @@ std::vector<Span> spans_of(const PlacedBody& points, const Eigen::Vector3d& eye,
 }  // namespace
 
 void HeldBody::predict(double passed) {
-  passed_ = std::clamp(passed, 0.0, kLongestHeldStep);
+  // What follows is exact for a step of any length; after a longer one nothing is expected.
+  passed_ = std::clamp(passed, 0.0, kUnseenTooLong);
   const double kept = std::exp(-passed_ / kSpeedTime);
   const double way = kSpeedTime * (1.0 - kept);
   const double same = std::exp(-passed_ / kRatioTime);
@@ -166,6 +166,7 @@ void HeldBody::leave() {
 void HeldBody::take(const PlacedBody& seen) {
   leave();
   lengths_.learn(seen, passed_, model_);
+  bones_ = lengths_.held(model_);
   const Shift shift = shift_of(body_, seen);
   if (shift.count >= kFewest) {
     Slopes slopes = Slopes::Zero();
@@ -204,7 +205,7 @@ PlacedBody HeldBody::on_rays(const RayView& view) const {
 
 /// The points enlarged about the camera so that their bones have the learned lengths.
 PlacedBody HeldBody::enlarged(PlacedBody points, const Eigen::Vector3d& eye) const {
-  const std::vector<Span> spans = spans_of(points, eye, lengths_.held(model_));
+  const std::vector<Span> spans = spans_of(points, eye, bones_);
   double scale = 1.0;
   for (int round = 0; round < kScaleRounds; ++round) {
     double sum = 0.0;
@@ -261,7 +262,7 @@ std::optional<PlacedBody> HeldBody::follow(const RayView& view) {
   const double now = std::max(kNearestBody, distance + u.dot(state_.head<3>()));
   for (PlacedJoint& joint : points)
     joint.position = view.eye + now / there * (joint.position - view.eye);
-  points = hold_bones(points, lengths_.held(model_));
+  points = hold_bones(points, bones_);
   replace(points);
   const Eigen::Matrix3d common = spread_.topLeftCorner<3, 3>();
   for (PlacedJoint& joint : points) joint.covariance += common;

@@ -66,6 +66,7 @@ class HeldBody {
 
   BodyModel model_;
   BoneLengths lengths_;
+  HeldBones bones_;  ///< Of `lengths_`.
   std::map<SensorId, Ratio> ratios_;
   std::optional<SensorId> left_;  ///< The camera whose ratio is in the state.
   PlacedBody body_;

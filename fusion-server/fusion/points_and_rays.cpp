@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include "common/base/square.h"
 #include "common/geometry/ray.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/held_body.h"
@@ -117,15 +119,16 @@ class PointsAndRays final : public Estimator {
           points_and_rays_of(static_cast<JointId>(j), person, instant.sensors, *errors_);
       meetings[j].found = least_squares(meetings[j].views, config_->huber);
     }
-    const auto source = hold(person, meetings);
+    const Holding held = hold(person, meetings);
     FusedBody body = joint_by_joint(person.id, [&](JointId joint) {
       const std::size_t j = index_of(joint);
-      FusedJoint fused = alone_ && (*alone_)[j].placed ? held_joint(meetings[j], (*alone_)[j])
-                                                       : fuse_joint(j, instant.at, meetings[j]);
+      const bool by_one = held.body && (*held.body)[j].placed;
+      FusedJoint fused = by_one ? held_joint(meetings[j], (*held.body)[j])
+                                : fuse_joint(j, instant.at, meetings[j]);
       if (from_cameras(meetings[j].views)) state_landmark_error(fused, joint);
       return fused;
     });
-    hand_over(body, expected, source, passed);
+    hand_over(body, expected, held.source, passed);
     return body;
   }
 
@@ -140,9 +143,13 @@ class PointsAndRays final : public Estimator {
     bool operator==(const Source&) const = default;
   };
 
-  /// Gives the held body what the views show of it, and sets `alone_`; none if nobody places it.
-  std::optional<Source> hold(const Person& person, const Meetings& meetings) {
-    alone_.reset();
+  struct Holding {
+    std::optional<Source> source;    ///< None if nobody places the body.
+    std::optional<PlacedBody> body;  ///< According to one camera; none: not asked.
+  };
+
+  /// Gives the held body what the views show of it.
+  Holding hold(const Person& person, const Meetings& meetings) {
     PlacedBody placed;
     std::size_t count = 0;
     for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -154,13 +161,13 @@ class PointsAndRays final : public Estimator {
       held_.take(placed);
       for (std::size_t v = 0; v < person.views.size(); ++v)
         held_.compare(ray_view(person, v, meetings), placed);
-      return Source{};
+      return {Source{}, {}};
     }
-    if (person.views.empty()) return std::nullopt;
+    if (person.views.empty()) return {};
     const RayView view = ray_view(person, fullest(person, meetings), meetings);
-    alone_ = held_.follow(view);
-    if (!alone_) return std::nullopt;
-    return Source{view.sensor};
+    auto body = held_.follow(view);
+    if (!body) return {};
+    return {Source{view.sensor}, std::move(body)};
   }
 
   /// A joint on the ray of the camera that is left.
@@ -229,13 +236,10 @@ class PointsAndRays final : public Estimator {
     return fused;
   }
 
-  static double square(double x) { return x * x; }
-
   std::shared_ptr<const FusionConfig> config_;  ///< Shared by all copies.
   std::shared_ptr<const ErrorModel> errors_;
   HeldBody held_;
-  std::optional<PlacedBody> alone_;  ///< The body according to one camera; none: not asked.
-  std::optional<Source> source_;     ///< Who last placed the body.
+  std::optional<Source> source_;  ///< Who last placed the body.
   std::array<Eigen::Vector3d, kJointCount> offsets_ = [] {
     std::array<Eigen::Vector3d, kJointCount> none;
     none.fill(Eigen::Vector3d::Zero());

@@ -101,6 +101,19 @@ TEST(HeldBody, StatesMoreTheLongerOneCameraIsLeft) {
   EXPECT_GT(late, 2.0 * soon);
 }
 
+TEST(HeldBody, AGapMakesItAsUncertainAsItsInstantsTogether) {
+  Held gap;
+  Held instants;
+  for (Held* each : {&gap, &instants}) each->by_several({0.4, 0, 0}, 0.05, 30);
+  gap.held.predict(2.0 - kBetweenSights);
+  for (int i = 0; i < 59; ++i) instants.held.predict(kBetweenSights);
+  const auto [error, covariance] = gap.by_one({0, 0, 0}, std::nullopt, 1);
+  const auto [same_error, same] = instants.by_one({0, 0, 0}, std::nullopt, 1);
+  EXPECT_GT(same.trace(), 0.01);
+  EXPECT_NEAR(covariance.trace(), same.trace(), 1e-6);
+  EXPECT_NEAR((error - same_error).norm(), 0.0, 1e-6);
+}
+
 TEST(HeldBody, NothingIsHeldOfWhomSeveralHaveNotSeen) {
   HeldBody held{BodyModel{}};
   held.predict(kBetweenSights);
