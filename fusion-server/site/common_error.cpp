@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "common/base/square.h"
+
 namespace chorus::site {
 namespace {
 
@@ -13,15 +15,13 @@ constexpr double kPlaceDrift = mm(2);
 constexpr double kYawDrift = deg(0.02);
 constexpr double kClockDrift = 0.5e-3;
 
-double squared(double value) { return value * value; }
-
 /// Covariance of (displacement x, displacement z, yaw) at the pivot, from one cell's place.
 Eigen::Matrix3d at_pivot(const CellPlace& place, const Eigen::Vector2d& pivot,
                          const SiteConfig& config) {
   Eigen::Matrix3d known = Eigen::Matrix3d::Zero();
   if (place.covariance.isZero()) {
-    known(0, 0) = known(1, 1) = squared(config.unknown_place_sigma);
-    known(2, 2) = squared(config.unknown_yaw_sigma);
+    known(0, 0) = known(1, 1) = square(config.unknown_place_sigma);
+    known(2, 2) = square(config.unknown_yaw_sigma);
     return known;
   }
   const Eigen::Vector3d origin = place.site_from_cell.translation();
@@ -35,7 +35,7 @@ Eigen::Matrix3d at_pivot(const CellPlace& place, const Eigen::Vector2d& pivot,
 }
 
 double clock_variance(const CellPlace& place, const SiteConfig& config) {
-  return squared(
+  return square(
       seconds(place.clock_sigma > Duration{0} ? place.clock_sigma : config.unknown_clock_sigma));
 }
 
