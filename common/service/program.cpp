@@ -6,21 +6,17 @@
 #include <ctime>
 #include <exception>
 
+#include "common/service/signals.h"
 #include "common/service/supervisor.h"
 #include "common/time/clock.h"
 
 namespace chorus::service {
 namespace {
 
-sigset_t block_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  // A broken connection is told by its call; the others mean nothing to a service, and must not end
-  // it only because somebody took one for a reload.
+/// A broken connection is told by its call; the others mean nothing to a service, and must not end
+/// it only because somebody took one for a reload.
+void ignore_signals() {
   for (const int signal : {SIGPIPE, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
-  return signals;
 }
 
 int refuse(const About& about, const Error& error) {
@@ -76,7 +72,8 @@ void run(Program& program, const ConfigSource& source, const sigset_t& signals) 
 }
 
 int serve(const About& about, Program& program, const CommandLine& command) {
-  const sigset_t signals = block_signals();  // Must happen before any thread starts.
+  const sigset_t signals = block_signals({SIGTERM, SIGINT, SIGHUP});  // Before any thread starts.
+  ignore_signals();
   const auto log = read_config(command.source).and_then([&](const ConfigReader& config) {
     program.configuration()->started(command.source, config.text(), SystemClock().now());
     return program.prepare(config);

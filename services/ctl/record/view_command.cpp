@@ -15,6 +15,7 @@
 #include "common/record/recording_files.h"
 #include "common/resource/link_lines.h"
 #include "common/service/recording_views.h"
+#include "common/service/signals.h"
 #include "fusion-server/server/state_folder.h"
 #include "services/ctl/convert/sniffed.h"
 #include "services/ctl/line/command.h"
@@ -125,21 +126,14 @@ Result<int> take_picture(const Show& show, const ViewArguments& arguments) {
   return kExitOk;
 }
 
-sigset_t block_ends() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGTERM, SIGINT}) sigaddset(&signals, signal);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
 Result<int> run_view(const ViewArguments& arguments) {
   const auto files = record::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto readable = record::RecordingView::open(*files); !readable) return pass(readable);
   const bool picture = !arguments.png.empty();
   sigset_t signals{};
-  if (!picture) signals = block_ends();  // Before the server's threads start.
+  if (!picture)
+    signals = service::block_signals({SIGTERM, SIGINT});  // Before the server's threads start.
   const auto show = show_of(arguments, *files);
   if (!show) return pass(show);
   if (picture) return take_picture(*show, arguments);
