@@ -14,6 +14,7 @@
 
 #include "common/base/file.h"
 #include "common/base/log.h"
+#include "common/record/free_space.h"
 
 namespace chorus::record {
 namespace {
@@ -32,18 +33,6 @@ constexpr auto kRest = std::chrono::seconds(1);
 /// Events are taken in batches, because waking up for each one would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);
 constexpr std::size_t kEarly = 4;  // The thread wakes up early when the queue is 1/4 full.
-
-Result<void> enough_space(const fs::path& folder, std::uintmax_t wanted) {
-  std::error_code error;
-  const fs::space_info space = fs::space(folder.empty() ? fs::path(".") : folder, error);
-  if (error) return fail(ErrorCode::Io, folder.string(), error.message());
-  if (space.available >= wanted) return {};
-  constexpr std::uintmax_t kMegabyte = 1u << 20;
-  return fail(ErrorCode::Unavailable, folder.string(),
-              "only " + std::to_string(space.available / kMegabyte) +
-                  " MB are free; a recording leaves " + std::to_string(wanted / kMegabyte) +
-                  " MB (min_free_mb)");
-}
 
 std::string file_name(const RecorderOptions& options, std::size_t part, Timestamp now) {
   std::string number = std::to_string(part);

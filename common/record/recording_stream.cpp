@@ -264,6 +264,19 @@ std::optional<Message> RecordingStream::last_of(std::string_view topic) {
   return std::nullopt;
 }
 
+void RecordingStream::each_of(std::string_view topic,
+                              const std::function<bool(const MessageView&)>& take) {
+  for (const std::size_t number : impl_->order) {
+    if (!impl_->may_hold(impl_->outline.pieces[number], topic)) continue;
+    const auto loaded = impl_->load(number);
+    if (!loaded) continue;
+    for (const RawMessage& message : loaded->messages) {
+      const MessageView found = impl_->view(message);
+      if (found.topic == topic && !take(found)) return;
+    }
+  }
+}
+
 std::optional<std::uint64_t> RecordingStream::count(std::string_view topic) const {
   std::uint64_t sum = 0;
   for (const Piece& piece : impl_->outline.pieces) {

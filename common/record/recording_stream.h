@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -56,6 +57,9 @@ class RecordingStream {
   /// unpacked.
   [[nodiscard]] std::optional<Message> first_of(std::string_view topic);
   [[nodiscard]] std::optional<Message> last_of(std::string_view topic);
+  /// Passes on each message of a topic, chunk by chunk and in log-time order within each; chunks
+  /// whose message indexes lack the topic are not unpacked.  `take` returns false to end this.
+  void each_of(std::string_view topic, const std::function<bool(const MessageView&)>& take);
   /// Number of messages of a topic; none unless every chunk states its numbers and all channels are
   /// known.
   [[nodiscard]] std::optional<std::uint64_t> count(std::string_view topic) const;

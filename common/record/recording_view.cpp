@@ -10,11 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/units.h"
+#include "common/record/free_space.h"
 #include "common/record/recording_files.h"
 
 namespace chorus::record {
 namespace {
 
+constexpr std::size_t kMostOfOneInstant = 4 * kMostStretch;  // [bytes]; the rest is left out
 constexpr std::string_view kFrame = "/frame";
 constexpr std::string_view kSensors = "/sensors/";
 constexpr std::string_view kPlaces = "/registration";
@@ -78,7 +80,23 @@ Result<RecordingView> RecordingView::open(const std::vector<std::filesystem::pat
   view.first_ = view.parts_.front().first;
   view.last_ = std::max(*last, view.first_);
   view.single_ = std::move(single);
+  view.find_places();
   return view;
+}
+
+/// Notes where sensors stood, whenever that changed; each part begins with a copy of what holds.
+void RecordingView::find_places() {
+  std::size_t bytes = 0;
+  const auto take = [&](const MessageView& message) {
+    if (!places_.empty() && places_.back().data == message.data) return true;
+    bytes += message.data.size();
+    places_left_out_ = bytes > kMostPlaces;
+    if (!places_left_out_) places_.push_back(message.copy());
+    return !places_left_out_;
+  };
+  for (Part& part : parts_)
+    if (!places_left_out_) part.stream.each_of(kPlaces, take);
+  std::ranges::stable_sort(places_, {}, &Message::log_time);
 }
 
 double RecordingView::length() const { return seconds(last_ - first_); }
@@ -105,14 +123,12 @@ std::string RecordingView::outline() {
   nlohmann::json out{{"seconds", length()}, {"started", to_iso8601(first_)}, {"fused", false}};
   std::set<std::string> sensors;
   std::set<std::string> notes;
-  std::optional<Message> places;
   for (Part& part : parts_) {
     for (const Channel& channel : part.stream.channels()) {
       if (channel.topic == kFrame && single_.empty()) out["fused"] = true;
       if (channel.topic != kFrame && is_frame(channel.topic))
         sensors.insert(sensor_in_topic(channel.topic));
     }
-    if (auto own = part.stream.last_of(kPlaces)) places = std::move(own);
     notes.insert(part.stream.notes().begin(), part.stream.notes().end());
     if (part.stream.truncated())
       notes.insert("the file has no end: its last second may be missing");
@@ -121,45 +137,77 @@ std::string RecordingView::outline() {
     out["single"] = single_;
     sensors.insert(single_);
   }
+  if (places_left_out_)
+    notes.insert("the sensors' places change very often: after a jump they may be those of before");
   out["sensors"] = sensors;
   out["notes"] = notes;
-  if (places) out["registration"] = nlohmann::json::parse(places->data, nullptr, false);
-  if (out.contains("registration") && out["registration"].is_discarded()) out.erase("registration");
+  out["registrations"] = nlohmann::json::array();
+  for (const Message& places : places_) {
+    auto said = nlohmann::json::parse(places.data, nullptr, false);
+    if (said.is_discarded()) continue;
+    out["registrations"].push_back(
+        {{"seconds", seconds(places.log_time - first_)}, {"registration", std::move(said)}});
+  }
   return out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
+
+namespace {
+
+/// The messages of a stretch as JSON, until they are kMostStretch.
+struct Gathered {
+  Timestamp first;
+  Duration every;
+  std::map<std::string, Timestamp, std::less<>> newest = {};
+  std::string text = {};
+  Timestamp last = first;
+  std::optional<Timestamp> left_out = {};  ///< The first message for which there was no place.
+
+  [[nodiscard]] bool too_early(const MessageView& message) const {
+    if (every == Duration{0} || !is_frame(message.topic)) return false;
+    const auto before = newest.find(message.topic);
+    return before != newest.end() && message.log_time < before->second + every;
+  }
+
+  /// False: enough.  Messages of one instant stay together, because the next stretch begins with
+  /// that instant and could otherwise end with it too.
+  bool take(const MessageView& message) {
+    if (too_early(message) || !is_object(message.data)) return true;
+    if (text.size() >= kMostStretch && message.log_time > last) {
+      left_out = message.log_time;
+      return false;
+    }
+    if (text.size() >= kMostOfOneInstant) return true;
+    last = message.log_time;
+    newest.insert_or_assign(std::string(message.topic), message.log_time);
+    text += fmt::format(R"({}{{"seconds":{:.4f},"topic":{},"message":)", text.empty() ? "" : ",\n",
+                        seconds(message.log_time - first),
+                        nlohmann::json(std::string(message.topic)).dump());
+    text.append(message.data).append("}");
+    return true;
+  }
+};
+
+}  // namespace
 
 Result<std::string> RecordingView::stretch(const Stretch& asked) {
   const double long_enough = asked.to - asked.from;
   if (!(long_enough >= 0.0) || long_enough > kLongestStretch || !(asked.every >= 0.0) ||
-      !std::isfinite(asked.from))
+      !std::isfinite(asked.from) || !std::isfinite(asked.every))
     return fail(
         ErrorCode::InvalidArgument, "stretch",
         fmt::format("`from` and `to` are seconds, {} s apart at most; `every` is one of 0 s "
                     "or more",
                     kLongestStretch));
-  std::map<std::string, Timestamp, std::less<>> newest;
-  std::string messages;
-  double to = asked.to;
+  const double from = std::clamp(asked.from, 0.0, length());
+  double to = std::clamp(asked.to, 0.0, length());
+  Gathered gathered{first_, from_seconds(std::min(asked.every, kLongestStretch))};
   const auto done =
-      each_between(time_after(first_, asked.from), time_after(first_, asked.to),
-                   [&](const MessageView& message) {
-                     const double at = seconds(message.log_time - first_);
-                     const auto before = newest.find(message.topic);
-                     if (asked.every > 0.0 && before != newest.end() && is_frame(message.topic) &&
-                         message.log_time < time_after(before->second, asked.every))
-                       return true;
-                     if (!is_object(message.data)) return true;
-                     newest.insert_or_assign(std::string(message.topic), message.log_time);
-                     messages += fmt::format(R"({}{{"seconds":{:.4f},"topic":{},"message":)",
-                                             messages.empty() ? "" : ",\n", at,
-                                             nlohmann::json(std::string(message.topic)).dump());
-                     messages.append(message.data).append("}");
-                     if (messages.size() < kMostStretch) return true;
-                     to = at;
-                     return false;
-                   });
+      each_between(time_after(first_, from), time_after(first_, to),
+                   [&](const MessageView& message) { return gathered.take(message); });
   if (!done) return pass(done);
-  return fmt::format(R"({{"from":{:.4f},"to":{:.4f},"messages":[{}]}})", asked.from, to, messages);
+  if (gathered.left_out) to = seconds(*gathered.left_out - first_ - Duration{1});
+  // Exactly: a `to` that is rounded down would never reach the recording's end.
+  return fmt::format(R"({{"from":{},"to":{},"messages":[{}]}})", from, to, gathered.text);
 }
 
 Result<std::string> RecordingView::frame_at(double seconds_in) {
@@ -167,13 +215,15 @@ Result<std::string> RecordingView::frame_at(double seconds_in) {
   if (!std::isfinite(seconds_in))
     return fail(ErrorCode::InvalidArgument, "at", "the seconds since the recording's beginning");
   std::string frame;
-  const auto done = each_between(time_after(first_, seconds_in - kBack),
-                                 time_after(first_, seconds_in), [&](const MessageView& message) {
-                                   if (message.topic == kFrame && is_object(message.data))
-                                     frame = message.data;
-                                   return true;
-                                 });
-  if (!done) return pass(done);
+  const auto take = [&](const MessageView& message) {
+    if (message.topic == kFrame && is_object(message.data)) frame = message.data;
+    return true;
+  };
+  if (seconds_in >= 0.0 && seconds_in <= length() + kBack) {
+    const auto done =
+        each_between(time_after(first_, seconds_in - kBack), time_after(first_, seconds_in), take);
+    if (!done) return pass(done);
+  }
   if (!frame.empty()) return frame;
   return fail(
       ErrorCode::NotFound, "at",
@@ -184,16 +234,33 @@ Result<std::string> RecordingView::frame_at(double seconds_in) {
 
 namespace {
 
+using Metadata = std::map<std::string, std::map<std::string, std::string>>;
+
 /// What of the messages is copied, and where to.
 struct Copy {
   RecordingWriter& writer;
   const Cut& cut;
+  const std::filesystem::path folder;
+  const std::stop_token& stop;
+  Metadata metadata = {};  ///< Of the part that is read, until something is written.
   std::map<std::string, Channel, std::less<>> channels = {};
   std::map<std::string, std::uint16_t, std::less<>> known = {};
   std::map<std::string, Message, std::less<>> state = {};  ///< The newest before the cut, by topic.
   std::uint64_t frames = 0;
+  std::uint64_t space_asked_at = 0;  ///< [bytes written]
+
+  /// Whether it may go on; the disk is asked now and then.
+  Result<void> may_go_on() {
+    constexpr std::uint64_t kAskEvery = 8u << 20;
+    if (stop.stop_requested()) return fail(ErrorCode::Unavailable, "cut", "it was stopped");
+    if (writer.bytes() < space_asked_at) return {};
+    space_asked_at = writer.bytes() + kAskEvery;
+    return enough_space(folder, cut.min_free_bytes);
+  }
 
   Result<void> put(const MessageView& message, Timestamp log_time) {
+    for (const auto& [name, values] : std::exchange(metadata, {}))
+      if (auto ok = writer.write_metadata(name, values); !ok) return ok;
     auto own = known.find(message.topic);
     if (own == known.end()) {
       const auto described = channels.find(message.topic);
@@ -233,11 +300,9 @@ struct Copy {
 Result<void> copy_file(const std::filesystem::path& file, Copy& copy) {
   auto stream = RecordingStream::open(file);
   if (!stream) return pass(stream);
-  for (const auto& [name, values] : stream->metadata()) {
-    if (copy.frames == 0 && copy.known.empty())
-      if (auto ok = copy.writer.write_metadata(name, values); !ok) return ok;
-  }
+  if (copy.known.empty()) copy.metadata = stream->metadata();
   while (true) {
+    if (auto ok = copy.may_go_on(); !ok) return ok;
     const auto message = stream->next();
     if (!message) return pass(message);
     if (!*message || (*message)->log_time > copy.cut.to) return {};
@@ -248,20 +313,25 @@ Result<void> copy_file(const std::filesystem::path& file, Copy& copy) {
   }
 }
 
+Result<std::uint64_t> copy_files(const std::vector<std::filesystem::path>& files, Copy& copy) {
+  for (const auto& file : in_log_order(files))
+    if (auto ok = copy_file(file, copy); !ok) return pass(ok);
+  if (auto ok = copy.writer.close(); !ok) return pass(ok);
+  if (copy.frames > 0) return copy.frames;
+  return fail(ErrorCode::NotFound, "cut", "no frame was recorded between these instants");
+}
+
 }  // namespace
 
 Result<std::uint64_t> cut_recording(const std::vector<std::filesystem::path>& files, const Cut& cut,
-                                    const std::filesystem::path& out) {
+                                    const std::filesystem::path& out, const std::stop_token& stop) {
   auto writer = RecordingWriter::create(out);
   if (!writer) return pass(writer);
-  Copy copy{*writer, cut};
-  for (const auto& file : in_log_order(files))
-    if (auto ok = copy_file(file, copy); !ok) return pass(ok);
-  if (auto ok = writer->close(); !ok) return pass(ok);
-  if (copy.frames > 0) return copy.frames;
+  Copy copy{*writer, cut, out.parent_path(), stop};
+  auto frames = copy_files(files, copy);
   std::error_code failed;
-  std::filesystem::remove(out, failed);
-  return fail(ErrorCode::NotFound, "cut", "no frame was recorded between these instants");
+  if (!frames) std::filesystem::remove(out, failed);
+  return frames;
 }
 
 }  // namespace chorus::record
