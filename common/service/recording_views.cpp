@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "common/base/log.h"
 #include "common/base/parse.h"
 #include "common/http/status.h"
+#include "common/record/free_space.h"
 #include "common/resource/link_lines.h"
 #include "common/time/clock.h"
 
@@ -51,15 +54,37 @@ double number_asked(const http::Request& request, const char* key, double fallba
   return parse_number<double>(found->second).value_or(std::nan(""));
 }
 
-std::vector<Mark> marks_in(const fs::path& file) {
-  std::vector<Mark> marks;
+/// A mark as it was stored; none if it is not one.
+std::optional<Mark> mark_of(const json& stored) {
+  constexpr double kMostId = std::numeric_limits<int>::max();
+  if (!stored.is_object()) return std::nullopt;
+  const double id = number_in(stored, "id");
+  const double seconds = number_in(stored, "seconds");
+  if (!(id >= 1.0) || !(id <= kMostId) || id != std::floor(id)) return std::nullopt;
+  if (!(seconds >= 0.0) || !std::isfinite(seconds)) return std::nullopt;
+  return Mark{static_cast<int>(id), seconds, string_in(stored, "text")};
+}
+
+/// No file: no marks.  Conflict when the file cannot be read, because it must not be replaced then.
+Result<std::vector<Mark>> marks_in(const fs::path& file) {
+  if (!is_there(file)) return std::vector<Mark>{};
+  const auto damaged = [](const std::string& reason) {
+    return fail(
+        ErrorCode::Conflict, "marks.json",
+        "nothing is marked while this file cannot be read: " + reason + "; mend or delete it");
+  };
   const auto text = read_file(file, kMarks.bytes);
-  const auto stored = text ? parse_json(*text, kMarks) : Result<json>(json());
-  if (!stored || !stored->is_array()) return marks;
+  if (!text) return damaged(to_string(text.error()));
+  const auto stored = parse_json(*text, kMarks);
+  if (!stored) return damaged(to_string(stored.error()));
+  if (!stored->is_array()) return damaged("it is no list");
+  std::vector<Mark> marks;
   for (const json& each : *stored) {
-    if (!each.is_object()) continue;
-    marks.push_back({static_cast<int>(number_in(each, "id")), number_in(each, "seconds"),
-                     string_in(each, "text")});
+    auto mark = mark_of(each);
+    if (!mark)
+      return damaged("mark " + std::to_string(marks.size() + 1) +
+                     R"( is not such as {"id": 1, "seconds": 12.4, "text": "..."})");
+    marks.push_back(std::move(*mark));
   }
   return marks;
 }
@@ -126,7 +151,11 @@ Result<http::DocumentPtr> RecordingViews::outline(const std::string& name) {
   out["name"] = name;
   const auto file = marks_file(name);
   out["writable"] = file.has_value();
-  if (file) out["marks"] = json::parse(marks_json(marks_in(*file)));
+  if (file) {
+    const auto marks = marks_in(*file);
+    if (!marks) out["notes"].push_back(to_string(marks.error()));
+    out["marks"] = json::parse(marks_json(marks.value_or(std::vector<Mark>{})));
+  }
   if (const auto own = cuts_.find(name); own != cuts_.end()) {
     out["cut"] = {{"name", own->second.name}};
     if (!own->second.trouble.empty()) out["cut"]["problem"] = own->second.trouble;
@@ -168,7 +197,9 @@ Result<http::DocumentPtr> RecordingViews::marks(const std::string& name) {
   const auto file = marks_file(name);
   if (!file) return pass(file);
   const std::scoped_lock lock(mutex_);
-  return document(marks_json(marks_in(*file)));
+  const auto all = marks_in(*file);
+  if (!all) return pass(all);
+  return document(marks_json(*all));
 }
 
 Result<http::ActionResult> RecordingViews::mark(const std::string& name, std::string_view body) {
@@ -179,15 +210,18 @@ Result<http::ActionResult> RecordingViews::mark(const std::string& name, std::st
   if (!file) return pass(file);
   const std::scoped_lock lock(mutex_);
   auto all = marks_in(*file);
-  if (all.size() >= kMostMarks)
+  if (!all) return pass(all);
+  if (all->size() >= kMostMarks)
     return fail(ErrorCode::TooLarge, "marks",
                 "at most " + std::to_string(kMostMarks) + " are kept");
-  for (const Mark& each : all) wish->id = std::max(wish->id, each.id);
+  for (const Mark& each : *all) wish->id = std::max(wish->id, each.id);
+  if (wish->id == std::numeric_limits<int>::max())
+    return fail(ErrorCode::TooLarge, "marks", "no higher `id` is left: remove the highest one");
   ++wish->id;
-  all.push_back(*wish);
-  std::ranges::stable_sort(all, {}, &Mark::seconds);
-  if (auto kept = replace_file(*file, marks_json(all)); !kept) return pass(kept);
-  return http::ActionResult{http::status::kCreated, document(marks_json(all)),
+  all->push_back(*wish);
+  std::ranges::stable_sort(*all, {}, &Mark::seconds);
+  if (auto kept = replace_file(*file, marks_json(*all)); !kept) return pass(kept);
+  return http::ActionResult{http::status::kCreated, document(marks_json(*all)),
                             "/recordings/" + name + "/marks"};
 }
 
@@ -197,25 +231,25 @@ Result<http::ActionResult> RecordingViews::unmark(const std::string& name, const
   if (!file) return pass(file);
   const std::scoped_lock lock(mutex_);
   auto all = marks_in(*file);
+  if (!all) return pass(all);
   const auto own = [&](const Mark& each) { return std::to_string(each.id) == id; };
-  if (std::erase_if(all, own) == 0)
+  if (std::erase_if(*all, own) == 0)
     return fail(ErrorCode::NotFound, "marks/" + id, "there is no such mark");
-  if (auto kept = replace_file(*file, marks_json(all)); !kept) return pass(kept);
-  return http::ActionResult{http::status::kOk, document(marks_json(all)), {}};
+  if (auto kept = replace_file(*file, marks_json(*all)); !kept) return pass(kept);
+  return http::ActionResult{http::status::kOk, document(marks_json(*all)), {}};
 }
 
 /// Runs on the cutter's thread.
-void RecordingViews::run_cut(const std::string& source, const CutRequest& request,
-                             const record::Cut& cut, const std::vector<fs::path>& files) {
-  const fs::path folder = options_.folder / request.name;
-  const std::string file = request.name + ".mcap";
-  const auto frames = record::cut_recording(files, cut, folder / file);
+void RecordingViews::run_cut(const CutJob& job, const std::stop_token& stop) {
+  const fs::path folder = options_.folder / job.request.name;
+  const std::string file = job.request.name + ".mcap";
+  const auto frames = record::cut_recording(job.files, job.cut, folder / file, stop);
   record::RecordingReport report;
-  report.name = request.name;
+  report.name = job.request.name;
   report.state = record::RecordingState::Finished;
-  report.started = cut.from;
-  report.stopped = cut.to;
-  report.files = {{file, cut.from, 0}};
+  report.started = job.cut.from;
+  report.stopped = job.cut.to;
+  report.files = {{file, job.cut.from, 0}};
   std::string trouble = frames ? "" : to_string(frames.error());
   std::error_code failed;
   if (frames) {
@@ -223,18 +257,29 @@ void RecordingViews::run_cut(const std::string& source, const CutRequest& reques
     report.files.front().bytes = fs::file_size(folder / file, failed);
     if (auto kept = record::write_index(folder, report); !kept) trouble = to_string(kept.error());
   } else {
-    fs::remove(folder / file, failed);
-    fs::remove(folder, failed);
+    fs::remove(folder, failed);  // Only if it is empty.
   }
   const std::scoped_lock lock(mutex_);
   cutting_ = false;
   if (trouble.empty()) {
-    cuts_.erase(source);
+    cuts_.erase(job.source);
     options_.made(report);
     return;
   }
-  log::error("recording not cut", {{"name", source}, {"reason", trouble}});
-  cuts_[source].trouble = std::move(trouble);
+  log::error("recording not cut", {{"name", job.source}, {"reason", trouble}});
+  cuts_[job.source].trouble = std::move(trouble);
+}
+
+Result<record::Cut> RecordingViews::cut_of(const CutRequest& wish,
+                                           const record::RecordingView& view) const {
+  if (wish.from > view.length())
+    return fail(ErrorCode::InvalidArgument, "from",
+                fmt::format("the recording is {:.1f} s long", view.length()));
+  if (auto room = record::enough_space(options_.folder, options_.min_free_bytes); !room)
+    return pass(room);
+  return record::Cut{view.first() + from_seconds(wish.from),
+                     view.first() + from_seconds(std::min(wish.to, view.length())),
+                     options_.min_free_bytes};
 }
 
 Result<http::ActionResult> RecordingViews::cut(const std::string& name, std::string_view body) {
@@ -249,20 +294,17 @@ Result<http::ActionResult> RecordingViews::cut(const std::string& name, std::str
                 "another recording is being cut; try again in a while");
   const auto view = view_of(name);
   if (!view) return pass(view);
-  if (wish->from > (*view)->length())
-    return fail(ErrorCode::InvalidArgument, "from",
-                fmt::format("the recording is {:.1f} s long", (*view)->length()));
+  const auto cut = cut_of(*wish, **view);
+  if (!cut) return pass(cut);
   std::error_code failed;
   if (!fs::create_directory(options_.folder / wish->name, failed))
     return fail(failed ? ErrorCode::Io : ErrorCode::Conflict, "recordings/" + wish->name,
                 failed ? failed.message()
                        : "there is a recording of this name already: choose another `name`");
-  const Timestamp first = (*view)->first();
-  const record::Cut cut{first + from_seconds(wish->from), first + from_seconds(wish->to)};
   cutting_ = true;
   cuts_[name] = {wish->name, {}};
-  cutter_ = std::jthread(
-      [this, name, wish = *wish, cut, files = *files] { run_cut(name, wish, cut, files); });
+  cutter_ = std::jthread([this, job = CutJob{name, *wish, *cut, *files}](
+                             const std::stop_token& stop) { run_cut(job, stop); });
   return http::ActionResult{http::status::kAccepted, nullptr, "/recordings/" + wish->name};
 }
 

@@ -142,6 +142,7 @@ service::RecordingViewsOptions FusionServer::Impl::recording_views_options() {
   service::RecordingViewsOptions options;
   options.files_of = [this](const std::string& name) { return recordings->files_of(name); };
   options.folder = config.at_start.recording.folder;
+  options.min_free_bytes = config.at_start.recording.limits.min_free_bytes;
   options.made = [this](const record::RecordingReport& made) { recordings->adopt(made); };
   options.run = serving.run;
   return options;

@@ -1,6 +1,7 @@
 #include "common/service/recording_views.h"
 
 #include <future>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,6 +105,38 @@ TEST_F(Looked, MarksAreKeptInOrderAndTakenAway) {
   EXPECT_THAT(ask("/recordings/walk/marks/" + id, http::Method::Delete), HasSubstr("no such mark"));
 }
 
+TEST_F(Looked, MarksThatCannotBeReadStayAsTheyAre) {
+  for (const char* text :
+       {"", "[{", R"({"id": 1})", R"([{"id": 1e300, "seconds": 1, "text": "x"}])",
+        R"([{"seconds": 1, "text": "x"}])", R"([{"id": 1, "seconds": -1, "text": "x"}])"}) {
+    folder_.write("walk/marks.json", text);
+    for (const auto& answer :
+         {ask("/recordings/walk/marks"),
+          ask("/recordings/walk/marks", http::Method::Post, R"({"seconds": 1, "text": "x"})"),
+          ask("/recordings/walk/marks/1", http::Method::Delete)})
+      EXPECT_THAT(answer, HasSubstr("mend or delete it")) << text;
+    EXPECT_EQ(testing::bytes_of(folder_ / "walk/marks.json"), text);
+    const json outline = json::parse(ask("/recordings/walk/outline"));
+    EXPECT_THAT(outline.at("notes").dump(), HasSubstr("mend or delete it"));
+    EXPECT_EQ(outline.at("marks"), json::array());
+  }
+  folder_.write("walk/marks.json", R"([{"id": 2147483647, "seconds": 1, "text": "the last"}])");
+  EXPECT_THAT(ask("/recordings/walk/marks", http::Method::Post, R"({"seconds": 1, "text": "x"})"),
+              HasSubstr("no higher `id`"));
+}
+
+TEST_F(Looked, ACutLeavesTheDiskItsFreeSpace) {
+  RecordingViewsOptions scarce = options();
+  scarce.min_free_bytes = std::numeric_limits<std::uintmax_t>::max();
+  RecordingViews views(std::move(scarce));
+  router_ = http::Router();
+  views.add_routes(router_);
+  EXPECT_THAT(
+      ask("/recordings/walk/cut", http::Method::Post, R"({"from": 0, "to": 1, "name": "part"})"),
+      HasSubstr("min_free_mb"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "part"));
+}
+
 TEST_F(Looked, ACutBecomesARecordingOfItsOwn) {
   const auto cut = [&](const char* body) {
     return ask("/recordings/walk/cut", http::Method::Post, body);
@@ -112,7 +145,7 @@ TEST_F(Looked, ACutBecomesARecordingOfItsOwn) {
   EXPECT_THAT(cut(R"({"from": 0, "to": 1, "name": "../a"})"), HasSubstr("A-Z"));
   EXPECT_THAT(cut(R"({"from": 7, "to": 8, "name": "a"})"), HasSubstr("2.0 s long"));
   EXPECT_THAT(cut(R"({"from": 0, "to": 1, "name": "walk"})"), HasSubstr("of this name already"));
-  EXPECT_EQ(cut(R"({"from": 0.5, "to": 1, "name": "part"})"), "");
+  EXPECT_EQ(cut(R"({"from": 1.5, "to": 1e300, "name": "part"})"), "");
   const record::RecordingReport made = made_.get_future().get();
   EXPECT_EQ(made.name, "part");
   EXPECT_EQ(made.frames, 6u);
