@@ -41,8 +41,14 @@ export function wordsOf(cell, own) {
   return people;
 }
 
-/// One sentence about the connection.
-export function connectionOf(told) {
+/// The address of another cell's page, or null.
+export function pageOf({ address, state }) {
+  return state !== 'own' && /^https?:/.test(address ?? '') && URL.canParse('viewer/', address) ? new URL('viewer/', address).href : null;
+}
+
+/// One sentence about the connection; `problem`: why this server does not tell of the hall, or ''.
+export function connectionOf(told, problem = '') {
+  if (problem) return { tone: 'bad', words: `This server tells nothing of the hall: ${problem}` };
   if (!told) return { tone: 'warn', words: 'Waiting for the hall …' };
   if (told.connected === false) return { tone: 'bad', words: `The broker is not reached: ${told.trouble ?? 'no reason is known'}. This cell goes on alone.` };
   const dropped = told.dropped > 0 ? ` ${told.dropped} messages were dropped.` : '';

@@ -18,9 +18,14 @@ export function latest(messages, at) {
   return found;
 }
 
-/// The stretch that is fetched next, or null when enough lies ahead.  `held`: [from, to] of what is there, or null.
+/// Where sensors stood at an instant: the last of the outline's registrations at or before it; before the first one, the first, because
+/// they stood there already.  Undefined without any.
+export const placesAt = (registrations, at) => ((registrations ?? []).findLast(({ seconds }) => seconds <= at) ?? registrations?.[0])?.registration;
+
+/// The stretch that is fetched next, or null when enough lies ahead.  `held`: [from, to] of what is there, or null; the server may have
+/// answered with less than was asked for, and then the rest is asked for.
 export function nextStretch(held, at, { speed, length }) {
-  const inside = held && at >= held[0] && at <= held[1];
+  const inside = held && at >= held[0] && at - held[1] <= GONE_S;
   const from = inside ? held[1] : Math.max(0, at - GONE_S);
   const wanted = Math.min(length, at + AHEAD_S * Math.max(1, speed));
   if (inside && (held[1] >= wanted || held[1] >= length)) return null;
@@ -93,6 +98,7 @@ export class Playback {
   }
 
   take({ from, to, messages }) {
+    if (this.held && from !== this.held[1]) this.drop(); // it was asked for before a jump
     const behind = Math.max(from, this.at) - KEPT_S;
     const places = this.messages.filter(({ topic }) => topic === '/registration').slice(-1);
     const kept = this.messages.filter((message) => message.seconds >= behind);

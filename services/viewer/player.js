@@ -1,5 +1,5 @@
 // Shows a recording in the scene, in the place of the room as it is now.
-import { Playback } from './playback.js';
+import { Playback, placesAt } from './playback.js';
 
 const EVERY_MS = 33;
 const TOLD_EVERY = 6; // the panel is told of each sixth step
@@ -8,39 +8,43 @@ const HEIGHT = 1.5; // where the only sensor of a recording without places is dr
 export class Player {
   /// `io`: { fetchJson(path), onShown(playback | null), onFailed(words), onFrame(frame), onRaw(id, frame) }.
   constructor(room, io) {
-    Object.assign(this, { room, io, playback: null, frame: null, placed: null, steps: 0 });
+    Object.assign(this, { room, io, playback: null, frame: null, placed: null, steps: 0, asked: 0 });
     setInterval(() => this.step(), EVERY_MS);
   }
 
-  path(what) { return `recordings/${encodeURIComponent(this.name)}/${what}`; }
-
   async open(name, at = 0) {
-    this.name = name;
+    this.asked += 1;
+    const { asked } = this;
+    const path = (what) => `recordings/${encodeURIComponent(name)}/${what}`;
     let outline;
     try {
-      outline = await this.io.fetchJson(this.path('outline'));
+      outline = await this.io.fetchJson(path('outline'));
     } catch (error) {
-      return this.io.onFailed(`${name} cannot be opened: ${error.message}`);
+      if (asked === this.asked) this.io.onFailed(`${name} cannot be opened: ${error.message}`);
+      return;
     }
-    this.playback = new Playback(outline, ({ from, to, every }) => this.io.fetchJson(this.path(`stretch?from=${from}&to=${to}&every=${every}`)));
-    this.placed = null;
-    this.clear();
+    if (asked !== this.asked) return; // another one was asked for, or none
+    this.playback = new Playback(outline, ({ from, to, every }) => this.io.fetchJson(path(`stretch?from=${from}&to=${to}&every=${every}`)));
+    [this.name, this.path, this.placed] = [name, path, null];
     this.io.onShown(this.told());
-    if (outline.registration) this.place(outline.registration);
-    else if (outline.single) this.place({ sensors: { [outline.single]: { x: 0, y: HEIGHT, z: 0, qx: 0, qy: 0, qz: 0, qw: 1 } } });
-    return this.playback.seek(at);
+    this.clear();
+    this.place(at);
+    this.playback.seek(at);
   }
 
   close() {
+    this.asked += 1;
     this.clear();
     this.playback = null;
     this.io.onShown(null);
   }
 
   async outlineAgain() {
-    if (!this.playback) return;
+    const { playback } = this;
+    if (!playback) return;
     const outline = await this.io.fetchJson(this.path('outline')).catch(() => null);
-    if (outline && this.playback) Object.assign(this.playback.outline, outline);
+    if (playback !== this.playback) return;
+    if (outline) Object.assign(playback.outline, outline);
     this.io.onShown(this.told());
   }
 
@@ -48,13 +52,18 @@ export class Player {
     this.frame = null;
     this.io.onFrame({ bodies: [] });
     this.room.trails.clear();
-    for (const id of this.playback?.outline.sensors ?? []) this.io.onRaw(id, { bodies: [] });
+    for (const id of this.room.sensors.keys()) this.io.onRaw(id, { bodies: [] });
   }
 
-  place(registration) {
-    if (JSON.stringify(registration.sensors) === this.placed) return;
-    this.placed = JSON.stringify(registration.sensors);
-    this.room.place(registration);
+  /// Places the sensors as at this instant; `recorded`: the registration that was read with the frames.
+  place(at, recorded) {
+    const { registrations, single } = this.playback.outline;
+    const alone = single && { sensors: { [single]: { x: 0, y: HEIGHT, z: 0, qx: 0, qy: 0, qz: 0, qw: 1 } } };
+    const places = recorded ?? placesAt(registrations, at) ?? alone;
+    const now = JSON.stringify(places?.sensors);
+    if (now === this.placed || !places) return;
+    this.placed = now;
+    this.room.place(places);
   }
 
   step() {
@@ -68,7 +77,7 @@ export class Player {
 
   show(now) {
     const { single, sensors } = this.playback.outline;
-    if (now['/registration']) this.place(now['/registration']);
+    this.place(this.playback.at, now['/registration']);
     const own = now['/frame'];
     if (single) this.io.onRaw(single, own ?? { bodies: [] });
     else {

@@ -44,7 +44,7 @@ export const request = (...asked) => requested(...asked).then(({ problem }) => p
 export async function fetched(url) {
   const answer = await fetch(url, { cache: 'no-store', headers: token ? { Authorization: `Bearer ${token}` } : {} }).catch(() => null);
   if (!answer) return { problem: 'the server does not answer' };
-  if (answer.ok) return { blob: await answer.blob() };
+  if (answer.ok) return answer.blob().then((blob) => ({ blob }), () => ({ problem: 'the answer broke off' }));
   const { detail } = await answer.json().catch(() => ({}));
   return { problem: detail ?? `the server answered ${answer.status}` };
 }

@@ -2,7 +2,8 @@
 // Uses only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration, /people/, /events, /setup,
 // /recordings/.
 import { jointLines } from './certainty.js';
-import { Cockpit, drawerOfKey, wantedDrawer } from './panels/cockpit.js';
+import { Cockpit, wantedDrawer } from './panels/cockpit.js';
+import { drawerOfKey } from './drawers.js';
 import { html, render } from './panels/html.js';
 import { watchOrigin } from './origin.js';
 import { Player } from './player.js';
@@ -114,6 +115,7 @@ const player = new Player(room, {
     const opened = Boolean(playback) !== Boolean(known.playback);
     change({ playback, ...(opened ? { drawer: 'playback', playbackProblem: '' } : {}),
       ...(recordingOnly ? { sensors: Object.fromEntries(playback.sensors.map((id) => [id, { state: 'recorded' }])) } : {}) });
+    if (opened) judge();
     if (opened) followRecordings();
     if (!playback && known.registration) room.place(known.registration);
   },
@@ -125,8 +127,7 @@ const player = new Player(room, {
 const typing = (target) => target instanceof HTMLElement && target.matches('input:not([type=checkbox]), select, textarea');
 window.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target) || document.querySelector('dialog[open]')) return;
-  const drawer = drawerOfKey(event.key);
-  if (drawer === 'hall' && !known.site) return;
+  const drawer = drawerOfKey(event.key, known, recordingOnly);
   if (drawer) openDrawer(drawer);
   else if (event.key === 'u') act.onSwitch('uncertainty', !known.switches.uncertainty);
   else if (event.key === 'a') act.onView('above');
@@ -202,7 +203,7 @@ follow(resource('registration'), 1000, (registration) => {
 follow(resource('people/'), 1000, ({ people }) => change({ people }), failed);
 follow(resource('events'), 1000, ({ events }) => change({ events }), failed);
 
-// Sensors that were found, tried, silenced; often only while somebody adds some.
+// Sensors that were found, tried, silenced.
 follow(resource('setup'), 1000, (setup) => change({ setup }), () => {}); // a server of an earlier version has none
 
 // What is amiss with the service itself although it runs: its configuration, its outputs, its disk.
@@ -211,13 +212,14 @@ follow(resource('healthz'), 5000, ({ warning }) => change({ warning: warning ?? 
 // Whether this tracker is a cell of a hall.
 if (!recordingOnly) resource('configuration').next().then((told) => change({ site: told?.inForce?.site?.name || null })).catch(() => {}); // nobody may read it
 
-// What worn sensors say of the tracker, where somebody judges it.
+// What worn sensors say of the tracker, where somebody judges it: of the bodies that are there now, not of recorded ones.
+function judge() { room.fused.judged = known.evaluation && !known.playback ? judgedBones(known.evaluation) : new Map(); }
 const JUDGED_EVERY_MS = 250;
 if (!recordingOnly) resource('').next().then((self) => {
   if (!self?.evaluation) return;
   follow(resource('evaluation'), JUDGED_EVERY_MS, (evaluation) => {
-    room.fused.judged = judgedBones(evaluation);
     change({ evaluation });
+    judge();
   }, failed);
 }).catch(() => {}); // a server of an earlier version
 

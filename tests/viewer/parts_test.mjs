@@ -1,9 +1,12 @@
 // The pure parts behind drawers: recordings by instant, the first steps, the hall from above.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mock, test } from 'node:test';
 
-import { Playback, latest, nextStretch, timeText } from '../../services/viewer/playback.js';
-import { boxOf, cellsOf, connectionOf, peopleOf, trailsAfter, wordsOf } from '../../services/viewer/hall.js';
+import { drawerOfKey, drawersOf } from '../../services/viewer/drawers.js';
+import { Playback, latest, nextStretch, placesAt, timeText } from '../../services/viewer/playback.js';
+import { Player } from '../../services/viewer/player.js';
+import { fetched } from '../../services/viewer/request.js';
+import { boxOf, cellsOf, connectionOf, pageOf, peopleOf, trailsAfter, wordsOf } from '../../services/viewer/hall.js';
 import { addressOf, freeId, stepOf, wishOf } from '../../services/viewer/setup.js';
 
 const at = (seconds, topic = '/frame') => ({ seconds, topic, message: { seconds } });
@@ -23,6 +26,7 @@ test('what is fetched begins a second before, goes on ahead, and ends with the r
   assert.equal(nextStretch([9, 12], 10, usual), null, 'two seconds lie ahead');
   assert.deepEqual(nextStretch([9, 10], 30, usual), { from: 29, to: 30, every: 0 }, 'elsewhere');
   assert.equal(nextStretch([50, 60], 59.5, usual), null, 'the end');
+  assert.deepEqual(nextStretch([9, 9.4], 10, usual), { from: 9.4, to: 10.4, every: 0 }, 'the server gave less than was asked for');
   assert.deepEqual(nextStretch([0, 1], 1, { speed: 4, length: 60 }), { from: 1, to: 5, every: 4 / 30 }, 'fewer frames when fast');
   assert.deepEqual(nextStretch([0, 1], 1, { speed: 8, length: 60 }), { from: 1, to: 6, every: 8 / 30 }, 'never more than the server allows');
 });
@@ -64,6 +68,96 @@ test('time goes on at the chosen speed, stops at the end, and no message is show
   assert.equal(playback.playing, false);
   playback.toggle();
   assert.equal(playback.at, 0, 'from the beginning again');
+});
+
+test('a server that gives a tenth of a second at once is asked on, and what was asked before a jump is forgotten', async () => {
+  const clock = { now: 0 };
+  const playback = new Playback({ seconds: 60 }, async ({ from, to }) => ({ from, to: Math.min(to, from + 0.1), messages: [at(from)] }), () => clock.now);
+  playback.seek(0); // the answer to this comes after the jump
+  playback.seek(30);
+  for (let i = 0; i < 15; i += 1) { await settled(); playback.tick(); }
+  assert.equal(playback.waiting, false);
+  assert.ok(playback.held[0] >= 29 && playback.held[1] >= 30, `${playback.held}`);
+  assert.ok(playback.messages.every(({ seconds }) => seconds >= 29), 'of the stretch that is held');
+});
+
+test('sensors stand where they stood at that instant', () => {
+  const all = [{ seconds: 0.5, registration: 'a' }, { seconds: 6, registration: 'b' }];
+  assert.deepEqual([0, 0.5, 5.9, 6, 60].map((seconds) => placesAt(all, seconds)), ['a', 'a', 'a', 'b', 'b']);
+  assert.equal(placesAt([], 3), undefined);
+  assert.equal(placesAt(undefined, 3), undefined);
+});
+
+/// A player of a server whose answers wait until they are let go; `log`: what it showed.
+function watched() {
+  mock.timers.enable({ apis: ['setInterval'] });
+  const log = { fetched: [], failed: [], shown: [], placed: [], raw: [] };
+  const waiting = [];
+  const room = { sensors: new Map([['s1', {}], ['s9', {}]]), trails: { clear() {} }, place: ({ sensors }) => log.placed.push(sensors) };
+  const player = new Player(room, {
+    fetchJson: (path) => {
+      log.fetched.push(path);
+      if (/stretch/.test(path)) return Promise.resolve({ from: 0, to: 10, messages: [] });
+      return new Promise((resolve, reject) => { waiting.push({ path, resolve, reject }); });
+    },
+    onShown: (playback) => log.shown.push(playback?.name ?? null), onFailed: (words) => log.failed.push(words), onFrame: () => {}, onRaw: (id) => log.raw.push(id),
+  });
+  mock.timers.reset();
+  const answer = async (path, outline) => {
+    const one = waiting.find((each) => each.path.includes(path));
+    waiting.splice(waiting.indexOf(one), 1);
+    if (outline instanceof Error) one.reject(outline);
+    else one.resolve({ seconds: 10, sensors: ['s1'], ...outline });
+    await settled();
+  };
+  return { player, log, answer };
+}
+
+test('a recording that is refused, overtaken or closed leaves the one that is shown as it is', async () => {
+  const { player, log, answer } = watched();
+  player.open('a');
+  await answer('/a/outline', { registrations: [{ seconds: 0, registration: { sensors: 1 } }, { seconds: 6, registration: { sensors: 2 } }] });
+  assert.deepEqual(log.shown, ['a']);
+  assert.deepEqual(log.raw, ['s1', 's9'], 'what other sensors saw last is taken away too');
+  player.playback.seek(7);
+  player.step();
+  player.playback.seek(3);
+  player.step();
+  assert.deepEqual(log.placed, [1, 2, 1], 'places of the instant, forwards and backwards');
+  player.open('refused');
+  await answer('/refused/outline', new Error('none'));
+  assert.match(log.failed.join(), /refused cannot be opened: none/);
+  [player.playback.held, log.fetched.length] = [null, 0];
+  player.step();
+  assert.match(log.fetched.join(), /^recordings\/a\/stretch/, 'its own stretches, under its own name');
+  player.open('slow');
+  player.open('b');
+  await answer('/b/outline');
+  await answer('/slow/outline');
+  assert.equal(log.shown.at(-1), 'b');
+  player.outlineAgain();
+  player.open('late');
+  player.close();
+  await answer('/b/outline');
+  await answer('/late/outline');
+  assert.equal(log.shown.at(-1), null);
+  assert.equal(player.playback, null);
+});
+
+test('keys open what has a tab, and nothing else', () => {
+  const names = (known, only) => drawersOf(known, only).map(([name]) => name);
+  assert.deepEqual(names({}, true), ['playback', 'view']);
+  assert.ok(!names({}, false).includes('hall') && names({ site: 'hall-1' }, false).includes('hall'));
+  assert.deepEqual([...'srwepglv'].map((key) => drawerOfKey(key, { site: null }, true)), [null, null, null, null, null, null, 'playback', 'view']);
+  assert.equal(drawerOfKey('g', { site: null }, false), null);
+  assert.equal(drawerOfKey('g', { site: 'hall-1' }, false), 'hall');
+  assert.equal(drawerOfKey('x', {}, false), null);
+});
+
+test('a picture that breaks off is a problem, not an end', async () => {
+  mock.method(globalThis, 'fetch', async () => ({ ok: true, blob: async () => { throw new TypeError('network error'); } }));
+  assert.deepEqual(await fetched('x'), { problem: 'the answer broke off' });
+  mock.restoreAll();
 });
 
 test('it waits for the server, and says what is wrong with it', async () => {
@@ -112,6 +206,10 @@ test('a hall has its cells with what they need, its people with where they went,
   assert.equal(wordsOf(cellsOf(told)[0], 'A'), '1 person');
   assert.equal(connectionOf(told).words, 'hall-1: 2 cells.');
   assert.match(connectionOf({ connected: false, trouble: 'wrong password' }).words, /wrong password.*goes on alone/);
+  assert.match(connectionOf(told, 'answered 503').words, /tells nothing of the hall: answered 503/);
+  assert.equal(pageOf({ state: 'heard', address: 'http://b:8080/' }), 'http://b:8080/viewer/');
+  assert.deepEqual(['http://', 'https://b:port/', 'javascript:x', undefined].map((address) => pageOf({ state: 'heard', address })), [null, null, null, null]);
+  assert.equal(pageOf({ state: 'own', address: 'http://b:8080/' }), null);
   assert.deepEqual(boxOf([]), [-5, -5, 10, 10]);
   assert.deepEqual(boxOf([{ x: 0, z: 0 }, { x: 6, z: 1 }, { x: NaN, z: 0 }]), [-4.5, -4.5, 15, 10]);
   const people = peopleOf({ sitePeople: { 'A-3': { x: 1, z: 2 } } });

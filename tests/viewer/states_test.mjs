@@ -90,7 +90,7 @@ const STATES = {
     world: (world) => {
       good(world);
       world.recordings = [recording];
-      world.outlines = { 'walk-1': { name: 'walk-1', seconds: 20, started: '2026-11-27T09:00:00Z', fused: true, sensors: ['s1', 's2'], registration: { sensors: SENSORS },
+      world.outlines = { 'walk-1': { name: 'walk-1', seconds: 20, started: '2026-11-27T09:00:00Z', fused: true, sensors: ['s1', 's2'], registrations: [{ seconds: 0, registration: { sensors: SENSORS } }],
         notes: ['the file has no end: its last second may be missing'], writable: true, marks: [{ id: 1, seconds: 5, text: 'takes the drill' }] } };
     },
     reach: [says('Live: one person'), key('l'), (page) => page.getByRole('button', { name: 'look at walk-1' }).click(), says('A recording is shown'), (page) => page.getByRole('slider').fill('6.5'), says('0:06.5 of')],
@@ -176,6 +176,8 @@ test('a recording that cannot be opened, and one that needs a token, say so', as
   STATES.playback.world(world);
   world.recordings = [recording, { ...recording, name: 'lost', started: '2026-11-27T08:00:00Z' }];
   world.recordingToken = 'secret';
+  world.known = { 1: { personId: '1', name: 'Anna' } };
+  world.evaluation = { limbs: [{ bodyId: 1, limb: 'ForearmLeft', state: 'good' }] };
   const server = await startFakeFusion(FILES, world);
   const { page } = await openViewer(browser, server.url);
   try {
@@ -185,7 +187,15 @@ test('a recording that cannot be opened, and one that needs a token, say so', as
     await page.fill('#token', 'secret');
     await page.getByRole('button', { name: 'Send' }).click();
     await says('A recording is shown: walk-1')(page);
+    const people = page.getByRole('region', { name: 'People' });
+    await people.getByRole('listitem').waitFor();
+    const now = { name: page.locator('#people .name'), pencil: page.locator('#people .rename'), judged: page.locator('#judged') };
+    for (const [what, place] of Object.entries(now)) assert.equal(await place.count(), 0, `${what}: recorded bodies are not those who are there now`);
+    await page.keyboard.press('p');
+    await says('a recording is shown')(page);
+    await page.keyboard.press('l');
     await page.getByRole('button', { name: /^Back to the room/ }).click();
+    for (const place of Object.values(now)) await place.waitFor({ state: 'attached' });
     await page.getByRole('button', { name: 'look at lost' }).click();
     await says('lost cannot be opened: there is no recording of this name')(page);
     await says('Live: one person')(page);

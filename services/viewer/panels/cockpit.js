@@ -10,6 +10,7 @@ import { Register, Verdict } from './register.js';
 import { Sensors } from './sensors.js';
 import { Top } from './top.js';
 import { World } from './world.js';
+import { drawersOf } from '../drawers.js';
 
 // What is not needed at once is loaded when it is opened.
 const LATER = {
@@ -20,10 +21,6 @@ const LATER = {
   hall: () => import('./hall.js').then(({ Hall }) => Hall),
   phone: () => import('./phone.js').then(({ Phone }) => Phone),
 };
-const DRAWERS = [['sensors', 'Sensors', 's'], ['register', 'Register', 'r'], ['world', 'World', 'w'], ['record', 'Record', 'e'],
-  ['playback', 'Look at a recording', 'l'], ['work', 'Work', 'p'], ['hall', 'Hall', 'g'], ['view', 'View', 'v']];
-const OF_RECORDINGS = ['playback', 'view']; // what there is without a room
-export const drawerOfKey = (key) => DRAWERS.find(([, , own]) => own === key)?.[0] ?? null;
 
 /// The drawer that opens by itself: where somebody has to decide or to walk.  Pure.
 export function wantedDrawer(registration) {
@@ -37,6 +34,7 @@ function Drawer({ open, known, act }) {
   if (open === 'world') return html`<${World} resource=${act.resource} onShown=${act.onOriginShown} />`;
   if (open === 'record') return html`<${Later} key="record" load=${LATER.record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} onLook=${act.playback.open} />`;
   if (open === 'playback') return html`<${Later} key="playback" load=${LATER.playback} recordings=${known.recordings} problem=${known.recordingsProblem} shown=${known.playback} failed=${known.playbackProblem} resource=${act.resource} act=${act.playback} />`;
+  if (open === 'work' && known.playback) return html`<p>Things and scores are those of the room as it is now, and a recording is shown.</p>`;
   if (open === 'work') return html`<${Later} key="work" load=${LATER.work} frame=${known.shownFrame} resource=${act.resource} />`;
   if (open === 'hall') return html`<${Later} key="hall" load=${LATER.hall} resource=${act.resource} />`;
   if (open === 'view') return html`<${Look} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
@@ -59,14 +57,14 @@ export function Cockpit({ known, act }) {
         <${Sensors} known=${known} act=${act} />
       </aside>
       <aside id="right" aria-label="people and events">
-        <${People} frame=${known.shownFrame} known=${known.people} resource=${act.resource} onLook=${(id) => act.onView('person', id)} />
-        <${Judged} evaluation=${known.evaluation} />
+        <${People} frame=${known.shownFrame} known=${known.people} recorded=${Boolean(known.playback)} resource=${act.resource} onLook=${(id) => act.onView('person', id)} />
+        ${!known.playback && html`<${Judged} evaluation=${known.evaluation} />`}
         <${Tracker} frame=${known.shownFrame} rate=${known.shownRate} age=${known.age} />
         ${!act.playback.only && html`<${Events} events=${known.events} />`}
       </aside>
       <section id="drawer" aria-label="operate">
         <${FirstRun} known=${known} onDrawer=${act.onDrawer} onDone=${act.onFirstRunDone} />
-        <div role="tablist" aria-label="drawers">${DRAWERS.filter(([key]) => (act.playback.only ? OF_RECORDINGS.includes(key) : key !== 'hall' || known.site)).map(([key, label, letter]) => html`
+        <div role="tablist" aria-label="drawers">${drawersOf(known, act.playback.only).map(([key, label, letter]) => html`
           <button key=${key} type="button" role="tab" id="tab-${key}" aria-selected=${String(known.drawer === key)} aria-controls="drawer-body"
             title=${`key ${letter}`} onClick=${() => act.onDrawer(key)}>${label}${key === 'register' ? html` <${Verdict} registration=${known.registration} />` : ''}</button>`)}</div>
         <div id="drawer-body" role="tabpanel" tabindex="-1">${known.drawer && html`<${Drawer} open=${known.drawer} known=${known} act=${act} />`}</div>

@@ -1,25 +1,30 @@
 // The drawer "Hall": the cells of the site from above, and people as they walk from one into the next.
 import { html, useEffect, useState } from './html.js';
 import { colourOf } from '../certainty.js';
-import { boxOf, cellsOf, connectionOf, peopleOf, toneOf, trailsAfter, wordsOf } from '../hall.js';
+import { boxOf, cellsOf, connectionOf, pageOf, peopleOf, toneOf, trailsAfter, wordsOf } from '../hall.js';
+import { Resource } from '../poll.js';
 
 const EVERY_MS = 200;
-
-const jsonAt = (url) => fetch(url, { headers: { Accept: 'application/json' }, cache: 'no-store' }).then((answer) => (answer.ok ? answer.json() : null), () => null);
+const EVERY_AFTER_FAILURE_MS = 1000;
 
 /// Cells, people and trails, again and again while the drawer is open.
 function useHall(resource) {
-  const [hall, tell] = useState({ told: null, people: [], trails: new Map() });
+  const [hall, tell] = useState({ told: null, cells: [], people: [], trails: new Map(), problem: '' });
   useEffect(() => {
     let open = true;
-    let trails = new Map();
+    const [cellsNow, peopleNow] = ['site/cells/', 'site/people/'].map((path) => new Resource(resource(path)));
+    let [told, there, trails] = [null, null, new Map()];
     const ask = async () => {
-      const [told, there] = await Promise.all([jsonAt(resource('site/cells/')), jsonAt(resource('site/people/'))]);
-      if (!open) return;
-      const people = peopleOf(there);
-      trails = trailsAfter(trails, people, performance.now());
-      tell({ told, people, trails });
-      setTimeout(ask, EVERY_MS);
+      let problem = '';
+      try {
+        await Promise.all([cellsNow.next().then((next) => { told = next ?? told; }), peopleNow.next().then((next) => { there = next ?? there; })]);
+        trails = trailsAfter(trails, peopleOf(there), performance.now());
+        if (open) tell({ told, cells: cellsOf(told), people: peopleOf(there), trails, problem });
+      } catch (error) {
+        problem = String(error?.message ?? error);
+        if (open) tell({ told: null, cells: [], people: [], trails, problem });
+      }
+      if (open) setTimeout(ask, problem ? EVERY_AFTER_FAILURE_MS : EVERY_MS);
     };
     ask();
     return () => { open = false; };
@@ -42,10 +47,9 @@ function Person({ person, trail }) {
 }
 
 export function Hall({ resource }) {
-  const { told, people, trails } = useHall(resource);
-  const cells = cellsOf(told);
+  const { told, cells, people, trails, problem } = useHall(resource);
   const seen = people.filter(({ x, z }) => Number.isFinite(x) && Number.isFinite(z));
-  const { tone, words } = connectionOf(told);
+  const { tone, words } = connectionOf(told, problem);
   return html`<div id="hall-drawer" class="columns">
     <svg id="hall" role="img" aria-label="the hall from above: cells, people, and where they went" viewBox=${boxOf([...cells, ...seen]).join(' ')}>
       ${cells.map((cell) => html`<${Cell} key=${cell.id} cell=${cell} />`)}
@@ -54,7 +58,7 @@ export function Hall({ resource }) {
     <section aria-labelledby="hall-title"><h3 id="hall-title">Cells</h3>
       <p class=${tone} role="status">${words}</p>
       <ul id="cells">${cells.map((cell) => html`<li key=${cell.id}><strong class=${toneOf(cell)}>${cell.id}</strong> ${cell.state}: ${wordsOf(cell, told.cell)}
-        ${/^https?:/.test(cell.address ?? '') && cell.state !== 'own' && html` <a href=${new URL('viewer/', cell.address).href}>its page</a>`}</li>`)}</ul>
+        ${pageOf(cell) && html` <a href=${pageOf(cell)}>its page</a>`}</li>`)}</ul>
       ${seen.length > 0 && html`<h3>People</h3><ul id="hall-people">${seen.map((person) => html`<li key=${person.id}>${person.id} in ${person.cell}${
         person.siteCertainty < 0.95 ? `, ${Math.round(100 * person.siteCertainty)} % certain who it is` : ''}</li>`)}</ul>`}
     </section></div>`;

@@ -20,24 +20,24 @@ function Naming({ id, name, resource, onDone }) {
     <${Said} text=${said} /></form>`;
 }
 
-function Person({ body, known, resource, onLook }) {
+function Person({ body, known, recorded, resource, onLook }) {
   const [naming, setNaming] = useState(false);
   const name = known?.name;
   return html`<li>
     <button type="button" class="person" title="follow this person with the view" onClick=${() => onLook(body.bodyId)}>
       <svg class="swatch" viewBox="0 0 10 10" aria-hidden="true"><circle cx="5" cy="5" r="5" fill=${colourOf(body.bodyId)} /></svg>
       <span>${name && html`<strong class="name">${name}</strong>${', '}`}${personLine(body)}</span></button>
-    ${!naming && html`<button type="button" class="rename" aria-label=${`name ${name ?? `person ${body.bodyId}`}`} title="give this person a name" onClick=${() => setNaming(true)}>✎</button>`}
-    ${naming && html`<${Naming} id=${body.bodyId} name=${name} resource=${resource} onDone=${() => setNaming(false)} />`}</li>`;
+    ${!naming && !recorded && html`<button type="button" class="rename" aria-label=${`name ${name ?? `person ${body.bodyId}`}`} title="give this person a name" onClick=${() => setNaming(true)}>✎</button>`}
+    ${naming && !recorded && html`<${Naming} id=${body.bodyId} name=${name} resource=${resource} onDone=${() => setNaming(false)} />`}</li>`;
 }
 
-/// `known`: /people/ by id; without it nobody has a name.
-export function People({ frame, known, resource, onLook }) {
+/// `known`: /people/ by id; without it nobody has a name.  `recorded`: the bodies are of a recording, and their ids are those of others now.
+export function People({ frame, known, recorded, resource, onLook }) {
   const bodies = frame?.bodies ?? [];
   return html`<section aria-labelledby="people-title">
     <h2 id="people-title">People</h2>
     <ul id="people" aria-label="people: seen or expected, and how sure left and right are">
-      ${bodies.map((body) => html`<${Person} key=${body.bodyId} body=${body} known=${known?.[body.bodyId]} resource=${resource} onLook=${onLook} />`)}
+      ${bodies.map((body) => html`<${Person} key=${body.bodyId} body=${body} known=${recorded ? null : known?.[body.bodyId]} recorded=${recorded} resource=${resource} onLook=${onLook} />`)}
     </ul>
     ${bodies.length === 0 && html`<p>nobody</p>`}
   </section>`;
