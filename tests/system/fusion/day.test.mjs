@@ -1,5 +1,6 @@
 // A whole day on the page with the real programs, by the keyboard alone, by roles and names only: a server without sensors, a walk to
 // Good, the world turned, a person named, something recorded, played, marked, cut and downloaded, one sensor more, one that dies.
+// It takes minutes, so it runs at night (tests/run.sh --nightly).
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync } from 'node:fs';
