@@ -91,30 +91,21 @@ start() {
   children+=($!)
 }
 
+# All background jobs are asked for, because a signal can arrive after one was started and before its number was noted.
 stop_all() {
   trap - EXIT
   trap '' INT TERM
-  local extra
-  for extra in $scores_pid $sheet_pid $judge_pid; do kill -TERM "$extra" 2>/dev/null || true; done
-  (( ${#children[@]} > 0 )) || return 0
-  local i
+  local i child
   # The fusion server was started last and stops first, so that it need not see its sensors vanish.
-  for (( i = ${#children[@]} - 1; i >= 0; --i )); do
-    kill -TERM "${children[i]}" 2>/dev/null || true
-    (( i != sensor_processes )) || sleep 0.2
-  done
+  for (( i = ${#children[@]} - 1; i >= sensor_processes; --i )); do kill -TERM "${children[i]}" 2>/dev/null || true; done
+  (( ${#children[@]} <= sensor_processes )) || sleep 0.2
+  for child in $(jobs -p); do kill -TERM "$child" 2>/dev/null || true; done
   for (( i = 0; i < 50; ++i )); do
-    any_alive || break
+    [[ -n "$(jobs -rp)" ]] || break
     sleep 0.1
   done
-  kill -KILL "${children[@]}" 2>/dev/null || true
+  for child in $(jobs -rp); do kill -KILL "$child" 2>/dev/null || true; done
   wait 2>/dev/null || true
-}
-
-any_alive() {
-  local child
-  for child in "${children[@]}"; do kill -0 "$child" 2>/dev/null && return 0; done
-  return 1
 }
 
 all_alive() {
