@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,6 +10,7 @@
 #include "common/base/units.h"
 #include "common/geometry/error_radius.h"
 #include "common/time/clock_estimate.h"
+#include "fusion-server/registration/adjoint.h"
 #include "fusion-server/site/loops.h"
 
 namespace chorus::site {
@@ -72,10 +74,7 @@ Eigen::Matrix<double, 6, 6> covariance_of(const Extrinsics& place, const CellId&
                                           const CellId& origin) {
   if (cell == origin) return exact();
   const Eigen::Vector3d down = place.world_from_sensor.linear() * Eigen::Vector3d(0, -kEye, 0);
-  Eigen::Matrix3d cross;
-  cross << 0, -down.z(), down.y(), down.z(), 0, -down.x(), -down.y(), down.x(), 0;
-  Eigen::Matrix<double, 6, 6> moved = Eigen::Matrix<double, 6, 6>::Identity();
-  moved.bottomLeftCorner<3, 3>() = -cross;
+  const registration::Matrix6 moved = registration::at_point(down);
   return moved * place.covariance * moved.transpose() + exact();
 }
 
@@ -132,17 +131,12 @@ SitePlaces places_of(const Registration& found) {
   return places;
 }
 
-std::string names_of(const std::vector<CellId>& cells) {
-  std::string text;
-  for (const CellId& cell : cells) text += (text.empty() ? "" : "-") + cell.str();
-  return text;
-}
-
 CellRefusal refusal(const Misfit& misfit) {
   return {misfit.cell,
           fmt::format("it does not fit: the loop {} ends {:.2f} m from where it began, and closes "
                       "without this cell{}",
-                      names_of(misfit.worst.cells), misfit.worst.closure,
+                      fmt::join(misfit.worst.cells | std::views::transform(&CellId::str), "-"),
+                      misfit.worst.closure,
                       misfit.alone ? ""
                                    : ", or without another one of the loop; was one moved "
                                      "during the walk?")};
