@@ -8,15 +8,14 @@ namespace chorus::site {
 namespace {
 
 constexpr std::size_t kHypotheses = 100;
-constexpr std::size_t kColumns = 64;  // bits of Hypothesis::used
-constexpr double kHopeless = -15.0;   // log likelihood ratio below which a pair is not tried
-constexpr std::size_t kNobody = kColumns;
+constexpr double kHopeless = -15.0;  // log likelihood ratio below which a pair is not tried
+constexpr std::size_t kNobody = kMatchColumns;
 
 /// An assignment of the people that were gone through so far.
 struct Hypothesis {
   double log = 0.0;
   CommonError error;
-  std::uint64_t used = 0;           ///< Theirs, as bits.
+  std::uint64_t used = 0;           ///< Theirs, as bits: kMatchColumns of them.
   std::vector<std::size_t> theirs;  ///< Of each of ours; kNobody: none.
 };
 
@@ -72,7 +71,7 @@ JointMatch match_jointly(MatchSize size, std::span<const PossiblePair> pairs,
                          const CommonError& error) {
   std::vector<Row> rows(size.ours);
   for (const PossiblePair& pair : pairs) {
-    if (pair.ours < size.ours && pair.theirs < std::min(size.theirs, kColumns))
+    if (pair.ours < size.ours && pair.theirs < std::min(size.theirs, kMatchColumns))
       rows[pair.ours].push_back(&pair);
   }
   const std::vector<Hypothesis> all = hypotheses_of(rows, error);

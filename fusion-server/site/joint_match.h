@@ -16,10 +16,13 @@
 
 namespace chorus::site {
 
+/// Of theirs at most so many are matched at once.
+inline constexpr std::size_t kMatchColumns = 64;
+
 /// A pair that may be one person.
 struct PossiblePair {
   std::size_t ours = 0;
-  std::size_t theirs = 0;  ///< Below 64.
+  std::size_t theirs = 0;  ///< Below kMatchColumns.
   CommonTerm term;
   /// Log likelihood ratio of everything but the place: one person, against two who are anywhere in
   /// an area; includes the log of that area [m^2].
@@ -46,7 +49,7 @@ struct Likeliest {
 
 struct MatchSize {
   std::size_t ours = 0;
-  std::size_t theirs = 0;  ///< Those above 64 are matched with nobody.
+  std::size_t theirs = 0;  ///< Those from kMatchColumns on are matched with nobody.
 };
 
 [[nodiscard]] JointMatch match_jointly(MatchSize size, std::span<const PossiblePair> pairs,

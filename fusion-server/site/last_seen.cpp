@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -30,9 +32,39 @@ constexpr double kMostFor = 5.0;
 // Longest time by which a newcomer may have been seen before the last sight elsewhere [s].
 constexpr double kOverlap = 1.0;
 
+/// The missing people who are in one of the pairs, in their order; of more than can be matched
+/// those with the largest ratio.
+std::vector<std::size_t> likeliest_columns(const std::vector<PossiblePair>& pairs) {
+  std::map<std::size_t, double> best;
+  for (const PossiblePair& pair : pairs) {
+    const auto [at, fresh] = best.try_emplace(pair.theirs, pair.rest);
+    if (!fresh) at->second = std::max(at->second, pair.rest);
+  }
+  std::vector<std::pair<double, std::size_t>> all;
+  for (const auto& [column, rest] : best) all.emplace_back(rest, column);
+  std::ranges::sort(all, std::greater{});
+  if (all.size() > kMatchColumns) all.resize(kMatchColumns);
+  std::vector<std::size_t> columns;
+  for (const auto& [rest, column] : all) columns.push_back(column);
+  std::ranges::sort(columns);
+  return columns;
+}
+
+/// The match of some columns as one of all of them; the others are matched with nobody.
+JointMatch spread(const JointMatch& match, const std::vector<std::size_t>& columns,
+                  std::size_t all) {
+  JointMatch out{all, std::vector<double>(match.none.size() * all, 0.0), match.none};
+  for (std::size_t i = 0; i < match.none.size(); ++i) {
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      out.pairs[i * all + columns[j]] = match.at(i, j);
+  }
+  return out;
+}
+
 }  // namespace
 
 void remember(LastSights& sights, const SiteId& id, const LastSight& sight) {
+  if (sights.size() >= kMostSights && !sights.contains(id)) return;
   const auto [at, fresh] = sights.try_emplace(id, sight);
   if (!fresh && at->second.at < sight.at) at->second = sight;
 }
@@ -87,7 +119,16 @@ JointMatch match_returning(std::span<const Newcomer> newcomers, std::span<const 
         pairs.push_back({i, j, term, *odds - own});
     }
   }
-  return match_jointly({newcomers.size(), missing.size()}, pairs, exact);
+  const std::vector<std::size_t> tried = likeliest_columns(pairs);
+  std::vector<PossiblePair> renumbered;
+  for (const PossiblePair& pair : pairs) {
+    const auto at = std::ranges::lower_bound(tried, pair.theirs);
+    if (at == tried.end() || *at != pair.theirs) continue;
+    renumbered.push_back(pair);
+    renumbered.back().theirs = static_cast<std::size_t>(at - tried.begin());
+  }
+  const JointMatch match = match_jointly({newcomers.size(), tried.size()}, renumbered, exact);
+  return spread(match, tried, missing.size());
 }
 
 }  // namespace chorus::site

@@ -36,8 +36,12 @@ struct Gone {
 };
 [[nodiscard]] Gone listed(const LastSights& sights);
 
-/// Keeps the newer sight; those of before `oldest` are forgotten.
+/// More people are not remembered at once.
+inline constexpr std::size_t kMostSights = 10'000;
+
+/// Keeps the newer sight; that of somebody new is left out beyond kMostSights.
 void remember(LastSights& sights, const SiteId& id, const LastSight& sight);
+/// Forgets the sights of before `oldest`.
 void forget_before(LastSights& sights, Timestamp oldest);
 
 /// Log likelihood ratio that the newcomer is the person who was last seen there, against somebody
@@ -46,7 +50,8 @@ void forget_before(LastSights& sights, Timestamp oldest);
                                                 const associate::Repeatability& repeatability);
 
 /// One row per newcomer, one column per missing person: probabilities, each missing person being at
-/// most one of the newcomers.
+/// most one of the newcomers.  Who cannot have walked to any newcomer is out of the question; of
+/// the others the likeliest 64 are matched.
 [[nodiscard]] JointMatch match_returning(std::span<const Newcomer> newcomers,
                                          std::span<const LastSight> missing,
                                          const associate::Repeatability& repeatability);

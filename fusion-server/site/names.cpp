@@ -9,7 +9,6 @@ namespace {
 // A cell that has said nothing for this long shows nobody now.
 constexpr Duration kPresent = std::chrono::milliseconds(500);
 constexpr std::size_t kMaxAliases = 100'000;
-constexpr std::size_t kMaxSights = 10'000;
 constexpr int kLongestChain = 32;  // of aliases
 constexpr double kProbable = 0.5;
 constexpr double kEvidence = 0.40;  // [s]: half a second, less a period of the samples
@@ -117,7 +116,7 @@ void Names::keep_up(const Hearing& hearing) {
 void Names::remember_sights(const Hearing& hearing) {
   const auto sight = [&](const HeardCell& cell, PersonId body, const SiteId& id) {
     const auto where = where_is(cell, body);
-    if (!where || sights_.size() > kMaxSights) return;
+    if (!where) return;
     remember(sights_, id,
              {cell.id, where->at, where->place, where->velocity, where->covariance,
               cell.bodies.at(body).last.lengths});

@@ -58,6 +58,31 @@ TEST(Returning, IsDoubtfulForTwoAlike) {
   EXPECT_LT(match.at(0, 0), 0.6);
 }
 
+TEST(Returning, SomebodyIsFoundAmongMoreThanCanBeMatched) {
+  // Invented ones first: too far away to have walked, then all round where the newcomer comes.
+  std::vector<LastSight> missing(80, walker(50, 0));
+  for (int i = 0; i < 80; ++i) missing.push_back(walker(4.0 + 0.01 * i, 0));
+  missing.push_back(walker(0, 0));
+  const std::vector<Newcomer> come{newcomer(1.6, 0, 0)};
+  const JointMatch match = match_returning(come, missing, {});
+  ASSERT_EQ(match.columns, missing.size());
+  EXPECT_GT(match.at(0, missing.size() - 1), 0.7);
+  double all = match.none[0];
+  for (std::size_t j = 0; j < missing.size(); ++j) all += match.at(0, j);
+  EXPECT_NEAR(all, 1.0, 1e-9);
+}
+
+TEST(Returning, OfTooManyOnlyNewOnesAreNotRemembered) {
+  LastSights sights;
+  for (std::size_t i = 0; i <= kMostSights; ++i)
+    remember(sights, *SiteId::parse("a-" + std::to_string(i)), walker(0, 0));
+  EXPECT_EQ(sights.size(), kMostSights);
+  LastSight newer = walker(1, 0);
+  newer.at += std::chrono::seconds(1);
+  remember(sights, *SiteId::parse("a-0"), newer);
+  EXPECT_DOUBLE_EQ(sights.at(*SiteId::parse("a-0")).place.z(), 1.0);
+}
+
 TEST(Returning, SightsAreKeptForAsLongAsAsked) {
   LastSights sights;
   const SiteId id = *SiteId::parse("a");
