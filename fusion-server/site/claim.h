@@ -3,7 +3,8 @@
 //
 // The store numbers every change of a key.  A cell writes with the number that it knows, and is
 // refused if another cell has written since.  Without a store nobody answers a request; every cell
-// then answers for the people it sees (ownership.h).
+// then answers for the people it sees (ownership.h).  The store forgets a record an hour after its
+// last change; whoever wants the person then asks as if there had been none.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace chorus::site {
 enum class ClaimState {
   Held,      ///< The cell answers for the person.
   Released,  ///< It has lost sight of the person; whoever sees them may claim them at once.
-  Joined,    ///< The id is an alias of `same_as`; it stays so for ever.
+  Joined,    ///< The id is an alias of `same_as`; nobody bears it any more.
 };
 
 /// The record of one person.
@@ -36,7 +37,9 @@ struct ClaimRequest {
 };
 
 struct ClaimResult {
-  Claim now;  ///< The record after the request, whoever wrote it.
+  /// The record after the request, whoever wrote it.  Revision 0: the store has none any more,
+  /// because it keeps records for a time only.
+  Claim now;
   bool accepted = false;
 };
 

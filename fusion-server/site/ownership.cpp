@@ -12,6 +12,9 @@ constexpr Duration kAskAgain = std::chrono::seconds(1);
 constexpr double kBetter = 0.9 * 0.9;
 // How long the record of somebody nobody tells of is kept here; the store has it still.
 constexpr Duration kRecordKept = std::chrono::minutes(10);
+// As many as 64 cells can tell of at once.  What is heard beyond that of people who are none of
+// ours is left to the store, which says it when we ask for one of them.
+constexpr std::size_t kMostRecords = 64 * 64;
 
 const StatedBy* stated_by(const OwnSight& person, const CellId& cell) {
   const auto found = std::ranges::find(person.others, cell, &StatedBy::cell);
@@ -29,6 +32,7 @@ void follow(std::optional<Timestamp>& since, bool condition, Timestamp now) {
 }  // namespace
 
 void Ownership::take(const Claim& claim, Timestamp now) {
+  if (known_.size() >= kMostRecords && !known_.contains(claim.id)) return;
   Known& known = known_[claim.id];
   known.touched = now;
   if (known.claim && known.claim->revision >= claim.revision) return;
@@ -42,8 +46,12 @@ void Ownership::take(const Claim& claim, Timestamp now) {
 }
 
 void Ownership::take(const ClaimResult& result, Timestamp now) {
-  known_[result.now.id].asked.reset();
-  take(result.now, now);
+  const auto known = known_.find(result.now.id);
+  if (known != known_.end()) {
+    known->second.asked.reset();
+    if (result.now.revision == 0) known->second.claim.reset();
+  }
+  if (result.now.revision != 0) take(result.now, now);
 }
 
 void Ownership::join(const SiteId& kept, const SiteId& joined) { to_join_[joined] = kept; }

@@ -46,7 +46,6 @@ class Ownership {
   [[nodiscard]] std::optional<CellId> holder(const SiteId& id) const;
   /// The cell that answers for one of our people: the holder while it tells of them, else us.
   [[nodiscard]] CellId answers(const OwnSight& person) const;
-  [[nodiscard]] const std::map<SiteId, SiteId>& to_join() const { return to_join_; }
 
  private:
   struct Known {

@@ -107,6 +107,35 @@ TEST(Ownership, OfADoubtfulNameIsNotClaimed) {
   EXPECT_TRUE(watch(ownership, seen, kBegin, std::chrono::seconds(3)).empty());
 }
 
+TEST(Ownership, IsAskedForAsNewWhenTheStoreHasForgottenTheRecord) {
+  Ownership ownership(kUs, {});
+  ownership.take(held_by(kThem, 7), kBegin);
+  const auto stale = watch(ownership, sight(0.08, {}), kBegin, milliseconds(400));
+  ASSERT_EQ(stale.size(), 1U);
+  EXPECT_EQ(stale[0].expected, 7U);
+  Claim none = stale[0].value;
+  none.revision = 0;
+  ownership.take(ClaimResult{none, false}, kBegin + milliseconds(410));
+  EXPECT_FALSE(ownership.holder(kPerson));
+  const auto wanted =
+      watch(ownership, sight(0.08, {}), kBegin + milliseconds(420), milliseconds(100));
+  ASSERT_EQ(wanted.size(), 1U);
+  EXPECT_EQ(wanted[0].expected, 0U);
+}
+
+TEST(Ownership, OfPeopleNobodyTellsOfIsNotKeptWithoutBound) {
+  Ownership ownership(kUs, {});
+  const OwnSight seen = sight(0.02, {});
+  (void)ownership.wanted({&seen, 1}, kBegin);
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    const SiteId invented = *SiteId::parse("i-" + std::to_string(i));
+    ownership.take(Claim{invented, kThem, i + 1, ClaimState::Held, {}}, kBegin);
+  }
+  EXPECT_FALSE(ownership.holder(*SiteId::parse("i-19999")));
+  ownership.take(held_by(kThem, 30'000), kBegin);
+  EXPECT_EQ(ownership.holder(kPerson), kThem) << "one of our people";
+}
+
 TEST(Ownership, RecordsAJoinedIdUntilTheStoreHasIt) {
   Ownership ownership(kUs, {});
   const SiteId kept = *SiteId::parse("a-1");
