@@ -39,7 +39,7 @@ struct Person {
 struct CellPeople {
   CellId cell;
   std::uint64_t boot = 0;      ///< Another one each time the cell starts; larger later.
-  std::uint64_t sequence = 0;  ///< Counts the cell's messages since it started.
+  std::uint64_t sequence = 0;  ///< Of the cell's snapshot: larger in each message, with gaps.
   Timestamp at;                ///< The instant, by the cell's clock.
   std::vector<Person> people;
 };

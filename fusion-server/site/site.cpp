@@ -20,6 +20,13 @@ constexpr double kStep = 0.2;  // [s] that one decision counts at most
 // Matches change no faster than the samples that they are made of.
 constexpr Duration kMatchPeriod = std::chrono::milliseconds(90);
 
+/// Cells repeat where they stand once a second; what was learned of a place holds for the same one.
+bool same_place(const CellPlace& one, const CellPlace& other) {
+  return one.site_from_cell.matrix() == other.site_from_cell.matrix() &&
+         one.covariance == other.covariance && one.clock_added == other.clock_added &&
+         one.clock_sigma == other.clock_sigma;
+}
+
 }  // namespace
 
 struct Site::State {
@@ -196,6 +203,7 @@ Result<void> Site::take(const CellPlace& place, Timestamp) {
     return fail(ErrorCode::InvalidArgument, "cell " + place.cell.str(),
                 "its place is not a number");
   if (place.cell == s.ours.id) {
+    if (s.ours.place && same_place(*s.ours.place, place)) return {};
     s.ours.place = place;
     for (auto& [id, cell] : s.others) s.place(cell);
     return {};
@@ -204,6 +212,7 @@ Result<void> Site::take(const CellPlace& place, Timestamp) {
     return fail(ErrorCode::TooLarge, "cell " + place.cell.str(),
                 fmt::format("a site has at most {} cells", kMaxCells));
   HeardCell& cell = s.cell(place.cell);
+  if (cell.place && same_place(*cell.place, place)) return {};
   cell.place = place;
   s.place(cell);
   return {};
@@ -244,8 +253,6 @@ Decision Site::decide(Timestamp now) {
   s.decided = now;
   return decision;
 }
-
-SiteId Site::present(const SiteId& id) const { return state_->names.present(id); }
 
 std::vector<SitePerson> Site::everybody(Timestamp now) const {
   return everybody_of(state_->hearing(now), state_->names, state_->config);

@@ -103,7 +103,8 @@ class Site {
   /// A cell's people; those of our own cell come the same way, without ids.  InvalidArgument: the
   /// message is refused, and why; nothing of it is used.
   [[nodiscard]] Result<void> take(const CellPeople& heard, Timestamp now);
-  /// Where a cell stands; a cell without a place is heard, but nobody of it is matched.
+  /// Where a cell stands; a cell without a place is heard, but nobody of it is matched.  Another
+  /// place than before ends what was learned of it; the same one said again does not.
   [[nodiscard]] Result<void> take(const CellPlace& place, Timestamp now);
   /// A record of the store, as it changed.
   void take(const Claim& claim, Timestamp now);
@@ -114,8 +115,6 @@ class Site {
   /// Call it after each message of our own cell.
   [[nodiscard]] Decision decide(Timestamp now);
 
-  /// The id that is in use for `id`: itself, or the one that it was joined to.
-  [[nodiscard]] SiteId present(const SiteId& id) const;
   /// Everybody in the site, each once, in the order of their ids.
   [[nodiscard]] std::vector<SitePerson> everybody(Timestamp now) const;
   [[nodiscard]] std::vector<CellState> cells(Timestamp now) const;

@@ -36,6 +36,27 @@ TEST(HandOver, KeepsTheIdWhereCellsOverlap) {
   }
 }
 
+TEST(HandOver, LearnsOfAPlaceThatIsSaidAgainEverySecond) {
+  const HallPerson both{[](double t) -> std::optional<Eigen::Vector2d> {
+    return Eigen::Vector2d(0.8 * std::sin(0.6 * t), 1.2 * std::cos(0.5 * t));
+  }};
+  Hall hall(two_cells(2.5, 2), {both}, 2);
+  for (int step = 1; hall.time() < 10.0; ++step) {
+    hall.step();
+    if (step % 30 != 0) continue;
+    for (const HallCell& cell : hall.cells()) {
+      site::CellPlace again = cell.stated;
+      again.version += static_cast<std::uint64_t>(step);
+      ASSERT_TRUE(hall.site(0).take(again, hall.clock(0)));
+    }
+  }
+  EXPECT_GT(hall.site(0).cells(hall.clock(0))[1].learned, 4.0);
+  site::CellPlace moved = hall.cells()[1].stated;
+  moved.site_from_cell.translation().x() += 1.0;
+  ASSERT_TRUE(hall.site(0).take(moved, hall.clock(0)));
+  EXPECT_EQ(hall.site(0).cells(hall.clock(0))[1].learned, 0.0);
+}
+
 TEST(HandOver, NamesNobodyBeforeHalfASecondAndSoonAfter) {
   Hall hall(two_cells(1.5, 1), {straight_walker({-4, 0}, {1.2, 0}, 1.0)}, 1);
   double seen = 0.0;
