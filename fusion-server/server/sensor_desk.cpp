@@ -62,15 +62,13 @@ rest::SetupFacts SensorDesk::facts() const {
   return facts;
 }
 
-Result<SensorChanges> SensorDesk::with(const Services& more) const {
-  return with_sensors(changes(), options_.configured(), more);
-}
-
 /// Writes the file before the change takes effect: what is followed is what a restart follows.
-Result<void> SensorDesk::put(Result<SensorChanges> next) {
-  if (!next) return pass(next);
+Result<void> SensorDesk::put(const Change& change) {
+  const Services configured = options_.configured();
   {
     const std::scoped_lock lock(mutex_);
+    auto next = change(changes_, configured);
+    if (!next) return pass(next);
     if (!damage_.empty())
       return fail(ErrorCode::Conflict, "sensors.json",
                   "nothing is changed while this file cannot be read: " + damage_ +
@@ -139,14 +137,24 @@ rest::SetupControl SensorDesk::control() {
   control.search = [this] { search(); };
   control.attempt = [this](const client::FollowedService& sensor) { return attempt(sensor); };
   control.preview = [this](const Services& more) -> Result<std::string> {
-    return with(more).map([](const SensorChanges& next) { return text_of(next, Tokens::Hidden); });
+    return with_sensors(changes(), options_.configured(), more).map([](const SensorChanges& next) {
+      return text_of(next, Tokens::Hidden);
+    });
   };
-  control.add = [this](const Services& more) { return put(with(more)); };
+  control.add = [this](const Services& more) {
+    return put([&](SensorChanges now, const Services& configured) {
+      return with_sensors(std::move(now), configured, more);
+    });
+  };
   control.silence = [this](const SensorId& id, bool silent) {
-    return put(with_silence(changes(), options_.configured(), id, silent));
+    return put([&](SensorChanges now, const Services& configured) {
+      return with_silence(std::move(now), configured, id, silent);
+    });
   };
   control.take_out = [this](const SensorId& id) {
-    return put(without_sensor(changes(), options_.configured(), id));
+    return put([&](SensorChanges now, const Services& configured) {
+      return without_sensor(std::move(now), configured, id);
+    });
   };
   return control;
 }

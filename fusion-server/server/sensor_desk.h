@@ -34,8 +34,9 @@ class SensorDesk {
  private:
   [[nodiscard]] std::string path() const;
   [[nodiscard]] rest::SetupFacts facts() const;
-  [[nodiscard]] Result<SensorChanges> with(const Services& more) const;
-  [[nodiscard]] Result<void> put(Result<SensorChanges> next);
+  /// The changes after the present ones, given the configured sensors.
+  using Change = std::function<Result<SensorChanges>(SensorChanges, const Services&)>;
+  [[nodiscard]] Result<void> put(const Change& change);
   [[nodiscard]] SensorChanges changes() const;
   void search();
   [[nodiscard]] Result<void> attempt(const client::FollowedService& sensor);

@@ -91,6 +91,23 @@ TEST(SensorDesk, KeepsWhatWasAddedForTheNextStart) {
   EXPECT_EQ(again.followed(rig.configured).back().token, "secret");
 }
 
+TEST(SensorDesk, LosesNoneOfTheChangesThatAreMadeAtOnce) {
+  constexpr int kEach = 12;
+  Desk rig;
+  SensorDeskOptions options = rig.options();
+  options.changed = [] {};
+  SensorDesk desk(options);
+  const auto add = [control = desk.control()](int from) {
+    for (int i = from; i < from + kEach; ++i)
+      EXPECT_TRUE(control.add({a_service("n" + std::to_string(i), 9000 + i)}));
+  };
+  {
+    const std::jthread one(add, 0);
+    const std::jthread other(add, kEach);
+  }
+  EXPECT_EQ(desk.followed({}).size(), 2u * kEach);
+}
+
 TEST(SensorDesk, AFileThatCannotBeReadIsNotWrittenOver) {
   Desk rig;
   rig.folder.write("sensors.json", "{ nonsense");
