@@ -21,6 +21,7 @@ Result<int> run_join(const std::string& file, const std::string& cell_file) {
   if (!fusion) return pass(fusion);
   const auto cell = read_file(cell_file, kMostBytes);
   if (!cell) return pass(cell);
+  if (auto ok = check_authority(*cell); !ok) return pass(ok);
   const auto joined = joined_config(*fusion, *cell);
   if (!joined) return pass(joined);
   if (auto ok = write_file(file, *joined, Readers::Services, Overwriting::Yes); !ok)

@@ -2,15 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "common/client/service_client.h"
 #include "common/http/status.h"
 
 namespace chorus::ctl {
 namespace {
-
-std::string text_at(const nlohmann::json& object, const char* key) {
-  const auto it = object.is_object() ? object.find(key) : object.end();
-  return it != object.end() && it->is_string() ? it->get<std::string>() : std::string();
-}
 
 bool flag_at(const nlohmann::json& object, const char* key) {
   const auto it = object.is_object() ? object.find(key) : object.end();
@@ -19,7 +15,7 @@ bool flag_at(const nlohmann::json& object, const char* key) {
 
 Finding cell_finding(const std::string& name, const nlohmann::json& cell) {
   const std::string subject = "cell " + name;
-  const std::string state = text_at(cell, "state");
+  const std::string state = client::text_at(cell, "state", "");
   if (!flag_at(cell, "placed"))
     return {false, subject, "has no place in the site, so nobody of it is recognised elsewhere",
             "name the file of places (site.places) in its fusion.json; docs/guide/hall.md"};
@@ -34,15 +30,15 @@ Finding cell_finding(const std::string& name, const nlohmann::json& cell) {
 }  // namespace
 
 Findings site_findings_of(const nlohmann::json& cells) {
-  const std::string subject = "site " + text_at(cells, "siteName");
+  const std::string subject = "site " + client::text_at(cells, "siteName", "");
   if (!flag_at(cells, "connected")) {
-    const std::string trouble = text_at(cells, "trouble");
+    const std::string trouble = client::text_at(cells, "trouble", "");
     return {{false, subject,
              "is not connected: " + (trouble.empty() ? "no server answers" : trouble),
              "systemctl status chorus-site on the server's host; site.servers, user, password and "
              "ca in fusion.json"}};
   }
-  Findings all{{true, subject, "is connected by " + text_at(cells, "server")}};
+  Findings all{{true, subject, "is connected by " + client::text_at(cells, "server", "")}};
   const auto list = cells.find("siteCells");
   if (list == cells.end() || !list->is_object()) return all;
   for (const auto& [name, cell] : list->items()) all.push_back(cell_finding(name, cell));
@@ -52,9 +48,9 @@ Findings site_findings_of(const nlohmann::json& cells) {
 Findings site_findings(const ExaminedService& service) {
   const auto section = service.config.find("site");
   if (service.kind != "fusion" || section == service.config.end() ||
-      text_at(*section, "name").empty())
+      client::text_at(*section, "name", "").empty())
     return {};
-  const std::string subject = "site " + text_at(*section, "name");
+  const std::string subject = "site " + client::text_at(*section, "name", "");
   const auto answer = ask_service(service, "site/cells/");
   if (!answer) return {};  // health_finding() says that the service does not answer.
   if (answer->status == http::status::kNotFound)

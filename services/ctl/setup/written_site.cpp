@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/config_reader.h"
+#include "common/base/file.h"
 #include "common/base/strong_id.h"
+#include "common/client/service_client.h"
 #include "services/ctl/line/new_file.h"
 #include "services/ctl/setup/written_config.h"
 
@@ -47,9 +49,10 @@ std::string cell_user(const SiteWishes& wishes, const std::string& cell,
       "            allow: [\"chorus.{2}.{3}.>\", \"chorus.{2}.*.ask.>\", \"$KV.chorus_cells.{3}\", "
       "\"$KV.chorus_people.>\", \"$JS.API.>\", \"$JS.ACK.>\", \"$JS.FC.>\"]\n"
       "            deny: [\"$JS.API.STREAM.DELETE.>\", \"$JS.API.STREAM.PURGE.>\", "
-      "\"$JS.API.STREAM.UPDATE.>\"]\n"
+      "\"$JS.API.STREAM.UPDATE.>\", \"$JS.API.STREAM.MSG.DELETE.>\", "
+      "\"$JS.API.CONSUMER.DELETE.>\"]\n"
       "          }}\n"
-      "          subscribe: [\"chorus.{2}.>\", \"_INBOX.>\"]\n"
+      "          subscribe: [\"chorus.{2}.>\", \"_INBOX.{3}.>\"]\n"
       "          allow_responses: true\n"
       "        }} }}\n",
       as_json(cell), as_json(bcrypt_of(password)), wishes.name, cell);
@@ -88,13 +91,13 @@ std::string server_config(const SiteWishes& wishes, const std::vector<std::strin
   users += fmt::format(
       "      {{ user: {}, password: {}\n"
       "        permissions: {{ publish: [\"chorus.{}.*.ask.>\"], subscribe: [\"chorus.{}.>\", "
-      "\"_INBOX.>\"] }} }}\n",
-      as_json(kReader), as_json(bcrypt_of(passwords.back())), wishes.name, wishes.name);
+      "\"_INBOX.{}.>\"] }} }}\n",
+      as_json(kReader), as_json(bcrypt_of(passwords.back())), wishes.name, wishes.name, kReader);
   return fmt::format(
       "# The server by which the cells of \"{0}\" meet, written by chorus init site.  A new cell: "
       "chorus init site\n"
       "# again into an empty folder.  Nobody comes in without a password; each cell publishes "
-      "under its own name only.\n"
+      "under its own name only,\n# but may write the record of any person.\n"
       "listen: {1}\n"
       "server_name: {2}\n"
       "max_payload: 1MB\n"
@@ -138,9 +141,20 @@ Result<void> write_site(const SiteWishes& wishes) {
     const std::string& cell = wishes.cells[i];
     if (auto ok = write(cell + ".json", cell_config(wishes, cell, passwords[i])); !ok) return ok;
   }
-  const nlohmann::ordered_json reader{
-      {"servers", {server_url(wishes)}}, {"user", kReader}, {"password", passwords.back()}};
+  const nlohmann::ordered_json reader{{"servers", {server_url(wishes)}},
+                                      {"user", kReader},
+                                      {"password", passwords.back()},
+                                      {"inboxPrefix", std::string("_INBOX.") + kReader}};
   return write(std::string(kReader) + ".json", reader.dump(2) + "\n");
+}
+
+Result<void> check_authority(const std::string& cell) {
+  const auto told = nlohmann::json::parse(cell, nullptr, false);
+  const std::string file = client::text_at(client::part_at(told, "site"), "ca", "");
+  if (file.empty() || is_there(file)) return {};
+  return fail(ErrorCode::NotFound, file,
+              "is missing, by which this cell knows the site's server: copy ca.crt from the "
+              "server's host to there, or change \"ca\" in the file of --join");
 }
 
 Result<std::string> joined_config(const std::string& fusion, const std::string& cell) {

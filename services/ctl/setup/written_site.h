@@ -28,7 +28,8 @@ struct SiteWishes {
 
 /// nats-server's configuration.  `passwords`: of the cells, in their order, and of the user
 /// "reader", who may only read.  They are stored as bcrypt hashes.  Nobody comes in without one;
-/// each cell may publish under its own name only.
+/// each cell may publish under its own name only, and answers to a user come to subjects that
+/// nobody else may listen to.  Every cell may write the record of any person.
 [[nodiscard]] std::string server_config(const SiteWishes& wishes,
                                         const std::vector<std::string>& passwords);
 
@@ -39,6 +40,9 @@ struct SiteWishes {
 /// Writes nats-server.conf, CELL.json for each cell, and reader.json into the folder; never
 /// overwrites them.
 [[nodiscard]] Result<void> write_site(const SiteWishes& wishes);
+
+/// NotFound: the authority's certificate that the cell's section names is not on this host.
+[[nodiscard]] Result<void> check_authority(const std::string& cell);
 
 /// The configuration `fusion` with the section of `cell`, as text; comments stay.  Conflict: it has
 /// a section "site" already.

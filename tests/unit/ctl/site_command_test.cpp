@@ -39,6 +39,32 @@ TEST(InitSite, LetsEachCellPublishUnderItsOwnNameOnly) {
   EXPECT_THAT(cell_config(secure, "b", "p"), HasSubstr("\"tls://10.0.0.5:4222\""));
 }
 
+TEST(InitSite, KeepsUsersFromWhatIsNotTheirs) {
+  const std::string text = server_config(hall(), {"1", "2", "3"});
+  EXPECT_THAT(text, HasSubstr("\"$JS.API.STREAM.MSG.DELETE.>\""));
+  EXPECT_THAT(text, HasSubstr("\"$JS.API.CONSUMER.DELETE.>\""));
+  for (const char* inbox : {"\"_INBOX.a.>\"", "\"_INBOX.b.>\"", "\"_INBOX.reader.>\""})
+    EXPECT_THAT(text, HasSubstr(inbox));
+  EXPECT_THAT(text, Not(HasSubstr("\"_INBOX.>\"")));
+}
+
+TEST(InitSite, JoinsOnlyWithTheAuthoritysCertificate) {
+  const testing::TemporaryFolder folder;
+  SiteWishes secure = hall();
+  secure.tls = (folder / "tls").string();
+  const auto cell = folder.write("a.json", cell_config(secure, "a", "p"));
+  const auto fusion = folder.write("fusion.json", "{}\n");
+  const std::vector<std::string> join{"init",        "site",  "--join",
+                                      cell.string(), "--out", fusion.string()};
+  const Outcome refused = run_chorus(join);
+  EXPECT_EQ(refused.code, kExitFailed);
+  EXPECT_THAT(refused.error, HasSubstr("ca.crt"));
+  EXPECT_EQ(testing::bytes_of(fusion), "{}\n");
+  std::filesystem::create_directory(folder / "tls");
+  folder.write("tls/ca.crt", "certificate");
+  EXPECT_EQ(run_chorus(join).code, kExitOk);
+}
+
 TEST(InitSite, RefusesNamesThatAreNone) {
   for (const std::vector<std::string>& cells :
        {std::vector<std::string>{}, {"a", "a"}, {"a b"}, {"a.b"}, {"reader"}, {"*"}}) {
