@@ -1,8 +1,6 @@
 #include "fusion-server/nats/cell_link.h"
 
-#include <algorithm>
 #include <atomic>
-#include <deque>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -28,10 +26,20 @@ constexpr Duration kBetweenMessages = std::chrono::milliseconds(30);
 constexpr Duration kBetweenCards = std::chrono::seconds(1);
 constexpr std::chrono::milliseconds kLinkPatience{100};
 constexpr std::size_t kSnapshots = 2;
-constexpr std::size_t kNews = 256;
+/// Of each cell: its people, a second's worth of its cards and events, and records that bear its
+/// name, which all come at once after each new connection; what the ledger has to say.
+constexpr std::size_t kPeopleWaiting = 4;
+constexpr std::size_t kNewsWaiting = 64;
+constexpr std::size_t kClaimsWaiting = 1024;
+constexpr std::size_t kResults = 256;
 constexpr std::size_t kEventsKept = 50;
-/// Records of people who were given their ids before this are of no use to anybody.
+/// The store forgets a record so long after its last change (site/claim.h).
 constexpr Duration kForgetPeople = std::chrono::hours(1);
+
+struct HeardPeople {
+  site::CellPeople people;
+  Timestamp came;  ///< By our clock.
+};
 
 void append_newest(std::vector<site::SiteEvent>& all, const std::vector<site::SiteEvent>& more) {
   all.insert(all.end(), more.begin(), more.end());
@@ -48,15 +56,10 @@ void log_event(const site::SiteEvent& event) {
 
 }  // namespace
 
-bool LinkConfig::operator==(const LinkConfig& other) const {
-  // Places by their text, which has all that is used.
-  return site == other.site && cell == other.cell && broker == other.broker && url == other.url &&
-         decisions == other.decisions && write_places(places) == write_places(other.places);
-}
-
 struct CellLink::State {
-  State(LinkConfig c, std::shared_ptr<const Clock> k,
-        std::function<void(const site::SiteView&)> view);
+  using OnView = std::function<void(std::shared_ptr<const site::SiteView>)>;
+
+  State(LinkConfig c, std::shared_ptr<const Clock> k, OnView view);
   ~State();
 
   [[nodiscard]] std::string subject(std::string_view kind) const {
@@ -74,23 +77,28 @@ struct CellLink::State {
   void take_people();
   void step(const std::shared_ptr<const Snapshot>& snapshot);
   void carry_out(const site::Decision& decision);
-  void look(const site::Decision& decision, const Snapshot& snapshot, Timestamp now);
+  void look(const site::Decision& decision, const std::shared_ptr<const Snapshot>& snapshot,
+            Timestamp now);
   [[nodiscard]] site::SiteConnection connection() const;
   void tell_card();
-  void set_place(const site::CellPlace& place);
+  void take_place();
   [[nodiscard]] CellCard card() const {
     return {config.cell, boot, config.url, std::string(version()), own_place};
   }
 
   const LinkConfig config;
   const std::shared_ptr<const Clock> clock;
-  const std::function<void(const site::SiteView&)> on_view;
+  const OnView on_view;
   const std::uint64_t boot;
 
   // Filled by other threads.
   Handover<std::shared_ptr<const Snapshot>> snapshots{kSnapshots};
-  Inbox inbox;
-  Handover<std::function<void(Timestamp)>> news{kNews};  ///< What the core is told next.
+  Inbox<HeardPeople> inbox{kPeopleWaiting};
+  Inbox<std::function<void(Timestamp)>> news{kNewsWaiting};  ///< What the core is told next.
+  Inbox<site::Claim> claims{kClaimsWaiting};
+  Handover<site::ClaimResult> results{kResults};
+  std::mutex moving;
+  std::optional<site::CellPlace> moved_to;  ///< Guarded by moving; of our own cell.
   FrameDesk frames;
   std::atomic<std::uint64_t> refused = 0;
   RateReport refusals{"a message of another cell was refused"};
@@ -111,21 +119,17 @@ struct CellLink::State {
   std::jthread thread;
 };
 
-CellLink::State::State(LinkConfig c, std::shared_ptr<const Clock> k,
-                       std::function<void(const site::SiteView&)> view)
+CellLink::State::State(LinkConfig c, std::shared_ptr<const Clock> k, OnView view)
     : config(std::move(c)),
       clock(std::move(k)),
       on_view(std::move(view)),
       boot(static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000)),
       site(config.cell, boot, config.decisions),
       teller(config.cell, boot) {
-  const auto own = std::ranges::find(config.places, config.cell, &site::CellPlace::cell);
-  if (own != config.places.end()) set_place(*own);
   broker = std::make_unique<Broker>(config.broker, listening());
   frames.open(*broker, subject(kFrame));
-  ledger = std::make_unique<Ledger>(*broker, [this](site::ClaimResult result) {
-    news.give([this, result = std::move(result)](Timestamp now) { site.take(result, now); });
-  });
+  ledger = std::make_unique<Ledger>(
+      *broker, [this](site::ClaimResult result) { results.give(std::move(result)); });
   thread = std::jthread([this] { run(); });
 }
 
@@ -168,7 +172,7 @@ void CellLink::State::hear_people(const Message& message) {
   if (!from || people->cell != *from)
     return refuse(std::string(message.subject) + ": is by another cell, " + people->cell.str());
   if (people->cell == config.cell && people->boot == boot) return;  // our own words
-  inbox.give({std::move(*people), clock->now()});
+  inbox.give(*from, {std::move(*people), clock->now()});
 }
 
 void CellLink::State::hear_card(std::string_view bytes, std::optional<site::CellId> from) {
@@ -176,8 +180,8 @@ void CellLink::State::hear_card(std::string_view bytes, std::optional<site::Cell
   if (!read) return refuse("card: " + to_string(read.error()));
   if (!from || read->cell != *from) return refuse("card: is by another cell, " + read->cell.str());
   if (read->cell == config.cell) return;
-  news.give([this, heard = std::move(*read)](Timestamp now) {
-    if (cards.size() == Inbox::kCells && !cards.contains(heard.cell))
+  news.give(*from, [this, heard = std::move(*read)](Timestamp now) {
+    if (cards.size() == Inbox<CellCard>::kCells && !cards.contains(heard.cell))
       return refuse("card: there are too many cells");
     if (heard.place) {
       if (auto ok = site.take(*heard.place, now); !ok) refuse("card: " + to_string(ok.error()));
@@ -190,7 +194,7 @@ void CellLink::State::hear_event(const Message& message) {
   const auto from = cell_of(message.subject, config.site);
   const auto joined = read_same_as(message.bytes);
   if (!from || *from == config.cell || !joined) return;
-  news.give([this, joined = *joined, teller_of_it = *from](Timestamp now) {
+  news.give(*from, [this, joined = *joined, teller_of_it = *from](Timestamp now) {
     site.take(joined, teller_of_it, now);
   });
 }
@@ -198,12 +202,16 @@ void CellLink::State::hear_event(const Message& message) {
 void CellLink::State::hear_claim(const Entry& entry) {
   auto read = read_claim(entry.key, entry.value, entry.revision);
   if (!read) return refuse(to_string(read.error()));
-  news.give([this, heard = std::move(*read)](Timestamp now) { site.take(heard, now); });
+  const site::CellId holder = read->cell;
+  claims.give(holder, std::move(*read));
 }
 
 void CellLink::State::take_news() {
+  take_place();
   const Timestamp now = clock->now();
-  for (const auto& each : news.take(Duration{0})) each(now);
+  for (const auto& each : news.take()) each(now);
+  for (const site::Claim& each : claims.take()) site.take(each, now);
+  for (const site::ClaimResult& each : results.take(Duration{0})) site.take(each, now);
 }
 
 void CellLink::State::take_people() {
@@ -228,14 +236,16 @@ site::SiteConnection CellLink::State::connection() const {
           status.server,
           status.trouble,
           status.published,
-          status.dropped + snapshots.dropped() + inbox.dropped() + news.dropped(),
+          status.dropped + snapshots.dropped() + inbox.dropped() + news.dropped() +
+              claims.dropped() + results.dropped(),
           refused,
           refusals.last()};
 }
 
-void CellLink::State::look(const site::Decision& decision, const Snapshot& snapshot,
-                           Timestamp now) {
-  site::SiteView view;
+void CellLink::State::look(const site::Decision& decision,
+                           const std::shared_ptr<const Snapshot>& snapshot, Timestamp now) {
+  const auto made = std::make_shared<site::SiteView>();
+  site::SiteView& view = *made;
   view.site = config.site;
   view.own = config.cell;
   view.at = now;
@@ -250,9 +260,10 @@ void CellLink::State::look(const site::Decision& decision, const Snapshot& snaps
   }
   view.events = events;
   view.snapshot = std::make_shared<const Snapshot>(
-      site_snapshot({view.people, config.cell, own_place}, snapshot, seats));
+      site_snapshot({view.people, config.cell, own_place}, *snapshot, seats));
+  view.shown = own_place ? view.snapshot : snapshot;
   view.connection = connection();
-  on_view(view);
+  on_view(made);
 }
 
 void CellLink::State::step(const std::shared_ptr<const Snapshot>& snapshot) {
@@ -268,7 +279,7 @@ void CellLink::State::step(const std::shared_ptr<const Snapshot>& snapshot) {
   broker->publish(subject(kPeople), write_people(people));
   frames.show(snapshot, now);
   carry_out(decision);
-  look(decision, *snapshot, now);
+  look(decision, snapshot, now);
 }
 
 void CellLink::State::tell_card() {
@@ -280,10 +291,18 @@ void CellLink::State::tell_card() {
   ledger->card(config.cell.str(), text);
 }
 
-void CellLink::State::set_place(const site::CellPlace& place) {
-  if (auto ok = site.take(place, clock->now()); !ok)
+void CellLink::State::take_place() {
+  std::optional<site::CellPlace> place;
+  {
+    const std::scoped_lock lock(moving);
+    place = std::exchange(moved_to, {});
+  }
+  if (!place) return;
+  if (auto ok = site.take(*place, clock->now()); !ok)
     return refuse("our own place: " + to_string(ok.error()));
-  own_place = place;
+  own_place = std::move(place);
+  broker->publish(subject(kRegistration), write_card(card()));
+  card_told = {};
 }
 
 void CellLink::State::run() {
@@ -296,7 +315,7 @@ void CellLink::State::run() {
 }
 
 CellLink::CellLink(LinkConfig config, std::shared_ptr<const Clock> clock,
-                   std::function<void(const site::SiteView&)> on_view)
+                   std::function<void(std::shared_ptr<const site::SiteView>)> on_view)
     : state_(std::make_unique<State>(std::move(config), std::move(clock), std::move(on_view))) {}
 
 CellLink::~CellLink() = default;
@@ -317,16 +336,9 @@ SinkCounters CellLink::counters() const {
   return counters;
 }
 
-ClaimCounters CellLink::claims() const {
-  return {state_->ledger->accepted(), state_->ledger->lost()};
-}
-
 void CellLink::place(const site::CellPlace& place) {
-  state_->news.give([s = state_.get(), place](Timestamp) {
-    s->set_place(place);
-    s->broker->publish(s->subject(kRegistration), write_card(s->card()));
-    s->card_told = {};
-  });
+  const std::scoped_lock lock(state_->moving);
+  state_->moved_to = place;
 }
 
 }  // namespace chorus::nats

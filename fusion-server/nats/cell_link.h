@@ -9,7 +9,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "common/time/clock.h"
 #include "fusion-server/nats/broker.h"
@@ -19,36 +18,30 @@
 
 namespace chorus::nats {
 
+/// Where our cell stands is told with CellLink::place().
 struct LinkConfig {
   std::string site;   ///< The hall's name; empty: there is no site.
   site::CellId cell;  ///< Our own name in it.
   BrokerConfig broker;
   std::string url;  ///< Where our cell answers, for the neighbours; may be empty.
-  std::vector<site::CellPlace> places;  ///< Only that of our own cell is used.
   site::SiteConfig decisions;
 
-  bool operator==(const LinkConfig& other) const;
-};
-
-/// Records of the store that we wrote, and those that somebody else wrote first.
-struct ClaimCounters {
-  std::uint64_t accepted = 0;
-  std::uint64_t lost = 0;
+  bool operator==(const LinkConfig&) const = default;
 };
 
 class CellLink final : public Sink {
  public:
-  /// `on_view` runs on the link's thread after each of our messages; must not wait.
+  /// `on_view` runs on the link's thread after each of our messages, of which there are at most 33
+  /// a second, whatever the pipeline's rate; must not wait.
   CellLink(LinkConfig config, std::shared_ptr<const Clock> clock,
-           std::function<void(const site::SiteView&)> on_view);
+           std::function<void(std::shared_ptr<const site::SiteView>)> on_view);
   ~CellLink() override;
 
   [[nodiscard]] std::string_view name() const override { return "site"; }
   void publish(std::shared_ptr<const Snapshot> snapshot) override;
   [[nodiscard]] SinkCounters counters() const override;
-  [[nodiscard]] ClaimCounters claims() const;
 
-  /// Our own cell stands elsewhere; the neighbours are told at once.
+  /// Where our own cell stands from now on; the neighbours are told at once.  Newest wins.
   void place(const site::CellPlace& place);
 
  private:

@@ -1,5 +1,6 @@
 #include "fusion-server/nats/frame_desk.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -36,14 +37,25 @@ void FrameDesk::show(const std::shared_ptr<const Snapshot>& snapshot, Timestamp 
   std::string subject;
   {
     const std::scoped_lock lock(mutex_);
-    kept_.push_back(snapshot);
-    while (!kept_.empty() && kept_.front()->instant < now - kKept) kept_.pop_front();
+    kept_.push_back({snapshot, nullptr});
+    while (!kept_.empty() &&
+           (kept_.front().snapshot->instant < now - kKept || kept_.size() > kMostKept))
+      kept_.pop_front();
     const auto since = std::chrono::steady_clock::now() - wanted_;
     if (!ever_wanted_ || since > kWanted) return;
     broker = broker_;
     subject = subject_;
   }
-  if (broker != nullptr) broker->publish(subject, frame_text(*snapshot));
+  if (broker != nullptr) broker->publish(subject, *text_of({snapshot, nullptr}));
+}
+
+std::shared_ptr<const std::string> FrameDesk::text_of(const Kept& kept) {
+  if (kept.text) return kept.text;
+  const auto text = std::make_shared<const std::string>(frame_text(*kept.snapshot));
+  const std::scoped_lock lock(mutex_);
+  const auto found = std::ranges::find(kept_, kept.snapshot, &Kept::snapshot);
+  if (found != kept_.end()) found->text = text;
+  return text;
 }
 
 void FrameDesk::want() {
@@ -52,7 +64,7 @@ void FrameDesk::want() {
   ever_wanted_ = true;
 }
 
-std::string FrameDesk::frame_at(std::string_view request) const {
+std::string FrameDesk::frame_at(std::string_view request) {
   std::optional<Timestamp> at;
   if (!request.empty()) {
     const auto parsed = parse_json(request, {kMostAsked, 2});
@@ -61,20 +73,25 @@ std::string FrameDesk::frame_at(std::string_view request) const {
     at = fields.maybe_time("at");
     if (fields.error()) return refusal(to_string(*fields.error()));
   }
-  std::shared_ptr<const Snapshot> found;
+  Kept found;
   {
     const std::scoped_lock lock(mutex_);
-    for (const auto& each : kept_)
-      if (!at || each->instant <= *at) found = each;
+    for (const Kept& each : kept_)
+      if (!at || each.snapshot->instant <= *at) found = each;
   }
-  return found ? frame_text(*found) : refusal("there is no frame of that time any more, or yet");
+  return found.snapshot ? *text_of(found)
+                        : refusal("there is no frame of that time any more, or yet");
 }
 
 void FrameDesk::answer(const Message& message) {
   if (message.reply.empty()) return;
   const std::string text = frame_at(message.bytes);
-  const std::scoped_lock lock(mutex_);
-  if (broker_ != nullptr) broker_->publish(std::string(message.reply), text);
+  Broker* broker = nullptr;
+  {
+    const std::scoped_lock lock(mutex_);
+    broker = broker_;
+  }
+  if (broker != nullptr) broker->publish(std::string(message.reply), text);
 }
 
 }  // namespace chorus::nats

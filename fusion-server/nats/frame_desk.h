@@ -14,9 +14,11 @@ namespace chorus::nats {
 /// Thread-safe.
 class FrameDesk {
  public:
-  /// How long frames are published after somebody wanted them, and how far back they are kept.
+  /// How long frames are published after somebody wanted them, how far back they are kept, and how
+  /// many at most, whatever the clock does: ten seconds of 33 a second, and some.
   static constexpr std::chrono::seconds kWanted{5};
   static constexpr Duration kKept = std::chrono::seconds(10);
+  static constexpr std::size_t kMostKept = 400;
 
   /// Call it before show() and answer(); the broker must outlive them.
   void open(Broker& broker, std::string subject);
@@ -27,14 +29,21 @@ class FrameDesk {
   /// /frame?at= has it in JSON; {"error": "..."} if there is none.  Without a time: the newest.
   void answer(const Message& message);
 
-  /// What answer() sends; empty if nothing is kept.
-  [[nodiscard]] std::string frame_at(std::string_view request) const;
+  /// What answer() sends.
+  [[nodiscard]] std::string frame_at(std::string_view request);
 
  private:
-  mutable std::mutex mutex_;
+  struct Kept {
+    std::shared_ptr<const Snapshot> snapshot;
+    std::shared_ptr<const std::string> text;  ///< Null: nobody has asked for it yet.
+  };
+  /// The frame as JSON, written once however often it is asked for.
+  [[nodiscard]] std::shared_ptr<const std::string> text_of(const Kept& kept);
+
+  std::mutex mutex_;
   Broker* broker_ = nullptr;  ///< These are guarded by mutex_.
   std::string subject_;
-  std::deque<std::shared_ptr<const Snapshot>> kept_;
+  std::deque<Kept> kept_;
   SteadyTime wanted_{};
   bool ever_wanted_ = false;
 };

@@ -1,4 +1,4 @@
-// What other cells told and nobody has looked at yet: a few messages of each cell, the newest ones.
+// What other cells told and nobody has looked at yet: a few words of each cell, the newest ones.
 #pragma once
 
 #include <cstdint>
@@ -8,44 +8,40 @@
 #include <utility>
 #include <vector>
 
-#include "common/time/timestamp.h"
-#include "fusion-server/site/cell_people.h"
+#include "fusion-server/site/site_id.h"
 
 namespace chorus::nats {
 
-struct HeardPeople {
-  site::CellPeople people;
-  Timestamp came;  ///< By our clock.
-};
-
-/// Thread-safe.  A cell that talks without end displaces only its own messages.
+/// Thread-safe.  A cell that talks without end displaces only its own words.
+template <class Word>
 class Inbox {
  public:
-  static constexpr std::size_t kPerCell = 4;
   static constexpr std::size_t kCells = 64;
 
-  void give(HeardPeople heard) {
+  /// `per_cell`: how many words of a cell may wait.
+  explicit Inbox(std::size_t per_cell) : per_cell_(per_cell > 0 ? per_cell : 1) {}
+
+  void give(const site::CellId& cell, Word word) {
     const std::scoped_lock lock(mutex_);
-    const auto found = waiting_.find(heard.people.cell);
+    const auto found = waiting_.find(cell);
     if (found == waiting_.end() && waiting_.size() == kCells) {
       ++dropped_;
       return;
     }
-    std::deque<HeardPeople>& own =
-        found == waiting_.end() ? waiting_[heard.people.cell] : found->second;
-    if (own.size() == kPerCell) {
+    std::deque<Word>& own = found == waiting_.end() ? waiting_[cell] : found->second;
+    if (own.size() == per_cell_) {
       own.pop_front();
       ++dropped_;
     }
-    own.push_back(std::move(heard));
+    own.push_back(std::move(word));
   }
 
   /// All of them, the oldest of each cell first.
-  [[nodiscard]] std::vector<HeardPeople> take() {
+  [[nodiscard]] std::vector<Word> take() {
     const std::scoped_lock lock(mutex_);
-    std::vector<HeardPeople> all;
+    std::vector<Word> all;
     for (auto& [cell, own] : waiting_)
-      for (HeardPeople& each : own) all.push_back(std::move(each));
+      for (Word& each : own) all.push_back(std::move(each));
     waiting_.clear();
     return all;
   }
@@ -56,8 +52,9 @@ class Inbox {
   }
 
  private:
+  const std::size_t per_cell_;
   mutable std::mutex mutex_;
-  std::map<site::CellId, std::deque<HeardPeople>> waiting_;
+  std::map<site::CellId, std::deque<Word>> waiting_;
   std::uint64_t dropped_ = 0;
 };
 

@@ -39,15 +39,13 @@ void Ledger::write(const site::ClaimRequest& request) {
   const std::string key = claim_key(request.value.id);
   const auto written =
       broker_.update(kPeopleBucket, {key, write_claim(request.value), request.expected});
-  site::ClaimResult result{request.value, true};
-  if (written) {
-    result.now.revision = *written;
-    ++accepted_;
-    return on_result_(std::move(result));
-  }
+  site::ClaimResult result{request.value, written.has_value()};
+  result.now.revision = written.value_or(0);
+  if (written) return on_result_(std::move(result));
   if (written.error().code != ErrorCode::Conflict) return;  // The core asks again.
-  ++lost_;
   const auto entry = broker_.get(kPeopleBucket, key);
+  // The record was there once and is too old now.
+  if (!entry && entry.error().code == ErrorCode::NotFound) return on_result_(std::move(result));
   if (!entry) return;
   auto now = read_claim(key, entry->value, entry->revision);
   if (now) on_result_({std::move(*now), false});

@@ -1,7 +1,6 @@
 // Writes to the site's store on a thread of its own, because the store may take its time.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -26,9 +25,6 @@ class Ledger {
   /// What bucket chorus_cells says of us; written when it changes and after each new connection.
   void card(std::string cell, std::string text);
 
-  [[nodiscard]] std::uint64_t accepted() const { return accepted_; }
-  [[nodiscard]] std::uint64_t lost() const { return lost_; }
-
  private:
   void run();
   void write(const site::ClaimRequest& request);
@@ -37,8 +33,6 @@ class Ledger {
   Broker& broker_;
   std::function<void(site::ClaimResult)> on_result_;
   Handover<site::ClaimRequest> waiting_;
-  std::atomic<std::uint64_t> accepted_ = 0;
-  std::atomic<std::uint64_t> lost_ = 0;
   std::mutex mutex_;
   Entry card_;           ///< Guarded by mutex_.
   std::string written_;  ///< The card that the store has, as of `connection_`.

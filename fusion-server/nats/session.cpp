@@ -7,6 +7,8 @@
 
 #include <nats/nats.h>
 
+#include "fusion-server/site/site_id.h"
+
 namespace chorus::nats {
 namespace {
 
@@ -21,6 +23,8 @@ constexpr int kPendingMessages = 256;
 constexpr int kPendingBytes = 8 << 20;
 /// How long look() waits for changes of a bucket [ms].
 constexpr std::int64_t kLookMs = 20;
+/// How many changes of a bucket look() passes on before it looks at the next one.
+constexpr int kMostChanges = 256;
 /// Of a bucket that we make: a value, and all of it [bytes].
 constexpr int kValueBytes = 4096;
 constexpr std::int64_t kBucketBytes = 16 << 20;
@@ -100,6 +104,9 @@ natsStatus set_connection(natsOptions* options, const BrokerConfig& config) {
   if (s == NATS_OK) s = natsOptions_SetName(options, config.name.c_str());
   if (s == NATS_OK && !config.user.empty())
     s = natsOptions_SetUserInfo(options, config.user.c_str(), config.password.c_str());
+  // Answers come to subjects of this user, which the server can keep from others.
+  if (s == NATS_OK && site::CellId::parse(config.user))
+    s = natsOptions_SetCustomInboxPrefix(options, ("_INBOX." + config.user).c_str());
   if (s == NATS_OK && !config.ca_file.empty()) {
     s = natsOptions_SetSecure(options, true);
     if (s == NATS_OK) s = natsOptions_LoadCATrustedCertificates(options, config.ca_file.c_str());
@@ -154,7 +161,6 @@ void Ear::shut() {
 
 struct Session::State {
   std::shared_ptr<Ear> ear;
-  std::int64_t patience_ms = 0;
   // In this order, because each is destroyed before what it stands on.
   Connection connection;
   Stream stream;
@@ -221,7 +227,7 @@ Result<void> Session::State::look(std::size_t index) {
       return failure(s, watch.bucket);
     watchers[index].reset(made);
   }
-  while (true) {
+  for (int n = 0; n < kMostChanges; ++n) {
     kvEntry* next = nullptr;
     const natsStatus s = kvWatcher_Next(&next, watchers[index].get(), kLookMs);
     if (s == NATS_TIMEOUT) return {};
@@ -233,6 +239,7 @@ Result<void> Session::State::look(std::size_t index) {
     if (!held) continue;  // What was there is complete.
     if (kvEntry_Operation(next) == kvOp_Put) ear->hear(watch, entry_of(next));
   }
+  return {};
 }
 
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -256,11 +263,10 @@ Result<std::unique_ptr<Session>> Session::connect(const BrokerConfig& config,
   auto state = std::make_unique<State>();
   state->ear = std::move(ear);
   state->connection.reset(connected);
-  state->patience_ms = milliseconds_of(config.patience);
   state->watchers.resize(state->ear->listening.buckets.size());
   jsOptions stream;
   jsOptions_Init(&stream);
-  stream.Wait = state->patience_ms;
+  stream.Wait = milliseconds_of(config.patience);
   jsCtx* context = nullptr;
   s = natsConnection_JetStream(&context, connected, &stream);
   if (s != NATS_OK) return failure(s, config.servers.front());
@@ -307,17 +313,6 @@ Result<void> Session::look() {
 bool Session::publish(const std::string& subject, std::string_view bytes) {
   return natsConnection_Publish(state_->connection.get(), subject.c_str(), bytes.data(),
                                 static_cast<int>(bytes.size())) == NATS_OK;
-}
-
-Result<std::string> Session::request(const std::string& subject, std::string_view bytes) {
-  natsMsg* answer = nullptr;
-  const natsStatus s =
-      natsConnection_Request(&answer, state_->connection.get(), subject.c_str(), bytes.data(),
-                             static_cast<int>(bytes.size()), state_->patience_ms);
-  if (s != NATS_OK) return failure(s, subject);
-  const NatsMessage held(answer);
-  return std::string(natsMsg_GetData(answer),
-                     static_cast<std::size_t>(natsMsg_GetDataLength(answer)));
 }
 
 Result<Entry> Session::get(const std::string& bucket, const std::string& key) {

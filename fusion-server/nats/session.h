@@ -38,12 +38,12 @@ class Session {
   [[nodiscard]] std::string complaint() const;
   [[nodiscard]] std::uint64_t missed() const;
 
-  /// Opens the buckets that are followed, and passes on what changed.  Waits a little for changes.
+  /// Opens the buckets that are followed, and passes on what changed, at most 256 changes of each.
+  /// Waits a little for changes.
   /// The error says why a bucket cannot be followed.
   Result<void> look();
 
   bool publish(const std::string& subject, std::string_view bytes);
-  [[nodiscard]] Result<std::string> request(const std::string& subject, std::string_view bytes);
   [[nodiscard]] Result<Entry> get(const std::string& bucket, const std::string& key);
   Result<std::uint64_t> put(const std::string& bucket, const Entry& entry);
   Result<std::uint64_t> update(const std::string& bucket, const Entry& entry);

@@ -64,7 +64,7 @@ FusedBody body_of(const SiteScene& scene, const site::SitePerson& person, const 
   return body;
 }
 
-std::vector<SensorId> cells_of(const std::vector<site::SitePerson>& people) {
+std::vector<SensorId> cells_of(std::span<const site::SitePerson> people) {
   std::set<SensorId> cells;
   for (const site::SitePerson& person : people) cells.insert(person.cell);
   std::vector<SensorId> all(cells.begin(), cells.end());

@@ -7,7 +7,7 @@
 
 #include <map>
 #include <optional>
-#include <vector>
+#include <span>
 
 #include "fusion-server/flow/snapshot.h"
 #include "fusion-server/site/site.h"
@@ -34,9 +34,9 @@ class SiteSeats {
 
 /// What a site's snapshot is made of.
 struct SiteScene {
-  std::vector<site::SitePerson> people;
+  std::span<const site::SitePerson> people;
   site::CellId own;
-  std::optional<site::CellPlace> place;  ///< Of our own cell; none: its people are as others' are.
+  std::optional<site::CellPlace> place;  ///< Of our own cell; none: nobody of it is in `people`.
 };
 
 /// `cell`: the newest snapshot of our own cell, whose sequence and stamp the result has.

@@ -84,6 +84,7 @@ struct FusionServer::Impl {
   std::shared_ptr<workplace::PropBoard> board =
       std::make_shared<workplace::PropBoard>(config.at_start.props);
   std::optional<outputs::OutputBank> outputs;  ///< Set before the first request.
+  std::mutex changing;                         ///< Held before `mutex`.
   mutable std::mutex mutex;
   Status status;  ///< Guarded by mutex.
   std::shared_ptr<const service::Configuration> configuration =
@@ -117,13 +118,13 @@ struct FusionServer::Impl {
 void FusionServer::Impl::meet_the_site() {
   const SiteSettings& settings = config.at_start.site;
   if (settings.link.site.empty()) return;
-  nats::LinkConfig told = settings.link;
-  if (const auto own = own_place(settings, config.live.site_places)) told.places = {*own};
   link = std::make_unique<nats::CellLink>(
-      std::move(told), clock, [this, feed = settings.outputs_show](const site::SiteView& view) {
-        if (feed) outputs->publish(view.snapshot);
-        site->show(std::make_shared<const site::SiteView>(view));
+      settings.link, clock,
+      [this, feed = settings.outputs_show](std::shared_ptr<const site::SiteView> view) {
+        if (feed) outputs->publish(view->shown);
+        site->show(std::move(view));
       });
+  if (const auto own = own_place(settings, config.live.site_places)) link->place(*own);
 }
 
 LookoutOptions FusionServer::Impl::lookout_options() {
@@ -276,7 +277,10 @@ FusionSettings FusionServer::Impl::in_force() const {
   return settings;
 }
 
+/// Runs where sensors are changed on the page and where the configuration is read again: whoever is
+/// last must leave what both made of it.
 void FusionServer::Impl::sensors_changed() {
+  const std::scoped_lock one_at_a_time(changing);
   loop->ask(core_config(in_force()));
   follow();
 }

@@ -11,7 +11,7 @@
 namespace chorus::server {
 
 struct SiteSettings {
-  nats::LinkConfig link;      ///< Without a name there is no site; without places.
+  nats::LinkConfig link;      ///< Without a name there is no site.
   bool outputs_show = false;  ///< The outputs show everybody in the site, not only this cell's.
 
   bool operator==(const SiteSettings&) const = default;

@@ -41,6 +41,9 @@ struct SiteView {
   std::vector<KnownCell> cells;              ///< With our own, in the order of their names.
   std::vector<SiteEvent> events;             ///< The newest fifty.
   std::shared_ptr<const Snapshot> snapshot;  ///< Everybody: nats/site_snapshot.h.
+  /// What outputs show of the site: `snapshot`; while our cell has no place in the site, so that
+  /// nobody of it is in there, its own newest snapshot.
+  std::shared_ptr<const Snapshot> shown;
   SiteConnection connection;
 };
 

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 
+#include "fusion-server/nats/ledger.h"
+#include "fusion-server/nats/subjects.h"
 #include "tests/support/nats_server.h"
 #include "tests/support/workshop_authority.h"
 
@@ -58,6 +61,31 @@ BrokerConfig config_of(const NatsServer& server) {
   return config;
 }
 
+/// The first answer to a request, by a client that speaks NATS by hand; empty: there is none.
+std::string answer_to(const NatsServer& server, const std::string& subject,
+                      const std::string& bytes) {
+  const int door = ::socket(AF_INET, SOCK_STREAM, 0);
+  const sockaddr_in address = testing::loopback(server.port());
+  const timeval patience{5, 0};
+  ::setsockopt(door, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  std::string heard;
+  if (::connect(door, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+    const std::string words = "CONNECT {\"verbose\":false}\r\nSUB answers 1\r\nPUB " + subject +
+                              " answers " + std::to_string(bytes.size()) + "\r\n" + bytes + "\r\n";
+    (void)!::write(door, words.data(), words.size());
+    char piece[512];
+    for (ssize_t size = 1; size > 0 && heard.find("MSG ") == std::string::npos;) {
+      size = ::read(door, piece, sizeof piece);
+      if (size > 0) heard.append(piece, static_cast<std::size_t>(size));
+    }
+  }
+  ::close(door);
+  const std::size_t message = heard.find("MSG ");
+  if (message == std::string::npos) return {};
+  const std::size_t begin = heard.find("\r\n", message) + 2;
+  return heard.substr(begin, heard.find("\r\n", begin) - begin);
+}
+
 bool connects(const Broker& broker) {
   return becomes_true([&] { return broker.status().connected; });
 }
@@ -81,10 +109,7 @@ TEST(ABroker, PassesOnWhatIsPublishedAndAnswers) {
   EXPECT_TRUE(broker->publish("chorus.hall.b.people", "two"));
   EXPECT_THAT(heard.wait_for(2),
               ElementsAre("chorus.hall.a.people one", "chorus.hall.b.people two"));
-  EXPECT_EQ(broker->request("chorus.ask", "this").value_or("nothing"), "you asked this");
-  const auto nobody = broker->request("chorus.nobody", "this");
-  ASSERT_FALSE(nobody);
-  EXPECT_EQ(nobody.error().code, ErrorCode::Unavailable);
+  EXPECT_EQ(answer_to(server, "chorus.ask", "this"), "you asked this");
 }
 
 TEST(ABroker, WritesOnlyOverTheRevisionThatIsKnown) {
@@ -113,6 +138,80 @@ TEST(ABroker, WritesOnlyOverTheRevisionThatIsKnown) {
   // The two that were refused are not heard.
   ASSERT_TRUE(broker.put("people", {"person.8", "e", 0}));
   EXPECT_THAT(changes.wait_for(3), ElementsAre("person.7=a", "person.7=c", "person.8=e"));
+}
+
+TEST(ABroker, HearsOfOneBucketWhileAnotherChangesWithoutEnd) {
+  NatsServer server;
+  ASSERT_TRUE(server.start()) << server.log();
+  Heard calm;
+  std::atomic<int> busy = 0;
+  auto broker = std::make_unique<Broker>(
+      config_of(server), Listening{{},
+                                   {{"busy", [&](const Entry&) { ++busy; }},
+                                    {"calm", [&](const Entry& e) { calm.add(e.value); }}}});
+  ASSERT_TRUE(connects(*broker));
+  Broker writer(config_of(server), {});
+  ASSERT_TRUE(connects(writer));
+  const std::jthread talker([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) (void)writer.put("busy", {"key", "value", 0});
+  });
+  ASSERT_TRUE(becomes_true([&] { return busy > 300; }));
+  ASSERT_TRUE(broker->put("calm", {"a", "1", 0}));
+  EXPECT_THAT(calm.wait_for(1), ElementsAre("1"));
+  broker.reset();  // The writer still writes.
+}
+
+TEST(ABroker, HasItsAnswersWhereNobodyElseListens) {
+  NatsServer server(
+      "authorization { users: [ { user: a, password: p, permissions: { publish: [\">\"], "
+      "subscribe: [\"_INBOX.a.>\"] } } ] }\n");
+  ASSERT_TRUE(server.start()) << server.log();
+  BrokerConfig config = config_of(server);
+  config.user = "a";
+  config.password = "p";
+  Heard changes;
+  Broker broker(config, {{}, {{"people", [&](const Entry& e) { changes.add(e.value); }}}});
+  ASSERT_TRUE(connects(broker)) << broker.status().trouble;
+  const auto written = broker.put("people", {"person.7", "one", 0});
+  ASSERT_TRUE(written) << to_string(written.error());
+  EXPECT_THAT(changes.wait_for(1), ElementsAre("one"));
+  EXPECT_EQ(broker.status().trouble, "");
+}
+
+TEST(ALedger, SaysThatTheStoreHasForgottenARecord) {
+  NatsServer server;
+  ASSERT_TRUE(server.start()) << server.log();
+  Watch people{kPeopleBucket, [](const Entry&) {}, std::chrono::milliseconds(300)};
+  Broker broker(config_of(server), {{}, {people}});
+  ASSERT_TRUE(connects(broker));
+  std::mutex mutex;
+  std::vector<site::ClaimResult> results;
+  Ledger ledger(broker, [&](site::ClaimResult result) {
+    const std::scoped_lock lock(mutex);
+    results.push_back(std::move(result));
+  });
+  const auto ask = [&](std::uint64_t expected) {
+    const std::size_t before = results.size();
+    ledger.ask({{site::SiteId::parse("k1").value(), site::CellId::parse("a").value()}, expected});
+    becomes_true([&] {
+      const std::scoped_lock lock(mutex);
+      return results.size() > before;
+    });
+    const std::scoped_lock lock(mutex);
+    return results.size() > before ? results.back() : site::ClaimResult{};
+  };
+  const site::ClaimResult first = ask(0);
+  ASSERT_TRUE(first.accepted);
+  ASSERT_GT(first.now.revision, 0U);
+  ASSERT_TRUE(becomes_true([&] {
+    const auto entry = broker.get(kPeopleBucket, "person.k1");
+    return !entry && entry.error().code == ErrorCode::NotFound;
+  }));
+  const site::ClaimResult late = ask(first.now.revision);
+  EXPECT_FALSE(late.accepted);
+  EXPECT_EQ(late.now.id.str(), "k1");
+  EXPECT_EQ(late.now.revision, 0U);
+  EXPECT_TRUE(ask(0).accepted);
 }
 
 TEST(ABroker, HearsWhatABucketHoldsWhenItConnects) {
