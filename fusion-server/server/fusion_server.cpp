@@ -40,15 +40,6 @@
 #include "fusion-server/server/state_folder.h"
 
 namespace chorus::server {
-namespace {
-
-std::vector<SensorId> ids_of(const std::vector<client::FollowedService>& sensors) {
-  std::vector<SensorId> ids;
-  for (const client::FollowedService& sensor : sensors) ids.push_back(sensor.id);
-  return ids;
-}
-
-}  // namespace
 
 struct FusionServer::Impl {
   Impl(FusionSettings c, std::shared_ptr<const Clock> k)

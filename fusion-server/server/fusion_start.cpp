@@ -23,6 +23,12 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   return core;
 }
 
+std::vector<SensorId> ids_of(const std::vector<client::FollowedService>& sensors) {
+  std::vector<SensorId> ids;
+  for (const client::FollowedService& sensor : sensors) ids.push_back(sensor.id);
+  return ids;
+}
+
 std::uint64_t first_person(const RegistrationStore& store) {
   const auto next = store.load_next_person();
   if (next) return *next;

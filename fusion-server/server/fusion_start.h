@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "fusion-server/core/core_config.h"
 #include "fusion-server/rest/registration_resources.h"
@@ -13,6 +14,8 @@
 namespace chorus::server {
 
 [[nodiscard]] core::CoreConfig core_config(const FusionSettings& settings);
+
+[[nodiscard]] std::vector<SensorId> ids_of(const std::vector<client::FollowedService>& sensors);
 
 /// The lowest id that a person may get; 1, with an error in the log, if what is stored is damaged.
 [[nodiscard]] std::uint64_t first_person(const RegistrationStore& store);
