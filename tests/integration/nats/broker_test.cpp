@@ -122,6 +122,8 @@ TEST(ABroker, WritesOnlyOverTheRevisionThatIsKnown) {
   EXPECT_EQ(broker.get("people", "person.7").error().code, ErrorCode::NotFound);
   const auto first = broker.update("people", {"person.7", "a", 0});
   ASSERT_TRUE(first) << to_string(first.error());
+  // Who follows a bucket late hears of the newest value of a key only.
+  EXPECT_THAT(changes.wait_for(1), ElementsAre("person.7=a"));
   const auto twice = broker.update("people", {"person.7", "b", 0});
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, ErrorCode::Conflict) << to_string(twice.error());
