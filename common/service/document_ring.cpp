@@ -8,6 +8,9 @@
 namespace chorus::service {
 namespace {
 
+/// Who computes with seconds since 1970 as doubles cannot name an instant better than to 0.24 us.
+constexpr Duration kSameInstant = std::chrono::microseconds(1);
+
 /// What to say about a number with a point, as programs write seconds; empty if it is none.
 std::string instant_in_seconds(const std::string& text) {
   const auto value = parse_number<double>(text);
@@ -92,13 +95,13 @@ Result<Document> DocumentRing::at(const std::string& time) const {
   if (!instant) return pass(instant);
   const std::scoped_lock lock(mutex_);
   const auto after = std::lower_bound(
-      documents_.begin(), documents_.end(), *instant,
+      documents_.begin(), documents_.end(), *instant - kSameInstant,
       [](const Kept& kept, Timestamp wanted) { return kept.first.captured < wanted; });
   if (after == documents_.end()) {
     return fail(ErrorCode::NotFound, where,
                 "there is no " + std::string(kind_.what) + " of this instant yet");
   }
-  if (after->first.captured == *instant) return after->better;
+  if (after->first.captured <= *instant + kSameInstant) return after->better;
   if (after == documents_.begin()) {
     return fail(
         ErrorCode::Gone, where,

@@ -55,9 +55,9 @@ class DocumentRing {
   /// was lost or left out.
   [[nodiscard]] Result<Document> find(std::string_view sequence) const;
 
-  /// The document at an instant (an xsd:dateTime, or nanoseconds since the epoch as an integer).
-  /// NotFound after the newest one, Gone before the oldest, InvalidArgument if `time` is no
-  /// instant.
+  /// The document at an instant (an xsd:dateTime, or nanoseconds since the epoch as an integer),
+  /// which is a document's own within a microsecond.  NotFound after the newest one, Gone before
+  /// the oldest, InvalidArgument if `time` is no instant.
   [[nodiscard]] Result<Document> at(const std::string& time) const;
 
   /// Without a value before the first one.

@@ -34,6 +34,18 @@ bool share_a_place(const Registration& one, const Registration& other) {
   });
 }
 
+std::vector<PersonId> ids_of(const Snapshot& snapshot) {
+  std::vector<PersonId> ids;
+  for (const FusedBody& body : snapshot.bodies) ids.push_back(body.id);
+  return ids;
+}
+
+/// True if all of `ids` are among the people.
+bool shows(const std::vector<Person>& people, const std::vector<PersonId>& ids) {
+  return std::ranges::all_of(
+      ids, [&](PersonId id) { return std::ranges::find(people, id, &Person::id) != people.end(); });
+}
+
 }  // namespace
 
 FusionCore::FusionCore(CoreConfig config, Registration registration)
@@ -100,6 +112,7 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
                     std::exchange(memory_, std::move(step.memory)),
                     {},
                     parts_of(step.snapshot),
+                    ids_of(step.snapshot),
                     world_.pending.awaited.extension};
   told_.reports = step.snapshot.reports;
   for (const SensorReport& report : told_.reports) {
@@ -188,6 +201,12 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
   const pipeline::Inputs in{tick.instant, now, tick.sequence};
   const pipeline::PipelineConfig& config = config_.pipeline;
   auto seen = pipeline::perceive(in, histories_, registration(), answered->before, config);
+  // Whether somebody is published is asked with the late frames, too, but decided once: a client
+  // that looks back must not miss whom it was told of.
+  if (!shows(seen.people, answered->people)) {
+    note_settled(answered->parts, sensors_);
+    return std::nullopt;
+  }
   wear_.dress(seen.people, tick.instant);
   const auto sensors = pipeline::taking_part(registration(), config);
   if (config.smoothing.live) world_.smoother.amend(pipeline::perception_of(in, sensors, seen));

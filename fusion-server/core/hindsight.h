@@ -22,7 +22,8 @@ struct Answered {
   pipeline::Memory before;        ///< The memory before this instant.
   std::vector<SensorId> without;  ///< Registered sensors whose frames did not arrive in time.
   Parts parts;
-  Duration extension{0};  ///< How much longer than usual the instant may have waited.
+  std::vector<PersonId> people;  ///< Who was published; an answer without them is not given.
+  Duration extension{0};         ///< How much longer than usual the instant may have waited.
 };
 
 class Hindsight {

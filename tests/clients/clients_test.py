@@ -73,9 +73,7 @@ class Clients(Rig):
     def test_python_follows_names_and_notices_silence(self):
         server, tracker = self.given()
         frames = tracker.frames(max_rate=20, stale=0.5)
-        # The instants in which somebody appears are answered again with the frames that came late, now and then without them.
-        for _ in range(20):
-            seen = wait_for("somebody", lambda: (f := next(frames)) and f.people and f)
+        seen = wait_for("somebody", lambda: (f := next(frames)) and f.people and f)
         person = seen.people[0]
         self.assertIs(seen.by_slot(person.slot), person)
         self.assertIs(seen.by_id(person.id), person)
@@ -85,7 +83,8 @@ class Clients(Rig):
         self.assertGreater(later.sequence, seen.sequence)
         self.assertAlmostEqual(tracker.at(seen.time).time, seen.time, places=6)
         self.assertGreater(tracker.at("now").time, seen.time)
-        whole, lean = (wait_for("somebody then", lambda: tracker.at(seen.time, form=form).people) for form in (None, "pose"))
+        # That instant may have been answered again with frames that came late: whoever was in it still is.
+        whole, lean = (tracker.at(seen.time, form=form).people for form in (None, "pose"))
         self.assertIn("contributors", whole[0].raw["joints"]["Head"])
         self.assertNotIn("contributors", lean[0].raw["joints"]["Head"])
         tracker.name(person.id, "Anna")

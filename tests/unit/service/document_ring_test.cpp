@@ -114,6 +114,12 @@ TEST(FrameRing, AnswersForAnInstantInEitherSpelling) {
     EXPECT_NEAR((*found)->bodies.at(0).joints[0].position.x(), 4.5, 1e-6);
   }
   EXPECT_EQ((*ring.at(to_iso8601(kStart + kFrameInterval * 4)))->sequence, 4u);
+  const std::int64_t third = to_unix_ns(kStart + kFrameInterval * 3);
+  for (const std::int64_t off : {-240, 240}) {
+    const auto found = ring.at(std::to_string(third + off));
+    ASSERT_TRUE(found) << off;
+    EXPECT_EQ((*found)->captured, kStart + kFrameInterval * 3) << "as from seconds in a double";
+  }
 }
 
 TEST(FrameRing, InstantsOutsideAreRefusedByKind) {
