@@ -88,6 +88,7 @@ export class Playback {
     const held = this.held;
     try {
       const told = await this.fetchStretch(wanted);
+      if (!Number.isFinite(told?.to) || !Array.isArray(told.messages)) throw new Error('what the server says of this stretch cannot be read');
       if (held === this.held) this.take(told);
       this.problem = '';
     } catch (error) {

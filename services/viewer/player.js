@@ -5,6 +5,8 @@ const EVERY_MS = 33;
 const TOLD_EVERY = 6; // the panel is told of each sixth step
 const HEIGHT = 1.5; // where the only sensor of a recording without places is drawn [m]
 
+const isOutline = (told) => Number.isFinite(told?.seconds) && Array.isArray(told.sensors);
+
 export class Player {
   /// `io`: { fetchJson(path), onShown(playback | null), onFailed(words), onFrame(frame), onRaw(id, frame) }.
   constructor(room, io) {
@@ -23,7 +25,8 @@ export class Player {
       if (asked === this.asked) this.io.onFailed(`${name} cannot be opened: ${error.message}`);
       return;
     }
-    if (asked !== this.asked) return; // another one was asked for, or none
+    if (asked === this.asked && !isOutline(outline)) this.io.onFailed(`${name} cannot be opened: what the server says of it cannot be read`);
+    if (asked !== this.asked || !isOutline(outline)) return; // another one was asked for, or none
     this.playback = new Playback(outline, ({ from, to, every }) => this.io.fetchJson(path(`stretch?from=${from}&to=${to}&every=${every}`)));
     [this.name, this.path, this.placed] = [name, path, null];
     this.io.onShown(this.told());

@@ -3,6 +3,7 @@
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const MAX_BACKOFF_MS = 2000;
 const ANSWER_WITHIN_MS = 3000;
+const LATEST_MS = 15000; // no answer is on its way for longer: a long poll and ANSWER_WITHIN_MS
 
 /// The server's clock, from its answers (Chorus-Clock: when the request was complete, when the answer left).
 /// The fastest exchange is nearest to the truth; the browser's own clock is used only for measuring elapsed time.
@@ -16,7 +17,9 @@ export class ServerClock {
     const left = Number(header?.split(' ')[1]);
     if (!Number.isFinite(left) || left <= 0) return;
     const now = this.ticking();
-    this.samples.push({ now, offset: left / 1e6 - now });
+    const offset = left / 1e6 - now;
+    if (this.samples.some((sample) => sample.offset - offset > LATEST_MS)) this.samples = []; // it was set back
+    this.samples.push({ now, offset });
     while (this.samples.length > 200 || now - this.samples[0].now > 60000) this.samples.shift();
   }
 
@@ -46,24 +49,48 @@ export class Link {
 }
 export const link = new Link();
 
-/// One resource: `next()` returns its JSON if it has changed, else null.
+/// What a server says against an answer, in a few words.
+async function refusalOf(answer) {
+  if (answer.status === 401 || answer.status === 403) return 'it asks for a token';
+  const { detail } = (await answer.json().catch(() => null)) ?? {};
+  return `it answered ${answer.status}${typeof detail === 'string' ? `: ${detail}` : ''}`;
+}
+
+/// One resource: `next()` returns its JSON if it has changed, else null.  `check`: returns what is used of the JSON, or throws.
+/// `problem`: the error of the newest answer, or null; `failures`: how many there were in a row.
 export class Resource {
-  constructor(url, waitSeconds = 0) {
+  constructor(url, waitSeconds = 0, check = (told) => told) {
     this.url = url;
     this.wait = waitSeconds;
+    this.check = check;
     this.etag = null;
+    this.problem = null;
+    this.failures = 0;
   }
 
   async next() {
+    try {
+      const value = await this.read();
+      [this.problem, this.failures] = [null, 0];
+      return value;
+    } catch (error) {
+      [this.problem, this.failures] = [error, this.failures + 1];
+      throw error;
+    }
+  }
+
+  async read() {
     const headers = { Accept: 'application/json' };
     if (this.etag) headers['If-None-Match'] = this.etag;
     if (this.etag && this.wait) headers.Prefer = `wait=${this.wait}`;
     const signal = AbortSignal.timeout(this.wait * 1000 + ANSWER_WITHIN_MS);
     const answer = await this.answer(headers, signal);
     if (answer.status === 304) return null;
-    if (!answer.ok) throw new Error(`${this.url} answered ${answer.status}`);
-    this.etag = answer.headers.get('ETag');
-    return answer.json();
+    if (!answer.ok) throw Object.assign(new Error(await refusalOf(answer)), { status: answer.status });
+    const told = await answer.json().catch(() => { throw new Error('its answer cannot be read'); });
+    const value = this.check(told);
+    this.etag = answer.headers.get('ETag'); // not before: what could not be read is asked for again
+    return value;
   }
 
   async answer(headers, signal) {

@@ -14,17 +14,29 @@ export function takeToken(location, history) {
   history.replaceState(null, '', location.pathname + location.search);
 }
 
+const ANSWER_WITHIN_MS = 30000;
+
 const send = (url, body, method) => fetch(url, {
   method,
+  signal: AbortSignal.timeout(ANSWER_WITHIN_MS),
   headers: { ...(body ? { 'Content-Type': 'application/json' } : {}), ...(token ? { Authorization: `Bearer ${token}` } : {}) },
   body: body ? JSON.stringify(body) : undefined,
 });
 
 /// Sends it; a server that asks for a token gets one that is typed.  Resolves to { problem, body }: problem is '' where all is well.
-export async function requested(url, body = null, method = 'POST') {
+export async function requested(...asked) {
+  try {
+    return await exchanged(...asked);
+  } catch (error) {
+    const slow = error?.name === 'TimeoutError';
+    return { problem: slow ? `the server did not answer within ${ANSWER_WITHIN_MS / 1000} s` : 'the server does not answer', body: null };
+  }
+}
+
+async function exchanged(url, body = null, method = 'POST') {
   let answer = await send(url, body, method);
   if (answer.status === 401 || answer.status === 403) {
-    const { detail } = await answer.clone().json().catch(() => ({}));
+    const { detail } = (await answer.clone().json().catch(() => null)) ?? {};
     const typed = await ask(detail ?? 'It allows changes.');
     if (typed) {
       token = typed;
@@ -45,6 +57,6 @@ export async function fetched(url) {
   const answer = await fetch(url, { cache: 'no-store', headers: token ? { Authorization: `Bearer ${token}` } : {} }).catch(() => null);
   if (!answer) return { problem: 'the server does not answer' };
   if (answer.ok) return answer.blob().then((blob) => ({ blob }), () => ({ problem: 'the answer broke off' }));
-  const { detail } = await answer.json().catch(() => ({}));
+  const { detail } = (await answer.json().catch(() => null)) ?? {};
   return { problem: detail ?? `the server answered ${answer.status}` };
 }

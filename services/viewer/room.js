@@ -12,11 +12,28 @@ const GROUNDS = { dark: [0x0d1117, 0x55606e, 0x262d36], light: [0xf2f4f7, 0x8a96
 const SHARPEST = 2; // most pixels of the scene for one of the page
 const SLOW_MS = 60; // a picture that takes longer is drawn coarser
 
+const NO_WEBGL = 'This browser draws nothing in three dimensions (WebGL): the room stays empty, everything else works.';
+const LOST_WEBGL = 'The graphics of this browser are gone: the room is not drawn until they are back.';
+
+/// Draws nothing, in a browser that cannot.
+class NoRenderer {
+  setPixelRatio() {}
+  setSize() {}
+  render() {}
+  setAnimationLoop(draw) {
+    const next = () => {
+      draw();
+      requestAnimationFrame(next);
+    };
+    next();
+  }
+}
+
 export class Room {
-  /// `coarsens`: whether a slow machine draws with fewer pixels.
+  /// `trouble`: why the room is not drawn, or ''.  `coarsens`: whether a slow machine draws with fewer pixels.
   constructor(canvas, { coarsens = true } = {}) {
-    Object.assign(this, { canvas, coarsens });
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    Object.assign(this, { canvas, coarsens, trouble: '' });
+    this.renderer = this.rendererOf(canvas);
     this.ratio = Math.min(window.devicePixelRatio, SHARPEST);
     this.renderer.setPixelRatio(this.ratio);
     this.scene = new THREE.Scene();
@@ -33,6 +50,17 @@ export class Room {
     this.scene.add(this.fused.object, this.trails.object, this.ellipsoids.object);
     this.paintGround('dark');
     this.view('room');
+  }
+
+  rendererOf(canvas) {
+    canvas.addEventListener('webglcontextlost', () => { this.trouble = LOST_WEBGL; });
+    canvas.addEventListener('webglcontextrestored', () => { this.trouble = ''; });
+    try {
+      return new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    } catch {
+      this.trouble = NO_WEBGL;
+      return new NoRenderer();
+    }
   }
 
   light() {
@@ -76,7 +104,8 @@ export class Room {
   }
 
   place(registration) {
-    const places = Object.entries(registration.sensors ?? {}).filter(([, sensor]) => sensor.polled !== false);
+    const known = (pose) => pose && ['x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'].every((key) => Number.isFinite(pose[key]));
+    const places = Object.entries(registration.sensors ?? {}).filter(([, sensor]) => known(sensor) && sensor.polled !== false);
     for (const view of this.sensors.values()) view.place.visible = false; // one that lost its place is drawn nowhere
     for (const [id, pose] of places) {
       const view = this.sensor(id);

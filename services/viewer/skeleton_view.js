@@ -18,7 +18,7 @@ const UP = new THREE.Vector3(0, 1, 0);
 const HEAD_RADIUS = 0.095;
 
 const seen = (joint) =>
-  joint !== undefined && joint.state !== 'NotTracked' && Number.isFinite(joint.x);
+  joint && joint.state !== 'NotTracked' && Number.isFinite(joint.x) && Number.isFinite(joint.y) && Number.isFinite(joint.z);
 const at = (joint) => new THREE.Vector3(joint.x, joint.y, joint.z);
 
 const MOST_RAW_ENDS = 2 * BONES.length * 16; // of one sensor: sixteen bodies

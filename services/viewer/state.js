@@ -7,6 +7,33 @@ const MOST_HZ = 1000; // no server is as fast
 const many = (count, one, more) => (count === 1 ? `one ${one}` : `${count} ${more}`);
 const seconds = (ms) => `${Math.round(ms / 1000)} s`;
 
+const isObject = (value) => value !== null && typeof value === 'object' && !Array.isArray(value);
+const MOST_BODIES = 64; // as many as the scene draws
+
+/// A frame as it is shown: of more than 64 bodies the first ones, without what is no body or no joint.  Throws when it is no frame.
+export function frameOf(told) {
+  const is = isObject(told) && Number.isFinite(told.sequence) && /^\d+$/.test(told.capturedNanoseconds) && Number.isFinite(Date.parse(told.captured));
+  if (!is) throw new Error('what it calls a frame is none');
+  const jointsOf = (body) => Object.fromEntries(Object.entries(body.joints).filter(([, joint]) => isObject(joint)));
+  const all = (Array.isArray(told.bodies) ? told.bodies : []).filter((body) => isObject(body) && isObject(body.joints));
+  return { ...told, bodies: all.slice(0, MOST_BODIES).map((body) => ({ ...body, joints: jointsOf(body) })), leftOut: Math.max(0, all.length - MOST_BODIES) };
+}
+
+/// /sensors/ without what is no sensor.  Throws when nothing is said of sensors.
+export function sensorsOf(told) {
+  const all = isObject(told) ? told.sensors ?? {} : null;
+  if (!isObject(all)) throw new Error('what it says cannot be read');
+  return { ...told, sensors: Object.fromEntries(Object.entries(all).filter(([, sensor]) => isObject(sensor))) };
+}
+
+/// /registration if it is one: lists are lists.
+export function registrationOf(told) {
+  const lists = ['reasons', 'awaits', 'alarms'];
+  if (!isObject(told) || !lists.every((key) => told[key] === undefined || Array.isArray(told[key])) || (told.sensors !== undefined && !isObject(told.sensors)))
+    throw new Error('what it says cannot be read');
+  return told;
+}
+
 function list(names) {
   if (names.length < 2) return names.join('');
   return `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
@@ -57,7 +84,7 @@ export function freshness(known) {
   return old > STALE_MS || known.link.error ? 'stale' : 'live';
 }
 
-function ofTheLink({ link, frame, frameAge, held }) {
+function ofTheLink({ link, frame, frameAge, frameProblem, held }) {
   const silent = link.silent;
   if (held && frame && !(frameAge <= STALE_MS)) {
     return { tone: 'warn', sentence: 'This page was held up, and catches up.', next: 'This browser or its computer is busy; that says nothing about the tracker.' };
@@ -65,6 +92,10 @@ function ofTheLink({ link, frame, frameAge, held }) {
   if (link.error && !(silent < STALE_MS)) {
     const since = Number.isFinite(silent) ? `The fusion server has not answered for ${seconds(silent)}.` : 'The fusion server does not answer.';
     return { tone: 'bad', sentence: since, next: 'Is chorus-fusion running there? This page goes on by itself as soon as it answers.' };
+  }
+  if (frameProblem && !(frame && frameAge <= STALE_MS)) {
+    const next = [401, 403].includes(frameProblem.status) ? 'Load this page again, and give the token as the password.' : 'Look into the log of chorus-fusion.';
+    return { tone: 'bad', sentence: `The fusion server gives no frames: ${frameProblem.message}.`, next };
   }
   if (!frame) return { tone: 'warn', sentence: 'Waiting for the first frame of the fusion server …', next: '' };
   if (frameAge > STALE_MS) {
@@ -118,9 +149,15 @@ function doubtOf({ verdict, reasons = [], sensors = {}, unplaced = {} }) {
   return reasons.find((reason) => !own.includes(reason)) ?? null;
 }
 
+/// Resources that were not read the last times: what is shown of them is old.  `unread`: [[what, error]].
+function ofTheUnread({ unread = [] }) {
+  if (unread.length === 0) return null;
+  return { tone: 'warn', sentence: `The fusion server says nothing of ${list(unread.map(([what]) => what))}: ${unread[0][1].message}.`, next: 'What is shown of that is old.' };
+}
+
 /// Returns {tone: 'good' | 'calm' | 'warn' | 'bad', sentence, next}.
 export function stateOf(known) {
-  const link = ofTheLink(known);
+  const link = ofTheLink(known) ?? ofTheUnread(known);
   if (link) return link;
   const { sensors, registration, frame } = known;
   if (!sensors || !registration) return { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' };
@@ -130,7 +167,7 @@ export function stateOf(known) {
   if (alarm) return alarm;
   const places = ofTheRegistration(registration);
   if (places?.sentence) return missing ? { ...places, sentence: `${places.sentence} ${missing.sentence}` } : places;
-  const people = frame.bodies?.length ?? 0;
+  const people = (frame.bodies?.length ?? 0) + (frame.leftOut ?? 0);
   const carried = (frame.bodies ?? []).filter((body) => body.carriedFor !== undefined).length;
   const present = many(people, 'person', 'people') + (carried > 0 ? ` (${carried} out of sight)` : '');
   const seen = people === 0 ? 'Nobody is in sight.' : `Live: ${present}.`;

@@ -13,7 +13,7 @@ import { judgedBones } from './judged.js';
 import { askFor, requested, takeToken, tokenInUse } from './request.js';
 import { Room } from './room.js';
 import { stepOf } from './setup.js';
-import { OutputRate, OwnDelay, freshness, stateOf, stateOfPlayback } from './state.js';
+import { OutputRate, OwnDelay, frameOf, freshness, registrationOf, sensorsOf, stateOf, stateOfPlayback } from './state.js';
 
 const LISTS_RECORDINGS = ['record', 'playback'];
 const RAW_EVERY_MS = 66; // at the most often; with many sensors
@@ -24,7 +24,8 @@ const query = new URLSearchParams(location.search);
 const base = new URL(query.get('server') ?? '../', location.href);
 const recordingOnly = query.has('only'); // `chorus view`: there is no room behind the recording
 const follow = (...what) => { if (!recordingOnly) followForEver(...what); };
-const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
+const resource = (path, wait, check) => new Resource(new URL(path, base).href, wait, check);
+const UNREAD_AFTER = 3; // failures in a row
 
 /// What the page has shown so far, for tests and for curious people.
 const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sensors: 0, errors: 0, pictures: 0, paused: false };
@@ -44,11 +45,19 @@ const known = {
 
 // ---- the panels ----------------------------------------------------------------------------------------------
 const root = document.getElementById('cockpit');
+const broken = document.getElementById('broken');
 root.replaceChildren();
 
 function change(facts) {
   Object.assign(known, facts);
-  render(html`<${Cockpit} known=${known} act=${act} />`, root);
+  try {
+    render(html`<${Cockpit} known=${known} act=${act} />`, root);
+    broken.hidden = true;
+  } catch (error) { // never a green sentence of a page that stands still
+    broken.hidden = false;
+    broken.textContent = `This page cannot show what the server says (${error.message}). What it shows is old.`;
+    shown.errors += 1;
+  }
 }
 
 /// The panels leave the scene its part of the window; in a narrow one they stand below it (viewer.css).
@@ -161,18 +170,22 @@ function followRaw(id) {
   if (followed.has(id)) return;
   followed.add(id);
   const view = room.sensor(id);
-  follow(resource(`sensors/${id}/frame`), rawPause, (frame) => showRaw(view, frame), () => view.raw.show([]));
+  follow(resource(`sensors/${encodeURIComponent(id)}/frame`), rawPause, (frame) => showRaw(view, frame), () => view.raw.show([]));
 }
 
-follow(resource('frame', 10), 0, (frame) => {
+const frames = resource('frame', 10, frameOf);
+let cameAt = -Infinity; // [ms] by this page's own clock
+follow(frames, 0, (frame) => {
+  if (frame.captured !== known.frame?.captured) cameAt = performance.now();
   known.frame = frame;
   known.rate = outputRate.after(frame);
   if (!known.playback) showBodies(frame);
   watchOrigin(frame);
 }, failed);
 
-follow(resource('sensors/'), 1000, ({ sensors: all }) => {
-  for (const [id, state] of Object.entries(all ?? {})) {
+const sensorsNow = resource('sensors/', 0, sensorsOf);
+follow(sensorsNow, 1000, ({ sensors: all }) => {
+  for (const [id, state] of Object.entries(all)) {
     const view = room.sensor(id);
     view.live = state.state === 'live';
     room.paint(view, state);
@@ -180,17 +193,18 @@ follow(resource('sensors/'), 1000, ({ sensors: all }) => {
     followRaw(id);
   }
   for (const view of room.sensors.values()) {
-    if (all[view.id]) continue;
+    if (Object.hasOwn(all, view.id)) continue;
     view.live = false; // taken out, or silenced
     showRaw(view, { bodies: [] });
     room.paint(view, {});
   }
   shown.sensors = room.sensors.size;
-  const first = known.sensors === null && Object.keys(all ?? {}).length === 0;
-  change({ sensors: all ?? {}, ...(first ? { firstRun: true, drawer: 'sensors' } : {}) });
+  const first = known.sensors === null && Object.keys(all).length === 0;
+  change({ sensors: all, ...(first ? { firstRun: true, drawer: 'sensors' } : {}) });
 }, failed);
 
-follow(resource('registration'), 1000, (registration) => {
+const placesNow = resource('registration', 0, registrationOf);
+follow(placesNow, 1000, (registration) => {
   if (!known.playback) room.place(registration);
   const wanted = wantedDrawer(registration);
   const opens = wanted && !wantedDrawer(known.registration) && !known.playback;
@@ -257,13 +271,17 @@ const ageOf = (frame) => clock.now() - Date.parse(frame.captured);
 setInterval(() => {
   const held = ownDelay.late();
   const age = known.frame ? ageOf(known.frame) : NaN;
-  const now = { ...known, link: link.state(), frameAge: age, held };
+  const unread = [['the sensors', sensorsNow], ['where the sensors stand', placesNow]].filter(([, { failures }]) => failures >= UNREAD_AFTER)
+    .map(([what, { problem }]) => [what, problem]);
+  // Its own clock counts too: a server may tell the time wrong, or not at all.
+  const frameAge = known.frame ? Math.max(age || 0, performance.now() - cameAt) : NaN;
+  const now = { ...known, link: link.state(), frameAge, frameProblem: frames.problem, unread, held };
   const fresh = known.playback ? 'recorded' : freshness(now);
   const state = known.playback ? stateOfPlayback(known.playback, recordingOnly) : stateOf(now);
   document.body.dataset.fresh = fresh;
   document.title = state.tone === 'good' || state.tone === 'calm' ? 'Chorus cockpit' : `${state.sentence} – Chorus cockpit`;
   Object.assign(shown, { fresh, age });
-  change({ state, age: known.playback ? NaN : age, shownFrame: known.playback ? player.frame : fresh === 'gone' ? null : known.frame, shownRate: fresh === 'live' ? known.rate : NaN });
+  change({ state, sceneTrouble: room.trouble, age: known.playback ? NaN : age, shownFrame: known.playback ? player.frame : fresh === 'gone' ? null : known.frame, shownRate: fresh === 'live' ? known.rate : NaN });
   if (fresh === 'gone' && known.frame) forget();
 }, STATE_EVERY_MS);
 

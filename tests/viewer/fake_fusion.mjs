@@ -32,8 +32,7 @@ const COVARIANCE = { cxx: 0.0004, cxy: 0, cxz: 0, cyy: 0.0001, cyz: 0, czz: 0.00
 export const CLOCK_AHEAD_MS = 3600000;
 const serverNow = () => Date.now() + CLOCK_AHEAD_MS;
 
-function frame(sequence, place, about = {}, still = false) {
-  const now = serverNow();
+function frame(sequence, place, about = {}, still = false, now = serverNow()) {
   const sway = still ? 0 : 0.4 * Math.sin(sequence / 20);
   const joints = Object.fromEntries(Object.entries(STANDING).map(([name, [x, y, z]]) => {
     const [jx, jy, jz] = place ? toSensor(place, [x + sway, y, z]) : [x + sway, y, z];
@@ -95,7 +94,7 @@ export async function startFakeFusion(files, world = usualWorld()) {
   let fused = null;
   const timer = setInterval(() => { sequence += world.frozen ? 0 : 1; }, 33);
   const current = () => {
-    if (!world.frozen || !fused) fused = frame(sequence, null, world.person, world.still);
+    if (!world.frozen || !fused) fused = frame(sequence, null, world.person, world.still, serverNow() - (world.clockSetBack ?? 0));
     return { ...fused, bodies: world.people > 1 ? crowd(fused.bodies[0], world.people) : world.people > 0 ? fused.bodies : [] };
   };
   const answers = {
@@ -116,6 +115,7 @@ export async function startFakeFusion(files, world = usualWorld()) {
   };
   const server = createServer(async (request, response) => {
     if (world.silent && !request.url.startsWith('/viewer/')) return; // it takes its time
+    if (!request.url.startsWith('/viewer/') && await world.fault?.(request, response)) return; // it has answered, or never will
     const { pathname, searchParams } = new URL(request.url, 'http://localhost');
     if (['POST', 'PATCH', 'DELETE'].includes(request.method)) {
       let text = '';
@@ -152,15 +152,17 @@ export async function startFakeFusion(files, world = usualWorld()) {
       response.writeHead(200, { 'Content-Type': 'text/html' });
       return response.end(world.pages[pathname]);
     }
-    const clock = `${serverNow()}000000`;
+    const clock = `${serverNow() - (world.clockSetBack ?? 0)}000000`;
     const raw = /^\/sensors\/([^/]+)\/frame$/.exec(pathname)?.[1];
     if (raw && SENSORS[raw]) answers[pathname] = () => rawFrame(sequence, SENSORS[raw], world);
     else if (raw && world.sensors[raw]) answers[pathname] = () => rawFrame(sequence, SENSORS.s1, world);
     if (answers[pathname]) {
       const tag = pathname === '/frame' ? `"${sequence}"` : `"${Date.now()}"`;
       const unchanged = request.headers['if-none-match'] === tag;
-      response.writeHead(unchanged ? 304 : 200, { 'Content-Type': 'application/json', ETag: tag, 'Chorus-Clock': `${clock} ${clock}` });
-      return response.end(unchanged ? '' : JSON.stringify(answers[pathname]()));
+      response.writeHead(unchanged ? 304 : 200, { 'Content-Type': 'application/json', ETag: tag, ...(world.noClock ? {} : { 'Chorus-Clock': `${clock} ${clock}` }) });
+      const usual = answers[pathname]();
+      const told = world.told?.[pathname] ? world.told[pathname](usual) : usual; // a text is sent as it is
+      return response.end(unchanged ? '' : typeof told === 'string' ? told : JSON.stringify(told));
     }
     const inside = normalize(pathname.replace(/^\/viewer\//, '') || 'index.html');
     try {

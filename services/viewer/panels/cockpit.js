@@ -1,5 +1,5 @@
 // The whole page beside the scene: top, sensors, people, and one drawer at a time.
-import { Later, html } from './html.js';
+import { Guarded, Later, html } from './html.js';
 import { Keys, Token } from './dialogs.js';
 import { Events } from './events.js';
 import { FirstRun } from './first_run.js';
@@ -51,23 +51,23 @@ function Dialogs({ known, act }) {
 /// `known`: facts; `act`: what can be done.
 export function Cockpit({ known, act }) {
   return html`
-    <${Top} state=${known.state} alarms=${known.registration?.alarms} warning=${known.warning} onKeys=${() => act.onDialog('keys')} onTheme=${act.onTheme} onPhone=${() => act.onDialog('phone')} />
+    <${Top} state=${known.state} alarms=${known.registration?.alarms} warning=${known.warning} sceneTrouble=${known.sceneTrouble} onKeys=${() => act.onDialog('keys')} onTheme=${act.onTheme} onPhone=${() => act.onDialog('phone')} />
     <main>
       <aside id="left" aria-label="sensors">
-        <${Sensors} known=${known} act=${act} />
+        <${Guarded}><${Sensors} known=${known} act=${act} /></${Guarded}>
       </aside>
       <aside id="right" aria-label="people and events">
-        <${People} frame=${known.shownFrame} known=${known.people} recorded=${Boolean(known.playback)} resource=${act.resource} onLook=${(id) => act.onView('person', id)} />
-        ${!known.playback && html`<${Judged} evaluation=${known.evaluation} />`}
-        <${Tracker} frame=${known.shownFrame} rate=${known.shownRate} age=${known.age} />
-        ${!act.playback.only && html`<${Events} events=${known.events} />`}
+        <${Guarded}><${People} frame=${known.shownFrame} known=${known.people} recorded=${Boolean(known.playback)} resource=${act.resource} onLook=${(id) => act.onView('person', id)} /></${Guarded}>
+        ${!known.playback && html`<${Guarded}><${Judged} evaluation=${known.evaluation} /></${Guarded}>`}
+        <${Guarded}><${Tracker} frame=${known.shownFrame} rate=${known.shownRate} age=${known.age} /></${Guarded}>
+        ${!act.playback.only && html`<${Guarded}><${Events} events=${known.events} /></${Guarded}>`}
       </aside>
       <section id="drawer" aria-label="operate">
-        <${FirstRun} known=${known} onDrawer=${act.onDrawer} onDone=${act.onFirstRunDone} />
+        <${Guarded}><${FirstRun} known=${known} onDrawer=${act.onDrawer} onDone=${act.onFirstRunDone} /></${Guarded}>
         <div role="tablist" aria-label="drawers">${drawersOf(known, act.playback.only).map(([key, label, letter]) => html`
           <button key=${key} type="button" role="tab" id="tab-${key}" aria-selected=${String(known.drawer === key)} aria-controls="drawer-body"
             title=${`key ${letter}`} onClick=${() => act.onDrawer(key)}>${label}${key === 'register' ? html` <${Verdict} registration=${known.registration} />` : ''}</button>`)}</div>
-        <div id="drawer-body" role="tabpanel" tabindex="-1">${known.drawer && html`<${Drawer} open=${known.drawer} known=${known} act=${act} />`}</div>
+        <div id="drawer-body" role="tabpanel" tabindex="-1">${known.drawer && html`<${Guarded} key=${known.drawer}><${Drawer} open=${known.drawer} known=${known} act=${act} /></${Guarded}>`}</div>
       </section>
     </main>
     <${Dialogs} known=${known} act=${act} />`;

@@ -1,17 +1,18 @@
 // What happened: warnings and errors stay until somebody has seen them.
 import { html, useState } from './html.js';
 
+const MOST_LISTED = 100;
 const KEPT = 500; // ids; the server keeps 2000 events of a day
 const STORE = 'chorus.events.seen';
 
 /// Events that stay: what is no calm news and was not seen.  Pure.
 export const waiting = (events, seen) => (events ?? []).filter((event) => event.severity !== 'calm' && !seen.has(event.eventId));
 
-/// Newest first, those that wait before all others, at most so many.  Pure.
+/// Newest first, those that wait before all others, at most so many, but all that wait (of more than a hundred the newest).  Pure.
 export function listed(events, seen, most = 12) {
   const newest = [...(events ?? [])].reverse();
   const urgent = waiting(newest, seen);
-  return [...urgent, ...newest.filter((event) => !urgent.includes(event))].slice(0, Math.max(most, urgent.length));
+  return [...urgent, ...newest.filter((event) => !urgent.includes(event))].slice(0, Math.min(MOST_LISTED, Math.max(most, urgent.length)));
 }
 
 /// What was seen is remembered by this browser, if it lets us.
@@ -28,7 +29,7 @@ function store(seen) {
   } catch { /* then it is seen until the page is loaded again */ }
 }
 
-const clockTime = (iso) => new Date(iso).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit', second: '2-digit' });
+const clockTime = (iso) => (Number.isFinite(Date.parse(iso)) ? new Date(iso).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit', second: '2-digit' }) : '–');
 const TONES = { calm: 'faint', warning: 'warn', error: 'bad' };
 
 function Row({ event, waits, onSeen }) {

@@ -1,6 +1,6 @@
 // The view library: Preact with htm, which needs no build step.
 import { h, render } from 'preact';
-import { useEffect, useRef, useState } from 'preact/hooks';
+import { useEffect, useErrorBoundary, useRef, useState } from 'preact/hooks';
 import htm from 'htm';
 
 export const html = htm.bind(h);
@@ -29,6 +29,19 @@ export function Later({ load, ...own }) {
   return view && html`<${view} ...${own} />`;
 }
 const Missing = () => html`<p class="bad" role="status">This part of the page cannot be loaded: the server does not answer.</p>`;
+
+const AGAIN_MS = 2000;
+
+/// A part of the page that may fail alone: it says so, and tries again.
+export function Guarded({ children }) {
+  const [error, again] = useErrorBoundary();
+  useEffect(() => {
+    if (!error) return undefined;
+    const timer = setTimeout(again, AGAIN_MS);
+    return () => clearTimeout(timer);
+  }, [error]);
+  return error ? html`<p class="bad" role="alert">This part of the page cannot show what the server says (${String(error.message ?? error)}). It tries again.</p>` : children;
+}
 
 /// A list of sentences; nothing at all when there are none.
 export function Lines({ id, lines, label, kind = '' }) {

@@ -39,6 +39,7 @@ export function People({ frame, known, recorded, resource, onLook }) {
     <ul id="people" aria-label="people: seen or expected, and how sure left and right are">
       ${bodies.map((body) => html`<${Person} key=${body.bodyId} body=${body} known=${recorded ? null : known?.[body.bodyId]} recorded=${recorded} resource=${resource} onLook=${onLook} />`)}
     </ul>
+    ${frame?.leftOut > 0 && html`<p class="warn">and ${frame.leftOut} more, who are not shown</p>`}
     ${bodies.length === 0 && html`<p>nobody</p>`}
   </section>`;
 }

@@ -11,8 +11,9 @@ const REFUSED_EVERY_MS = 10000;
 export function cardOf(id, sensor, registration) {
   const live = sensor.state === 'live';
   const moved = live && Boolean(sensor.alarm);
-  const place = registration?.sensors?.[id] ?? registration?.unplaced?.[id];
-  const placed = Boolean(registration?.sensors?.[id]);
+  const own = (all) => (Object.hasOwn(all ?? {}, id) ? all[id] : undefined); // a sensor may be called "constructor"
+  const placed = Boolean(own(registration?.sensors));
+  const place = own(registration?.sensors) ?? own(registration?.unplaced);
   const radius = placed && Number.isFinite(place.presentRadius) ? `±${Math.round(1000 * place.presentRadius)} mm` : '';
   return {
     state: moved ? 'moved' : sensor.state ?? 'unknown',
@@ -37,7 +38,7 @@ function Picture({ id, resource }) {
     let open = true;
     let address = null;
     const ask = async () => {
-      const next = await fetched(resource(`sensors/${id}/image`));
+      const next = await fetched(resource(`sensors/${encodeURIComponent(id)}/image`));
       if (!open) return;
       if (address) URL.revokeObjectURL(address);
       address = next.blob ? URL.createObjectURL(next.blob) : null;
@@ -51,16 +52,16 @@ function Picture({ id, resource }) {
     };
   }, [id]);
   if (!seen.address) return html`<p class="faint" role="status">${seen.words}</p>`;
-  return html`<img class="picture" src=${seen.address} alt=${`what ${id} sees`} />`;
+  return html`<img class="picture" src=${seen.address} alt=${`what ${id} sees`} onError=${() => see({ address: null, words: 'what the server sends is no picture' })} />`;
 }
 
 function Doings({ id, known, resource }) {
   const [said, say] = useState('');
-  const path = resource(`sensors/${id}`);
+  const path = resource(`sensors/${encodeURIComponent(id)}`);
   const taken = () => request(path, null, 'DELETE');
   return html`<div class="row">
     <${Action} label="silence" ariaLabel=${`silence ${id}`} title="the tracker does without it until it is heard again" run=${() => request(path, { silenced: true }, 'PATCH')} say=${say} />
-    <${Action} label="register again" ariaLabel=${`register ${id} again`} title="forget its place; the next walk finds it" run=${() => request(resource(`registration/sensors/${id}/again`))} say=${say} />
+    <${Action} label="register again" ariaLabel=${`register ${id} again`} title="forget its place; the next walk finds it" run=${() => request(resource(`registration/sensors/${encodeURIComponent(id)}/again`))} say=${say} />
     ${known.setup?.added?.includes(id) && html`<${Action} label="take out" ariaLabel=${`take ${id} out`} confirm="take it out: sure?" run=${taken} say=${say} />`}
     <${Said} text=${said} /></div>`;
 }
@@ -88,14 +89,14 @@ function Silenced({ id, url, resource }) {
   const [said, say] = useState('');
   return html`<article class="card dead" data-sensor=${id} aria-label=${`sensor ${id}`} title=${url}>
     <h3><span class="id">${id}</span> <span class="state warn">silenced</span></h3>
-    <div class="row"><${Action} label="hear it again" ariaLabel=${`hear ${id} again`} run=${() => request(resource(`sensors/${id}`), { silenced: false }, 'PATCH')} say=${say} />
+    <div class="row"><${Action} label="hear it again" ariaLabel=${`hear ${id} again`} run=${() => request(resource(`sensors/${encodeURIComponent(id)}`), { silenced: false }, 'PATCH')} say=${say} />
       <${Said} text=${said} /></div>
   </article>`;
 }
 
 export function Sensors({ known, act }) {
   const all = Object.entries(known.sensors ?? {});
-  const silenced = Object.entries(known.setup?.silenced ?? {}).filter(([id]) => !known.sensors?.[id]);
+  const silenced = Object.entries(known.setup?.silenced ?? {}).filter(([id]) => !Object.hasOwn(known.sensors ?? {}, id));
   return html`<section aria-labelledby="sensors-title" id="sensors">
     <h2 id="sensors-title">Sensors ${!act.playback.only && html`<button type="button" id="add" aria-label="add sensors" title="add sensors (key s)" onClick=${() => act.onDrawer('sensors')}>+</button>`}</h2>
     ${all.length === 0 && html`<p>none</p>`}

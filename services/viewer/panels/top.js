@@ -6,7 +6,7 @@ export function unseen(alarms, seen) {
   return (alarms ?? []).filter((alarm) => !seen.has(alarm));
 }
 
-export function Top({ state, alarms, warning, onKeys, onTheme, onPhone }) {
+export function Top({ state, alarms, warning, sceneTrouble, onKeys, onTheme, onPhone }) {
   const [seen, setSeen] = useState(new Set());
   const waiting = unseen(alarms, seen);
   return html`<header>
@@ -14,6 +14,7 @@ export function Top({ state, alarms, warning, onKeys, onTheme, onPhone }) {
     <div class="sentence">
       <p id="headline" role="status" class=${state.tone}>${state.sentence}</p>
       <p id="next">${state.next}</p>
+      ${sceneTrouble && html`<p id="scene-trouble" class="warn" role="status">${sceneTrouble}</p>`}
       ${warning && html`<p id="warning" class="warn" role="status">${warning}</p>`}
     </div>
     <nav aria-label="page">
