@@ -116,7 +116,7 @@ if(NOT CHORUS_ONLY_SENSOR)
   # Of its libraries only the files that the page loads (index.html), and their licences where they have a file of their own.
   set(modules three/build/three.module.min.js three/build/three.core.min.js three/examples/jsm/controls/OrbitControls.js three/LICENSE
       preact/dist/preact.mjs preact/hooks/dist/hooks.mjs preact/LICENSE htm/dist/htm.mjs htm/LICENSE
-      qrcode-generator/dist/qrcode.mjs qrcode-generator/package.json)
+      qrcode-generator/dist/qrcode.mjs qrcode-generator/package.json uplot/dist/uPlot.esm.js uplot/LICENSE)
   foreach(file ${modules})
     get_filename_component(folder ${file} DIRECTORY)
     install(FILES services/viewer/node_modules/${file} DESTINATION ${viewer}/node_modules/${folder} COMPONENT fusion OPTIONAL)

@@ -2,6 +2,7 @@
 // Uses only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration, /people/, /events, /setup,
 // /recordings/.
 import { jointLines } from './certainty.js';
+import { History } from './curves.js';
 import { Cockpit, wantedDrawer } from './panels/cockpit.js';
 import { drawerOfKey } from './drawers.js';
 import { html, render } from './panels/html.js';
@@ -38,6 +39,7 @@ const room = new Room(document.getElementById('scene'), { coarsens: !query.has('
 const known = {
   frame: null, rate: NaN, sensors: null, registration: null, told: null, recordings: null, recordingsProblem: '', people: null, events: null, evaluation: null,
   site: null, setup: null, firstRun: false, originShown: false, playback: null, playbackProblem: '',
+  history: new History(),
   state: { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' }, shownFrame: null, shownRate: NaN, age: NaN,
   drawer: null, dialog: null, asking: null,
   switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false },
@@ -179,6 +181,7 @@ follow(frames, 0, (frame) => {
   if (frame.captured !== known.frame?.captured) cameAt = performance.now();
   known.frame = frame;
   known.rate = outputRate.after(frame);
+  known.history.take({ ...known, age: ageOf(frame) }, performance.now());
   if (!known.playback) showBodies(frame);
   watchOrigin(frame);
 }, failed);

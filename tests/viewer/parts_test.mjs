@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 
+import { History, linesOf, stripOf } from '../../services/viewer/curves.js';
 import { drawerOfKey, drawersOf } from '../../services/viewer/drawers.js';
 import { Playback, latest, nextStretch, placesAt, timeText } from '../../services/viewer/playback.js';
 import { Player } from '../../services/viewer/player.js';
@@ -218,4 +219,46 @@ test('a hall has its cells with what they need, its people with where they went,
   assert.equal(trails.get('A-3').length, 2);
   assert.equal(trailsAfter(trails, people, 11000).get('A-3').length, 2, 'the first one is too old');
   assert.equal(trailsAfter(trails, [], 11000).size, 0);
+});
+
+test('the last minute as lines: heights and speeds by person, rates and ages by source, limbs with what they are allowed', () => {
+  const history = new History();
+  const moment = (i, more = {}) => ({ rate: 30, age: 20 + i, sensors: { s1: { state: 'live', rateHz: 29, ageMilliseconds: 12 }, s2: { state: 'lost', rateHz: 30, ageMilliseconds: 9000 } },
+    frame: { captured: new Date(1e12 + 100 * i).toISOString(), bodies: [{ bodyId: 4, joints: { Head: { x: 0.05 * i, y: 1.7, z: 0 }, Neck: { state: 'NotTracked' } } }] }, ...more });
+  for (let i = 0; i < 700; i += 1) {
+    history.take(moment(i), 100 * i);
+    history.take(moment(i), 100 * i + 20); // too early
+  }
+  assert.equal(history.samples.length, 601, 'a minute, ten times a second');
+  const speed = linesOf(history, 'speed', 'Head', 70000);
+  assert.deepEqual([speed.seconds[0], speed.seconds.at(-1)], [-60.1, -0.1]);
+  assert.deepEqual(speed.lines.map(({ name }) => name), ['person 4']);
+  assert.equal(speed.lines[0].values[0], null, 'nothing before it');
+  assert.ok(Math.abs(speed.lines[0].values.at(-1) - 0.5) < 1e-4, '50 mm in 100 ms');
+  assert.ok(Math.abs(linesOf(history, 'height', 'Head', 70000).lines[0].values.at(-1) - 1.7) < 1e-6);
+  assert.deepEqual(linesOf(history, 'height', 'Neck', 70000).lines[0].values.at(-1), null);
+  const newest = (kind) => Object.fromEntries(linesOf(history, kind, '', 70000).lines.map(({ name, values }) => [name, values.at(-1)]));
+  assert.deepEqual(newest('rate'), { fused: 30, s1: 29, s2: null });
+  assert.deepEqual(newest('age'), { fused: 719, s1: 12, s2: null }, 'a lost sensor has no line that stands still');
+  assert.deepEqual(linesOf(new History(), 'speed', 'Head', 0), { seconds: [], lines: [], leftOut: 0, limit: null });
+
+  history.take(moment(800), 80000); // after ten seconds of nothing
+  assert.equal(linesOf(history, 'height', 'Head', 80000).lines[0].values.at(-1), null, 'a gap');
+  history.take(moment(801, { frame: { captured: 'x', bodies: Array.from({ length: 20 }, (_, i) => ({ bodyId: i, joints: {} })) } }), 80100);
+  assert.equal(linesOf(history, 'height', 'Head', 80100).leftOut, 20 - 12);
+});
+
+test('how limbs were judged in the last minute', () => {
+  const history = new History();
+  const judged = (state, angleDegrees) => ({ evaluation: { limbs: [{ bodyId: 1, limb: 'ForearmLeft', state, angleDegrees, thresholdDegrees: '45.0' }] } });
+  [['calibrating'], ['good', '9.5'], ['good', '12.0'], ['off', '70.2']].forEach((one, i) => history.take(judged(...one), 100 * i));
+  history.take({}, 400);
+  history.take(judged('good', '8.0'), 9000);
+  const [{ limb, runs }] = stripOf(history, 9000);
+  assert.equal(limb, 'ForearmLeft, person 1');
+  assert.deepEqual(runs.map(({ state, from, to }) => [state, from, to]),
+    [['calibrating', -9, -8.9], ['good', -8.9, -8.7], ['off', -8.7, -8.6], ['waiting', -8.6, -8.6], ['good', 0, 0]]);
+  const { lines, limit } = linesOf(history, 'limbs', '', 9000);
+  assert.deepEqual(lines.map(({ name, values }) => [name, values]), [['ForearmLeft, person 1', [null, 9.5, 12, 70.2, null, null]]]);
+  assert.equal(limit, 45);
 });

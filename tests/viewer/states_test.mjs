@@ -102,6 +102,11 @@ const STATES = {
   },
   world: { world: good, reach: [says('Live: one person'), key('w'), says('facing its front')] },
   view: { world: good, reach: [says('Live: one person'), key('v'), key('u'), says('drag to turn')] },
+  curves: {
+    world: (world) => { good(world); world.evaluation = { limbs: [{ bodyId: 1, limb: 'ForearmLeft', state: 'off', angleDegrees: '70.2', thresholdDegrees: '45.0', comment: 'left forearm off by 70 deg for 4 s' }] }; },
+    reach: [says('Live: one person'), says('left forearm off'), key('c'), (page) => page.getByRole('combobox', { name: 'of the last minute' }).selectOption('speed'), (page) => page.waitForFunction(() => /person 1 \d\.\d\d m\/s/.test(document.getElementById('curves-now').textContent)),
+      (page) => page.getByRole('combobox', { name: 'of the last minute' }).selectOption('limbs'), says('ForearmLeft, person 1 70.2 °'), (page) => page.waitForSelector('.curves canvas'), (page) => page.getByRole('img', { name: 'now off' }).waitFor()],
+  },
   work: { world: good, reach: [says('Live: one person'), key('p'), says('No posture scores')] },
   hall: {
     world: (world) => {

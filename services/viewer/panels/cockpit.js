@@ -4,17 +4,19 @@ import { Keys, Token } from './dialogs.js';
 import { Events } from './events.js';
 import { FirstRun } from './first_run.js';
 import { Judged } from './judged.js';
-import { Look } from './look.js';
 import { People, Tracker } from './people.js';
-import { Register, Verdict } from './register.js';
 import { Sensors } from './sensors.js';
 import { Top } from './top.js';
-import { World } from './world.js';
+import { Verdict } from './verdict.js';
 import { drawersOf } from '../drawers.js';
 
 // What is not needed at once is loaded when it is opened.
 const LATER = {
   sensors: () => import('./add.js').then(({ AddSensors }) => AddSensors),
+  register: () => import('./register.js').then(({ Register }) => Register),
+  world: () => import('./world.js').then(({ World }) => World),
+  view: () => import('./look.js').then(({ Look }) => Look),
+  curves: () => import('./curves.js').then(({ Curves }) => Curves),
   playback: () => import('./playback.js').then(({ LookAt }) => LookAt),
   record: () => import('./record.js').then(({ Record }) => Record),
   work: () => import('./work.js').then(({ Work }) => Work),
@@ -30,14 +32,16 @@ export function wantedDrawer(registration) {
 
 function Drawer({ open, known, act }) {
   if (open === 'sensors') return html`<${Later} key="sensors" load=${LATER.sensors} setup=${known.setup} sensors=${known.sensors} resource=${act.resource} />`;
-  if (open === 'register') return html`<${Register} registration=${known.registration} told=${known.told} resource=${act.resource} />`;
-  if (open === 'world') return html`<${World} resource=${act.resource} onShown=${act.onOriginShown} />`;
+  if (open === 'register') return html`<${Later} key="register" load=${LATER.register} registration=${known.registration} told=${known.told} resource=${act.resource} />`;
+  if (open === 'world') return html`<${Later} key="world" load=${LATER.world} resource=${act.resource} onShown=${act.onOriginShown} />`;
   if (open === 'record') return html`<${Later} key="record" load=${LATER.record} recordings=${known.recordings} problem=${known.recordingsProblem} resource=${act.resource} onLook=${act.playback.open} />`;
   if (open === 'playback') return html`<${Later} key="playback" load=${LATER.playback} recordings=${known.recordings} problem=${known.recordingsProblem} shown=${known.playback} failed=${known.playbackProblem} resource=${act.resource} act=${act.playback} />`;
   if (open === 'work' && known.playback) return html`<p>Things and scores are those of the room as it is now, and a recording is shown.</p>`;
   if (open === 'work') return html`<${Later} key="work" load=${LATER.work} frame=${known.shownFrame} resource=${act.resource} />`;
+  if (open === 'curves' && known.playback) return html`<p>Curves are those of the room as it is now, and a recording is shown.</p>`;
+  if (open === 'curves') return html`<${Later} key="curves" load=${LATER.curves} history=${known.history} judged=${Boolean(known.evaluation)} />`;
   if (open === 'hall') return html`<${Later} key="hall" load=${LATER.hall} resource=${act.resource} />`;
-  if (open === 'view') return html`<${Look} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
+  if (open === 'view') return html`<${Later} key="view" load=${LATER.view} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
   return null;
 }
 

@@ -6,8 +6,8 @@ export function Judged({ evaluation }) {
   if (!evaluation) return null;
   return html`<section aria-labelledby="judged-title">
     <h2 id="judged-title">Judged by worn sensors</h2>
-    <ul id="judged" role="status" aria-label="limbs and what the sensors on them say">
+    <div role="status"><ul id="judged" aria-label="limbs and what the sensors on them say">
       ${judgedLines(evaluation).map(({ tone, text }) => html`<li key=${text} class=${tone}>${text}</li>`)}
-    </ul>
+    </ul></div>
   </section>`;
 }

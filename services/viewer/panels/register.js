@@ -2,8 +2,7 @@
 import { Action, Lines, Said, degrees, html, millimetres, number, useEffect, useRef, useState } from './html.js';
 import { request } from '../request.js';
 import { showCoverage } from '../coverage.js';
-
-const VERDICT_CLASS = { Good: 'good', Provisional: 'warn', Refused: 'bad', None: 'warn' };
+import { VERDICT_CLASS } from './verdict.js';
 
 /// One row of the table of a proposal for each sensor.  Pure.
 export function rowsOf(proposal) {
@@ -72,10 +71,6 @@ function Changes({ registration, resource, say }) {
     <${Action} id="forget" label="Forget all places" confirm="Forget them: are you sure?" disabled=${!placed}
       run=${() => request(resource('registration'), null, 'DELETE')} say=${say} />
   </div>`;
-}
-
-export function Verdict({ registration }) {
-  return html`<span id="verdict" class="verdict ${VERDICT_CLASS[registration?.verdict] ?? ''}">${registration?.verdict ?? '–'}</span>`;
 }
 
 export function Register({ registration, told, resource }) {
