@@ -145,6 +145,7 @@ test('reasons, what is awaited, and what is not stored are shown without a regis
   const { page } = await openViewer(browser, server.url);
   await headline(page, /^It is not known yet where the sensors stand\.$/);
   await page.keyboard.press('r');
+  await page.waitForSelector('#reasons li'); // the drawer is loaded when it is opened first
   assert.deepEqual(await page.locator('#reasons li').allTextContents(), ['sensors s1 and s2 disagree', 'last walk: withdrawn']);
   assert.deepEqual(await page.locator('#awaits li').allTextContents(), ['nobody is in sight']);
   assert.equal(await text(page, '#next'), 'nobody is in sight');
@@ -258,8 +259,8 @@ test('frames that stand still are grey, then gone', async () => {
   const { page } = await openViewer(browser, server.url);
   await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, SOON);
   server.world.frozen = true;
-  await headline(page, /^The fused output has stood still for \d+ s\.$/);
-  assert.equal(await page.evaluate(() => document.body.dataset.fresh), 'stale');
+  await page.waitForFunction(() => /^The fused output has stood still for \d+ s\.$/.test(document.getElementById('headline').textContent)
+    && document.body.dataset.fresh === 'stale', null, SOON); // of the same moment
   await page.waitForFunction(() => window.chorusViewer.fusedJoints === 0, null, SOON);
   await page.close();
 });
