@@ -64,6 +64,8 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io
     return fail(ErrorCode::Unsupported, url, "is neither a sensor nor a fusion server");
   }
   Result<nlohmann::json> sensors = nlohmann::json();
+  if (options.site && !tracker)
+    return fail(ErrorCode::Unsupported, url, "is no fusion server, so it is in no hall");
   if (tracker && !(sensors = server->get("/sensors/"))) return pass(sensors);
   // A tracker of an earlier version has no inertial sources.
   const auto inertial = tracker ? server->get("/inertial/") : Result<nlohmann::json>();
@@ -127,8 +129,10 @@ void LiveRecording::poll_raw(const SensorId& sensor, const std::string& prefix) 
 }
 
 void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
-  poll_state({"/registration", "application/json"},
-             [this](const http::ClientResponse& answer) { take_registration(answer); });
+  // Where the sensors of one cell stand says nothing of a hall.
+  if (!options_.site)
+    poll_state({"/registration", "application/json"},
+               [this](const http::ClientResponse& answer) { take_registration(answer); });
   if (options_.raw) {
     poll_state({"/sensors/", "application/json", kClocksEvery},
                [this](const http::ClientResponse& answer) { take_clocks(answer); });
@@ -140,7 +144,7 @@ void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
     }
   }
   if (options_.fused) {
-    poll_frames("/frame", [this](const http::ClientResponse& answer) { take_fused(answer); });
+    poll_frames(fused_topic(), [this](const http::ClientResponse& answer) { take_fused(answer); });
   }
 }
 
@@ -208,9 +212,9 @@ void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,
 
 void LiveRecording::take_fused(const http::ClientResponse& answer) {
   auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
-  if (!frame) return counts_["/frame"].cannot_read(frame.error());
-  if (left_over("/frame", frame->captured, received(answer))) return;
-  counts_["/frame"].take(frame->sequence);
+  if (!frame) return counts_[fused_topic()].cannot_read(frame.error());
+  if (left_over(fused_topic(), frame->captured, received(answer))) return;
+  counts_[fused_topic()].take(frame->sequence);
   const Timestamp instant = frame->captured;
   recorder_->offer(record::FusedFrame{instant, received(answer),
                                       [frame = std::make_shared<const resource::FrameResource>(

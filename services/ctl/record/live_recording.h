@@ -20,6 +20,7 @@ struct LiveRecordingOptions {
   std::string file;
   bool raw = true;
   bool fused = true;
+  bool site = false;  ///< The fused frames are those of the hall, /site/frame, and nothing is raw.
 };
 
 /// Runs on the io_context's thread; only the file is written on the recorder's thread.  A frame
@@ -43,6 +44,8 @@ class LiveRecording {
   [[nodiscard]] std::chrono::steady_clock::duration silence() const;
 
  private:
+  [[nodiscard]] const char* fused_topic() const { return options_.site ? "/site/frame" : "/frame"; }
+
   LiveRecording(asio::io_context& io, LiveRecordingOptions options, tls::Trust trust)
       : io_(io), options_(std::move(options)), trust_(std::move(trust)) {}
 

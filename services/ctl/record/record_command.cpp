@@ -32,6 +32,7 @@ struct RecordArguments {
   double seconds = 0.0;
   bool raw = false;
   bool fused = false;
+  bool site = false;
   bool json = false;
 };
 
@@ -181,8 +182,9 @@ Result<int> run_record(const RecordArguments& arguments) {
   LiveRecordingOptions options;
   options.service = *url;
   options.file = arguments.out;
-  options.raw = arguments.raw || !arguments.fused;  // with neither option: both
-  options.fused = arguments.fused || !arguments.raw;
+  options.site = arguments.site;
+  options.raw = !arguments.site && (arguments.raw || !arguments.fused);  // with neither: both
+  options.fused = arguments.site || arguments.fused || !arguments.raw;
   asio::io_context io{1};
   const auto live = LiveRecording::start(io, options);
   if (!live) return pass(live);
@@ -204,6 +206,10 @@ Run add_record(CLI::App& options) {
       ->check(number_range(1.0, kLongest));
   options.add_flag("--raw", arguments->raw, "Only what the sensors say");
   options.add_flag("--fused", arguments->fused, "Only what the fusion server makes of it");
+  options
+      .add_flag("--site", arguments->site,
+                "Everybody in the hall, as /site/frame of a cell has them (docs/guide/hall.md)")
+      ->excludes("--raw");
   options.add_flag("--json", arguments->json, "Summary as JSON");
   return [arguments] { return run_record(*arguments); };
 }

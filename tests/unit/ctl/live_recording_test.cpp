@@ -48,6 +48,11 @@ class BrokenCell : public ::testing::Test {
     router->get("/sensors/{id}/frame", [this](const http::Request&, const http::PathParams& path) {
       return frame(path.at("id"));
     });
+    router->get("/site/frame", [this](const http::Request&, const http::PathParams&) {
+      const int n = std::min(++asked_, 5);
+      return Result<http::DocumentPtr>(
+          http::make_document("text/turtle", frame_of("site", n), {std::to_string(n)}));
+    });
     server_ = std::make_unique<http::Server>(http::ServerConfig{}, router);
     EXPECT_THAT(server_->start(), IsOk());
   }
@@ -99,6 +104,22 @@ TEST_F(BrokenCell, CountsWhatFailedAndWhatCouldNotBeReadFromTheBeginning) {
   EXPECT_THAT(s2.error, HasSubstr("who are you?"));
   EXPECT_EQ(s3.frames, 0u);
   EXPECT_NE(s3.error, "");
+}
+
+TEST_F(BrokenCell, IsRecordedAsAHallWithoutItsSensors) {
+  LiveRecordingOptions hall = options();
+  hall.site = hall.fused = true;
+  hall.raw = false;
+  asio::io_context io{1};
+  const auto live = LiveRecording::start(io, hall);
+  ASSERT_TRUE(live) << to_string(live.error());
+  const auto& counts = (*live)->counts();
+  ASSERT_EQ(counts.size(), 1u) << "nothing but the hall";
+  while (counts.at("/site/frame").frames < 4) io.run_one();
+  const auto report = (*live)->stop();
+  EXPECT_GE(report.frames, 4u);
+  const auto outcome = run_chorus({"record", url(), "--site", "--raw", "--out", "b.mcap"});
+  EXPECT_EQ(outcome.code, kExitUsage);
 }
 
 /// s1 is well; s2 died five minutes ago and is asked for what it saw last.
