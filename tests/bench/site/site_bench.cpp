@@ -1,5 +1,6 @@
-// People who walk from cell to cell.  The cells are simulated at the level of what they publish:
-// sixty-four simulated sensors are more than one machine can fuse.
+// People who walk from cell to cell.  But for three cases with real processes, the cells are
+// simulated at the level of what they publish: sixty-four simulated sensors are more than one
+// machine can fuse.
 #include <array>
 #include <iostream>
 
@@ -19,9 +20,20 @@ Result<void> always(Report& report) {
   return {};
 }
 
+template <const char* const* kName>
+Result<void> real(Report& report) {
+  return run_real_case(report, *kName);
+}
+constexpr const char* kLine = "line-4x4";
+constexpr const char* kLost = "lost";
+constexpr const char* kReaders = "readers";
+
 constexpr std::array kSiteCases{SiteCase{"hall-8x8", always<run_hall_case>},
                                 SiteCase{"hand-over", always<run_hand_over_case>},
-                                SiteCase{"site-places", run_places_case}};
+                                SiteCase{"site-places", run_places_case},
+                                SiteCase{kLine, real<&kLine>},
+                                SiteCase{kLost, real<&kLost>},
+                                SiteCase{kReaders, real<&kReaders>}};
 
 }  // namespace
 
@@ -35,7 +47,8 @@ Result<void> run_site(Report& report) {
     if (const Result<void> done = each.run(report); !done) return done;
   }
   report.note(
-      "Simulated at the level of what cells publish: a cell never confuses two of its own people, "
+      "But for line-4x4, lost and readers, simulated at the level of what cells publish: a cell "
+      "never confuses two of its own people, "
       "and loses nobody within its area.");
   return {};
 }

@@ -1,0 +1,169 @@
+"""What one delivery to one of many readers costs a server: our event stream, nats-server, mosquitto, and nginx with nchan where it is."""
+import math
+import pathlib
+import selectors
+import shutil
+import socket
+import struct
+import subprocess
+import tempfile
+import time
+
+from real_hall import SERVER, RealHall, cpu_seconds, get, wait_for
+from ports import free_port
+
+PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
+MOSQUITTO = shutil.which("mosquitto", path=PATH)
+HZ = 30
+BYTES = 9500  # one person by six sensors, as JSON
+MARK = b"@one@"
+
+
+def connected(port):
+    made = socket.create_connection(("127.0.0.1", port), 10)
+    made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return made
+
+
+class Crowd:
+    """Reads what comes on all its sockets and counts a mark in it."""
+
+    def __init__(self, mark):
+        self.mark, self.chooser, self.counts = mark, selectors.DefaultSelector(), {}
+
+    def add(self, made):
+        made.setblocking(False)
+        self.counts[made] = 0
+        self.chooser.register(made, selectors.EVENT_READ)
+
+    def read(self, seconds):
+        for key, _ in self.chooser.select(seconds):
+            piece = key.fileobj.recv(1 << 18)
+            self.counts[key.fileobj] += piece.count(self.mark)
+
+    def close(self):
+        for made in self.counts:
+            made.close()
+        self.chooser.close()
+
+    def run(self, seconds, publish=None):
+        """(deliveries, fewest of one reader) in this time; publish() is called at 30 Hz."""
+        self.counts = dict.fromkeys(self.counts, 0)
+        begin = due = time.monotonic()
+        while (now := time.monotonic()) < begin + seconds:
+            if publish and now >= due:
+                publish()
+                due = max(due + 1 / HZ, now - 1)
+            self.read(min(0.01, max(0.0, due - now)) if publish else 0.05)
+        return sum(self.counts.values()), min(self.counts.values())
+
+
+def cost(pid, crowd, seconds, publish=None, idle=0.0):
+    """(microseconds of the server a delivery, deliveries a second of the reader that got fewest)."""
+    crowd.run(2, publish)
+    begin = cpu_seconds(pid)
+    deliveries, fewest = crowd.run(seconds, publish)
+    return 1e6 * (cpu_seconds(pid) - begin - idle * seconds) / max(1, deliveries), fewest / seconds
+
+
+def our_streams(bin_folder, count, seconds):
+    with RealHall(bin_folder, 1, 3) as hall:
+        hall.start_cell(0, hall.start_sensors(0), in_site=False)
+        wait_for("somebody is seen", lambda: get(hall.urls["a"] + "frame")["bodies"])
+        pid, port = hall.fusion_pid("a"), int(hall.urls["a"].rsplit(":", 1)[1].rstrip("/"))
+        begin = cpu_seconds(pid)
+        time.sleep(seconds)
+        idle = (cpu_seconds(pid) - begin) / seconds  # it also fuses
+        crowd = Crowd(b"\ndata:")
+        for _ in range(count):
+            made = connected(port)
+            made.sendall(b"GET /frame HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: text/event-stream\r\n\r\n")
+            crowd.add(made)
+        try:
+            return cost(pid, crowd, seconds, idle=idle)
+        finally:
+            crowd.close()
+
+
+class Broker:
+    def __init__(self, *command):
+        self.child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.child.kill()
+        self.child.wait()
+
+
+def nats(count, seconds):
+    port, payload = free_port(), MARK + b"x" * (BYTES - len(MARK))
+    with Broker(SERVER, "-a", "127.0.0.1", "-p", str(port)) as broker:
+        wait_for("nats-server answers", lambda: connected(port).close() or True)
+        crowd, hello = Crowd(MARK), b'CONNECT {"verbose":false}\r\n'
+        for _ in range(count):
+            made = connected(port)
+            made.sendall(hello + b"SUB people 1\r\n")
+            crowd.add(made)
+        publisher = connected(port)
+        publisher.sendall(hello)
+        try:
+            return cost(broker.child.pid, crowd, seconds, lambda: publisher.sendall(b"PUB people %d\r\n%s\r\n" % (len(payload), payload)))
+        finally:
+            crowd.close()
+            publisher.close()
+
+
+def mqtt_text(text):
+    return struct.pack("!H", len(text)) + text
+
+
+def mqtt_packet(kind, body):
+    length, size = len(body), b""
+    while True:
+        length, digit = divmod(length, 128)
+        size += bytes([digit | (0x80 if length else 0)])
+        if not length:
+            return bytes([kind]) + size + body
+
+
+def mqtt_hello(name):
+    return mqtt_packet(0x10, mqtt_text(b"MQTT") + b"\x04\x02" + struct.pack("!H", 0) + mqtt_text(name))
+
+
+def mosquitto(count, seconds):
+    port = free_port()
+    with tempfile.TemporaryDirectory() as folder:
+        config = pathlib.Path(folder) / "mosquitto.conf"
+        config.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\n")
+        with Broker(MOSQUITTO, "-c", str(config)) as broker:
+            wait_for("mosquitto answers", lambda: connected(port).close() or True)
+            crowd = Crowd(MARK)
+            for i in range(count):
+                made = connected(port)
+                made.sendall(mqtt_hello(b"r%d" % i) + mqtt_packet(0x82, b"\x00\x01" + mqtt_text(b"people") + b"\x00"))
+                crowd.add(made)
+            publisher = connected(port)
+            publisher.sendall(mqtt_hello(b"p"))
+            message = mqtt_packet(0x30, mqtt_text(b"people") + MARK + b"x" * (BYTES - len(MARK)))
+            try:
+                return cost(broker.child.pid, crowd, seconds, lambda: publisher.sendall(message))
+            finally:
+                crowd.close()
+                publisher.close()
+
+
+def readers(bin_folder, quick):
+    count, seconds = (50, 5) if quick else (200, 15)
+    found = {"ours": our_streams(bin_folder, count, seconds)}
+    notes = [f"{count} readers at {HZ} Hz; the readers are one process beside the server; nchan was not measured (libnginx-mod-nchan)"]
+    for name, there, measure in (("nats", SERVER, nats), ("mosquitto", MOSQUITTO, mosquitto)):
+        if there:
+            found[name] = measure(count, seconds)
+        else:
+            notes.append(f"{name} is not installed")
+    best = min((cost_us for name, (cost_us, _) in found.items() if name != "ours"), default=math.nan)
+    rows = [[f"us_per_delivery_{name}", cost_us, "us"] for name, (cost_us, _) in found.items()]
+    rows += [[f"slowest_reader_{name}", hz, "Hz"] for name, (_, hz) in found.items()]
+    return rows + [["ours_over_best", found["ours"][0] / best, ""]], notes

@@ -1,0 +1,185 @@
+"""The cases of chorus-bench site that need real processes: line-4x4, lost, readers.  Usage: real_cases.py CASE BIN full|quick
+
+Prints one line of JSON: {"rows": [[metric, value, unit], ...], "notes": [...]}.
+"""
+import calendar
+import json
+import math
+import pathlib
+import selectors
+import sys
+import time
+
+from real_hall import LAP_S, NatsReader, RealHall, Stream, cpu_seconds, get, percentile, wait_for
+from reader_crowds import readers
+
+
+def listen(sources, seconds, handle):
+    """Gives handle(name, arrival, document) what the sources say."""
+    chooser = selectors.DefaultSelector()
+    for name, source in sources.items():
+        chooser.register(source, selectors.EVENT_READ, name)
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        for key, _ in chooser.select(min(left, 0.2)):
+            for arrival, document in key.fileobj.documents():
+                handle(key.data, arrival, document)
+
+
+class Ages:
+    """Of people read in a neighbour cell, and of the same people in the message of their own cell [ms]."""
+
+    def __init__(self):
+        self.site, self.nats, self.own, self.newest = [], [], [], {}
+
+    def take(self, name, arrival, document):
+        if name == "nats":
+            if document.get("people"):
+                self.nats.append((arrival - int(document["at"])) / 1e6)
+        elif name.startswith("frame-"):
+            self.own.append((arrival - int(document["capturedNanoseconds"])) / 1e6)
+        else:
+            for site_id, person in document.get("sitePeople", {}).items():
+                if person["cell"] == name or self.newest.get((name, site_id)) == person["captured"]:
+                    continue
+                self.newest[name, site_id] = person["captured"]
+                self.site.append(arrival / 1e6 - unix_ms(person["captured"]))
+
+
+def unix_ms(text):
+    """"2026-11-27T20:21:22.123456Z" in milliseconds since 1970."""
+    whole, _, fraction = text.rstrip("Z").partition(".")
+    return calendar.timegm(time.strptime(whole, "%Y-%m-%dT%H:%M:%S")) * 1e3 + float(f"0.{fraction or 0}") * 1e3
+
+
+class Steps:
+    """By how much the published body is elsewhere than it was going when another cell answers for it, and how much later it comes."""
+
+    def __init__(self):
+        self.last, self.moved_mm, self.late_ms, self.period = [], [], [], []
+
+    def take(self, frame):
+        if len(frame["bodies"]) != 1 or len(frame["sensors"]) != 1:
+            self.last = []
+            return
+        pelvis = frame["bodies"][0]["joints"]["SpineBase"]
+        now = (int(frame["capturedNanoseconds"]) / 1e9, [pelvis[key] for key in "xyz"], frame["sensors"][0])
+        if len(self.last) == 8:
+            first, before = self.last[0], self.last[-1]
+            gap = now[0] - before[0]
+            if now[2] != before[2]:
+                rate = [(b - a) / (before[0] - first[0]) for a, b in zip(first[1], before[1])]
+                self.moved_mm.append(1e3 * math.dist(now[1], [b + v * gap for b, v in zip(before[1], rate)]))
+                self.late_ms.append(1e3 * gap)
+            else:
+                self.period.append(1e3 * gap)
+        self.last = [*self.last[-7:], now]
+
+
+def own_ages_alone(bin_folder, sensors, seconds):
+    """Of one cell's own frame without a site [ms], and its share of a core."""
+    with RealHall(bin_folder, 1, sensors) as hall:
+        hall.start_cell(0, hall.start_sensors(0), in_site=False)
+        wait_for("the cell answers", lambda: get(hall.urls["a"] + "frame")["capturedNanoseconds"])
+        time.sleep(5)
+        ages, begin = Ages(), cpu_seconds(hall.fusion_pid("a"))
+        listen({"frame-a": Stream(hall.urls["a"], "frame")}, seconds, ages.take)
+        return ages.own, (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds
+
+
+def line(bin_folder, quick):
+    cells, sensors, seconds = (2, 3, 20) if quick else (4, 4, 60)
+    with RealHall(bin_folder, cells, sensors) as hall:
+        hall.start_all()
+        time.sleep(5)
+        ages, steps, nats = Ages(), Steps(), NatsReader(hall.server_port, "reader", hall.password("reader"), "chorus.hall.*.people")
+        sources = {name: Stream(hall.urls[name], "site/people/") for name in hall.names}
+        sources |= {"nats": nats, "frame-a": Stream(hall.urls["a"], "frame"), "site": Stream(hall.urls["a"], "site/frame")}
+        begin = cpu_seconds(hall.fusion_pid("a"))
+        listen(sources, seconds, lambda name, *said: steps.take(said[1]) if name == "site" else ages.take(name, *said))
+        cpu = (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds
+    alone, cpu_alone = own_ages_alone(bin_folder, sensors, seconds / 2)
+    rows = [["age_neighbour_p50", percentile(ages.site, 0.5), "ms"], ["age_neighbour_p99", percentile(ages.site, 0.99), "ms"],
+            ["age_nats_p50", percentile(ages.nats, 0.5), "ms"], ["age_nats_p99", percentile(ages.nats, 0.99), "ms"],
+            ["age_ratio_p50", percentile(ages.site, 0.5) / percentile(ages.nats, 0.5), ""],
+            ["age_ratio_p99", percentile(ages.site, 0.99) / percentile(ages.nats, 0.99), ""],
+            ["own_frame_p99", percentile(ages.own, 0.99), "ms"], ["own_frame_p99_without_site", percentile(alone, 0.99), "ms"],
+            ["handovers", len(steps.moved_mm), ""], ["handover_moved_max", max(steps.moved_mm, default=math.nan), "mm"],
+            ["handover_gap_max", max(steps.late_ms, default=math.nan), "ms"], ["frame_gap_p99", percentile(steps.period, 0.99), "ms"],
+            ["core_with_site_and_readers", 100 * cpu, "%"], ["core_without_site", 100 * cpu_alone, "%"]]
+    return rows, [f"{cells} cells of {sensors} simulated sensors round one person, all on this machine"]
+
+
+def watch_ids(hall, seconds):
+    """Ids that any cell shows, and body ids of each cell, over some time."""
+    ids, bodies, end = set(), {name: set() for name in hall.names}, time.monotonic() + seconds
+    while time.monotonic() < end:
+        for name in hall.names:
+            for site_id, person in hall.people(name).items():
+                ids.add(site_id)
+                if person["cell"] == name:
+                    bodies[name].add(person["cellBodyId"])
+        time.sleep(0.2)
+    return ids, bodies
+
+
+def whole_again(hall, ids):
+    """How long until every cell hears the others and all show one known id [s]."""
+    began = time.monotonic()
+
+    def whole():
+        shown = [set(hall.people(name)) for name in hall.names]
+        heard = all(hall.states(name).count("heard") == hall.cells - 1 for name in hall.names)
+        return heard and all(each and each <= ids for each in shown) and all(each == shown[0] for each in shown)
+
+    wait_for("ids are whole again", whole)
+    return time.monotonic() - began
+
+
+def lost(bin_folder, quick):
+    away, kills = (10, 1) if quick else (60, 5)
+    with RealHall(bin_folder, 2, 3) as hall:
+        ports = hall.start_all()
+        wait_for("one id in both", lambda: len(hall.people("a")) == 1 and hall.people("a").keys() == hall.people("b").keys())
+        ids, before = watch_ids(hall, LAP_S + 2)
+        first = {name: get(hall.urls[name] + "frame")["sequence"] for name in hall.names}
+        began = time.monotonic()
+        hall.stop_server()
+        during, bodies = watch_ids(hall, away)
+        rates = [(get(hall.urls[name] + "frame")["sequence"] - first[name]) / (time.monotonic() - began) for name in hall.names]
+        hall.start_server()
+        whole = whole_again(hall, ids | during)
+        time.sleep(LAP_S)
+        after, _ = watch_ids(hall, 2)
+        rows = [["broker_away", away, "s"], ["output_while_away", min(rates), "Hz"],
+                ["new_body_ids_while_away", sum(len(bodies[n] - before[n]) for n in hall.names), ""],
+                ["whole_again_after", whole, "s"], ["ids_after_a_lap", len(after), ""], ["ids_from_before", len(after & ids), ""]]
+        kept = [killed_cell(hall, ports) for _ in range(kills)]
+    return rows + [["cell_kills", kills, ""], ["readopted_with_their_id", 100.0 * sum(kept) / kills, "%"]], []
+
+
+def killed_cell(hall, ports):
+    """Whether somebody who is in cell b when it is killed has the same id when they come into a."""
+    wait_for("the person is b's", lambda: [p["cell"] for p in hall.people("a").values()] == ["b"])
+    ids = set(hall.people("a"))
+    hall.kill("fusion-b")
+    wait_for("a sees the person", lambda: [p["cell"] for p in hall.people("a").values()] == ["a"])
+    time.sleep(1)
+    kept = set(hall.people("a")) == ids
+    hall.start_cell(1, ports[1])
+    wait_for("b is back", lambda: hall.states("a").count("heard") == 1 and hall.states("b").count("heard") == 1)
+    time.sleep(LAP_S / 2)
+    return kept
+
+
+CASES = {"line-4x4": line, "lost": lost, "readers": readers}
+
+
+def main():
+    case, bin_folder, length = sys.argv[1:4]
+    rows, notes = CASES[case](pathlib.Path(bin_folder), length == "quick")
+    print(json.dumps({"rows": [[m, None if isinstance(v, float) and math.isnan(v) else v, u] for m, v, u in rows], "notes": notes}))
+
+
+if __name__ == "__main__":
+    main()
