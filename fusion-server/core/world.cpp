@@ -184,6 +184,25 @@ Registration in_world_of(const Anchors& anchors, Registration candidate) {
   return candidate;
 }
 
+std::optional<Eigen::Isometry3d> moved_world(const Registration& before,
+                                             const Registration& after) {
+  constexpr double kExact = 1e-6;  // [m], or of an entry of a rotation; files keep more digits
+  std::optional<Eigen::Isometry3d> all;
+  for (const auto& [sensor, place] : before.sensors) {
+    const auto now = after.sensors.find(sensor);
+    if (now == after.sensors.end()) continue;
+    const Eigen::Isometry3d own = now->second.world_from_sensor * place.world_from_sensor.inverse();
+    if (all && !own.isApprox(*all, kExact)) return std::nullopt;
+    if (!all) all = own;
+  }
+  if (!all || all->isApprox(Eigen::Isometry3d::Identity(), kExact)) return std::nullopt;
+  const Eigen::Vector3d up = all->linear() * Eigen::Vector3d::UnitY();
+  // Another tilt or height is another walk.
+  if (!up.isApprox(Eigen::Vector3d::UnitY(), kExact) || std::abs(all->translation().y()) > kExact)
+    return std::nullopt;
+  return all;
+}
+
 Result<Registration> with_origin(Registration registration, const Origin& origin) {
   const bool near = std::abs(origin.x) <= kMaxOrigin && std::abs(origin.z) <= kMaxOrigin;
   if (!near || !std::isfinite(origin.yaw))

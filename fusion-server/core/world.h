@@ -6,6 +6,8 @@
 // estimates the floor again.
 #pragma once
 
+#include <optional>
+
 #include "common/base/result.h"
 #include "fusion-server/flow/registration.h"
 
@@ -36,6 +38,12 @@ struct Origin {
 /// they are, so that errors of many registrations do not add up; a sensor that does not fit is
 /// anchored at its new place. Unchanged if they have no sensor in common.
 [[nodiscard]] Registration in_world_of(const Anchors& anchors, Registration candidate);
+
+/// How the world moved from one registration to the next if all that happened is that its origin
+/// was moved: every sensor that both have stands where it stood.  None: nothing moved, or something
+/// else.
+[[nodiscard]] std::optional<Eigen::Isometry3d> moved_world(const Registration& before,
+                                                           const Registration& after);
 
 inline constexpr double kMaxOrigin = 1000.0;  ///< Along x and along z [m].
 /// The registration in the world whose origin is `origin`, where all sensors are anchored where

@@ -142,6 +142,11 @@ bool Broker::publish(const std::string& subject, std::string_view bytes) {
   return done;
 }
 
+Result<std::string> Broker::request(const std::string& subject, std::string_view bytes) {
+  const auto session = state_->session();
+  return session ? session->request(subject, bytes) : not_connected();
+}
+
 Result<Entry> Broker::get(const std::string& bucket, const std::string& key) {
   const auto session = state_->session();
   return session ? session->get(bucket, key) : not_connected();

@@ -1,4 +1,4 @@
-// A connection to a NATS server that comes and goes: subjects and the key-value store.
+// A connection to a NATS server that comes and goes: subjects, requests, and the key-value store.
 //
 // Connecting never fails and never waits: a thread of its own connects, and connects anew after a
 // loss, at intervals that double and differ by chance, so that a hall of cells does not knock all
@@ -27,8 +27,8 @@ struct BrokerConfig {
   /// Between two attempts to connect: the first time and at most; each is made up to half as long
   /// again by chance.
   Duration least_wait = std::chrono::milliseconds(200);
-  Duration most_wait = std::chrono::seconds(5);
-  /// For how long the store is waited for.
+  Duration most_wait = std::chrono::seconds(1);
+  /// For how long a request or the store is waited for.
   Duration patience = std::chrono::milliseconds(500);
 
   bool operator==(const BrokerConfig&) const = default;
@@ -89,6 +89,8 @@ class Broker {
 
   /// False: it was dropped.
   bool publish(const std::string& subject, std::string_view bytes);
+  /// The first answer.  Unavailable: nobody is connected, or nobody answers in time.
+  [[nodiscard]] Result<std::string> request(const std::string& subject, std::string_view bytes);
 
   // The store.  Buckets are made when they are first used.  Unavailable: the server, or its
   // JetStream, does not answer.

@@ -1,10 +1,13 @@
 #include "fusion-server/nats/cell_link.h"
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <mutex>
 #include <thread>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "common/base/handover.h"
 #include "common/base/log.h"
@@ -23,6 +26,7 @@ namespace {
 
 /// At most so often are neighbours told: 30 Hz, with room for a tick that comes early.
 constexpr Duration kBetweenMessages = std::chrono::milliseconds(30);
+constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
 constexpr Duration kBetweenCards = std::chrono::seconds(1);
 constexpr std::chrono::milliseconds kLinkPatience{100};
 constexpr std::size_t kSnapshots = 2;
@@ -36,10 +40,22 @@ constexpr std::size_t kEventsKept = 50;
 /// The store forgets a record so long after its last change (site/claim.h).
 constexpr Duration kForgetPeople = std::chrono::hours(1);
 
+/// Of our own cell, from a registration on.
+struct Move {
+  site::CellPlace place;
+  std::uint64_t registration = 0;
+};
+
 struct HeardPeople {
   site::CellPeople people;
   Timestamp came;  ///< By our clock.
 };
+
+/// Of one cell.
+bool older(const CellCard& one, const CellCard& other) {
+  const auto version = [](const CellCard& card) { return card.place ? card.place->version : 0; };
+  return one.boot != other.boot ? one.boot < other.boot : version(one) < version(other);
+}
 
 void append_newest(std::vector<site::SiteEvent>& all, const std::vector<site::SiteEvent>& more) {
   all.insert(all.end(), more.begin(), more.end());
@@ -98,7 +114,7 @@ struct CellLink::State {
   Inbox<site::Claim> claims{kClaimsWaiting};
   Handover<site::ClaimResult> results{kResults};
   std::mutex moving;
-  std::optional<site::CellPlace> moved_to;  ///< Guarded by moving; of our own cell.
+  std::optional<Move> move;  ///< Guarded by moving.
   FrameDesk frames;
   std::atomic<std::uint64_t> refused = 0;
   RateReport refusals{"a message of another cell was refused"};
@@ -111,6 +127,7 @@ struct CellLink::State {
   std::map<site::CellId, CellCard> cards;
   std::vector<site::SiteEvent> events;
   Timestamp told{};
+  std::uint64_t registration = 0;  ///< Of the snapshot that is told next.
   SteadyTime card_told{};
 
   // In this order: the ledger uses the broker, and handlers of the broker use the rest.
@@ -183,6 +200,9 @@ void CellLink::State::hear_card(std::string_view bytes, std::optional<site::Cell
   news.give(*from, [this, heard = std::move(*read)](Timestamp now) {
     if (cards.size() == Inbox<CellCard>::kCells && !cards.contains(heard.cell))
       return refuse("card: there are too many cells");
+    // The store may tell an older card than the cell itself.
+    const auto known = cards.find(heard.cell);
+    if (known != cards.end() && older(heard, known->second)) return;
     if (heard.place) {
       if (auto ok = site.take(*heard.place, now); !ok) refuse("card: " + to_string(ok.error()));
     }
@@ -207,7 +227,6 @@ void CellLink::State::hear_claim(const Entry& entry) {
 }
 
 void CellLink::State::take_news() {
-  take_place();
   const Timestamp now = clock->now();
   for (const auto& each : news.take()) each(now);
   for (const site::Claim& each : claims.take()) site.take(each, now);
@@ -292,13 +311,15 @@ void CellLink::State::tell_card() {
 }
 
 void CellLink::State::take_place() {
-  std::optional<site::CellPlace> place;
+  std::optional<Move> taken;
   {
     const std::scoped_lock lock(moving);
-    place = std::exchange(moved_to, {});
+    if (move && move->registration <= registration) taken = std::exchange(move, {});
   }
-  if (!place) return;
-  if (auto ok = site.take(*place, clock->now()); !ok)
+  if (!taken) return;
+  site::CellPlace& place = taken->place;
+  if (own_place) place.version = std::max(place.version, own_place->version + 1);
+  if (auto ok = site.take(place, clock->now()); !ok)
     return refuse("our own place: " + to_string(ok.error()));
   own_place = std::move(place);
   broker->publish(subject(kRegistration), write_card(card()));
@@ -308,6 +329,9 @@ void CellLink::State::take_place() {
 void CellLink::State::run() {
   while (!snapshots.closed()) {
     const auto waiting = snapshots.take(kLinkPatience);
+    if (!waiting.empty()) registration = waiting.back()->registration_version;
+    take_place();
+    take_people();  // What cells told before they moved is of where they stood.
     take_news();
     if (!waiting.empty()) step(waiting.back());
     tell_card();
@@ -336,9 +360,25 @@ SinkCounters CellLink::counters() const {
   return counters;
 }
 
-void CellLink::place(const site::CellPlace& place) {
+Result<std::string> CellLink::ask_frame(const std::string& cell, const std::string& at) {
+  if (!site::CellId::parse(cell)) return fail(ErrorCode::NotFound, cell, "is no name of a cell");
+  const auto answer = state_->broker->request(
+      subject_of(state_->config.site, cell, kAskFrame),
+      at.empty() ? std::string() : nlohmann::json{{"at", at}}.dump(-1, ' ', true, kReplace));
+  if (!answer)
+    return fail(ErrorCode::Unavailable, "cell " + cell,
+                "does not answer: " + answer.error().message);
+  const auto read = nlohmann::json::parse(*answer, nullptr, false);
+  if (!read.is_object()) return fail(ErrorCode::Malformed, "cell " + cell, "answers no frame");
+  const auto why = read.find("error");
+  if (why == read.end()) return answer;
+  return fail(ErrorCode::NotFound, "cell " + cell,
+              why->is_string() ? why->get<std::string>() : std::string("has no such frame"));
+}
+
+void CellLink::place(const site::CellPlace& place, std::uint64_t registration) {
   const std::scoped_lock lock(state_->moving);
-  state_->moved_to = place;
+  state_->move = Move{place, registration};
 }
 
 }  // namespace chorus::nats

@@ -41,8 +41,14 @@ class CellLink final : public Sink {
   void publish(std::shared_ptr<const Snapshot> snapshot) override;
   [[nodiscard]] SinkCounters counters() const override;
 
-  /// Where our own cell stands from now on; the neighbours are told at once.  Newest wins.
-  void place(const site::CellPlace& place);
+  /// Where our own cell stands from the first snapshot on that was made with this registration or a
+  /// later one (zero: at once); the neighbours are told at once.  Newest wins.
+  void place(const site::CellPlace& place, std::uint64_t registration = 0);
+
+  /// The frame of a cell, of the instant `at` (nanoseconds since 1970, as text; empty: its newest
+  /// one), as its /frame has it in JSON.  Waits for the answer, half a second at most. Unavailable:
+  /// the cell does not answer.  NotFound: it has no frame of that instant.
+  [[nodiscard]] Result<std::string> ask_frame(const std::string& cell, const std::string& at);
 
  private:
   struct State;

@@ -161,6 +161,7 @@ void Ear::shut() {
 
 struct Session::State {
   std::shared_ptr<Ear> ear;
+  std::int64_t patience_ms = 0;
   // In this order, because each is destroyed before what it stands on.
   Connection connection;
   Stream stream;
@@ -263,10 +264,11 @@ Result<std::unique_ptr<Session>> Session::connect(const BrokerConfig& config,
   auto state = std::make_unique<State>();
   state->ear = std::move(ear);
   state->connection.reset(connected);
+  state->patience_ms = milliseconds_of(config.patience);
   state->watchers.resize(state->ear->listening.buckets.size());
   jsOptions stream;
   jsOptions_Init(&stream);
-  stream.Wait = milliseconds_of(config.patience);
+  stream.Wait = state->patience_ms;
   jsCtx* context = nullptr;
   s = natsConnection_JetStream(&context, connected, &stream);
   if (s != NATS_OK) return failure(s, config.servers.front());
@@ -313,6 +315,17 @@ Result<void> Session::look() {
 bool Session::publish(const std::string& subject, std::string_view bytes) {
   return natsConnection_Publish(state_->connection.get(), subject.c_str(), bytes.data(),
                                 static_cast<int>(bytes.size())) == NATS_OK;
+}
+
+Result<std::string> Session::request(const std::string& subject, std::string_view bytes) {
+  natsMsg* answer = nullptr;
+  const natsStatus s =
+      natsConnection_Request(&answer, state_->connection.get(), subject.c_str(), bytes.data(),
+                             static_cast<int>(bytes.size()), state_->patience_ms);
+  if (s != NATS_OK) return failure(s, subject);
+  const NatsMessage held(answer);
+  return std::string(natsMsg_GetData(answer),
+                     static_cast<std::size_t>(natsMsg_GetDataLength(answer)));
 }
 
 Result<Entry> Session::get(const std::string& bucket, const std::string& key) {

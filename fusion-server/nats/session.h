@@ -44,6 +44,7 @@ class Session {
   Result<void> look();
 
   bool publish(const std::string& subject, std::string_view bytes);
+  [[nodiscard]] Result<std::string> request(const std::string& subject, std::string_view bytes);
   [[nodiscard]] Result<Entry> get(const std::string& bucket, const std::string& key);
   Result<std::uint64_t> put(const std::string& bucket, const Entry& entry);
   Result<std::uint64_t> update(const std::string& bucket, const Entry& entry);

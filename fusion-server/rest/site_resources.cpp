@@ -38,6 +38,11 @@ Node cell_node(const site::KnownCell& cell, const site::CellId& own) {
   out.emplace_back("refused", static_cast<std::int64_t>(cell.state.refused));
   if (cell.state.last != Timestamp{}) out.emplace_back("lastHeard", cell.state.last);
   if (!cell.url.empty()) out.emplace_back("address", cell.url);
+  if (cell.state.learned > 0.0) {
+    out.emplace_back("learnedFor", Decimal{cell.state.learned, 1});
+    out.emplace_back("offX", Decimal{cell.state.off.x(), 3});
+    out.emplace_back("offZ", Decimal{cell.state.off.y(), 3});
+  }
   if (!cell.software.empty()) out.emplace_back("software", cell.software);
   if (!cell.place) return node;
   add_vector(node, {"x", "y", "z"}, cell.place->site_from_cell.translation());

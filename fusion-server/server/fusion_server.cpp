@@ -17,7 +17,6 @@
 #include "common/service/http_config.h"
 #include "common/service/recording_views.h"
 #include "fusion-server/foxglove/viewer_dialogue.h"
-#include "fusion-server/nats/cell_link.h"
 #include "fusion-server/outputs/output_bank.h"
 #include "fusion-server/rest/evaluation_relay.h"
 #include "fusion-server/rest/frame_sink.h"
@@ -28,6 +27,7 @@
 #include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/rest/site_resources.h"
 #include "fusion-server/rest/tracker_description.h"
+#include "fusion-server/server/cell_frame_desk.h"
 #include "fusion-server/server/fusion_concerns.h"
 #include "fusion-server/server/fusion_start.h"
 #include "fusion-server/server/health.h"
@@ -36,6 +36,7 @@
 #include "fusion-server/server/picture_desk.h"
 #include "fusion-server/server/recording_tap.h"
 #include "fusion-server/server/sensor_desk.h"
+#include "fusion-server/server/site_member.h"
 #include "fusion-server/server/start_report.h"
 #include "fusion-server/server/state_folder.h"
 
@@ -56,9 +57,9 @@ struct FusionServer::Impl {
   void sensors_changed();
   void follow_inertial(const std::vector<client::FollowedService>& sources);
   void take_status(const Status& next);
-  void meet_the_site();
+  void meet_the_site(const std::string& folder);
   [[nodiscard]] std::vector<OutputStatus> output_states() const {
-    return with_site(outputs->states(), link.get());
+    return with_site(outputs->states(), member ? &member->link() : nullptr);
   }
   LookoutOptions lookout_options();
   service::RecordingViewsOptions recording_views_options();
@@ -100,22 +101,21 @@ struct FusionServer::Impl {
   std::optional<PictureDesk> pictures;
   foxglove::Desk desk;
   std::unique_ptr<http::Server> http;
-  std::unique_ptr<nats::CellLink> link;  ///< To the other cells; null: there are none.
+  std::optional<CellFrameDesk> cell_frames;  ///< Only in a site.
+  std::unique_ptr<SiteMember> member;        ///< Null: there is no site.
   std::unique_ptr<PipelineLoop> loop;
   std::unique_ptr<client::Followers> followers;
 };
 
 /// Other cells are met last and left first: nothing here waits for them.
-void FusionServer::Impl::meet_the_site() {
-  const SiteSettings& settings = config.at_start.site;
-  if (settings.link.site.empty()) return;
-  link = std::make_unique<nats::CellLink>(
-      settings.link, clock,
-      [this, feed = settings.outputs_show](std::shared_ptr<const site::SiteView> view) {
-        if (feed) outputs->publish(view->shown);
-        site->show(std::move(view));
-      });
-  if (const auto own = own_place(settings, config.live.site_places)) link->place(*own);
+void FusionServer::Impl::meet_the_site(const std::string& folder) {
+  SiteMemberOptions options{config.at_start.site, store_trouble.empty() ? folder : "", clock, {}};
+  if (options.settings.link.site.empty()) return;
+  options.on_view = [this, feed = options.settings.outputs_show](auto view) {
+    if (feed) outputs->publish(view->shown);
+    site->show(std::move(view));
+  };
+  member = std::make_unique<SiteMember>(std::move(options), config.live.site_places);
 }
 
 LookoutOptions FusionServer::Impl::lookout_options() {
@@ -194,7 +194,13 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   inertial->add_routes(*router);
   props->add_routes(*router);
   if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run, *router);
-  if (!config.at_start.site.link.site.empty()) site.emplace(serving).add_routes(*router);
+  if (!config.at_start.site.link.site.empty()) {
+    site.emplace(serving).add_routes(*router);
+    auto ask = [this](const auto& cell, const auto& at) {
+      return member->link().ask_frame(cell, at);
+    };
+    cell_frames.emplace(serving.run, std::move(ask)).add_routes(*router);
+  }
   registration->add_routes(*router);
   const auto self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty(),
                                   evaluation.has_value());
@@ -217,6 +223,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
 }
 
 void FusionServer::Impl::take_status(const Status& next) {
+  if (member) member->follow(next.registration);
   status_at = std::chrono::steady_clock::now();
   sensors->publish(next.sensors);
   if (followers)
@@ -245,8 +252,8 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   options.sinks.push_back(&*frame_sink);
   options.sinks.push_back(&*props);
   options.sinks.push_back(&*tap);
-  if (link) options.sinks.push_back(link.get());
-  if (!link || !config.at_start.site.outputs_show) options.sinks.push_back(&*outputs);
+  if (member) options.sinks.push_back(&member->link());
+  if (!member || !config.at_start.site.outputs_show) options.sinks.push_back(&*outputs);
   options.sinks.push_back(lookout->people());
   options.sinks.push_back(&desk);
   options.on_status = [this](const Status& next) { take_status(next); };
@@ -338,7 +345,7 @@ Result<void> FusionServer::start() {
   http.clock = s.clock;
   http.policy = resource::answer_policy();
   s.http = std::make_unique<http::Server>(http, s.make_router());
-  s.meet_the_site();
+  s.meet_the_site(folder);
   s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*initial)));
   s.followers = std::make_unique<client::Followers>(
       client::FollowOptions{.timings = s.config.at_start.poll, .clock = s.clock});
@@ -354,13 +361,11 @@ std::uint16_t FusionServer::port() const { return impl_->http ? impl_->http->por
 
 void FusionServer::take(const LiveSettings& live) {
   Impl& s = *impl_;
-  const bool moved = live.site_places != s.config.live.site_places;
   {
     const std::scoped_lock lock(s.mutex);
     s.config.live = live;
   }
-  const auto own = own_place(s.config.at_start.site, live.site_places);
-  if (moved && s.link && own) s.link->place(*own);
+  if (s.member) s.member->places(live.site_places);
   if (const auto opened = s.outputs->apply(live.outputs); !opened)
     log::error("an output could not be opened", {{"reason", to_string(opened.error())}});
   s.lookout->remember_for(live.pipeline.association.remember);
@@ -381,7 +386,8 @@ void FusionServer::stop() {
   if (s.http) s.http->stop();
   if (s.followers) s.followers->stop();
   s.loop.reset();
-  s.link.reset();
+  s.cell_frames.reset();
+  s.member.reset();
   s.outputs.reset();
 }
 

@@ -59,7 +59,8 @@ void read_site(ConfigReader reader, SiteSettings& out, std::string& places) {
   link.broker.name = link.site + "." + cell;
 }
 
-std::optional<site::CellPlace> own_place(const SiteSettings& settings, const std::string& places) {
+std::optional<site::CellPlace> place_in_file(const SiteSettings& settings,
+                                             const std::string& places) {
   const auto all = nats::read_places(places);
   if (!all) return std::nullopt;
   const auto own = std::ranges::find(*all, settings.link.cell, &site::CellPlace::cell);

@@ -22,8 +22,8 @@ struct SiteSettings {
 void read_site(ConfigReader reader, SiteSettings& out, std::string& places);
 
 /// Where our own cell stands according to that text; none: it does not say.
-[[nodiscard]] std::optional<site::CellPlace> own_place(const SiteSettings& settings,
-                                                       const std::string& places);
+[[nodiscard]] std::optional<site::CellPlace> place_in_file(const SiteSettings& settings,
+                                                           const std::string& places);
 
 /// The outputs, and the connection to the other cells if there are any (null: none), which counts
 /// as one of them.

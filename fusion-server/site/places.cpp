@@ -176,4 +176,14 @@ Result<SitePlaces> places_from_walks(const std::vector<CellWalk>& walks,
   return fail(ErrorCode::NotFound, "site", "two cells at least are wanted");
 }
 
+CellPlace after_move(CellPlace place, const Eigen::Isometry3d& new_from_old) {
+  const Eigen::Isometry3d site_from_new = place.site_from_cell * new_from_old.inverse();
+  const registration::Matrix6 moved =
+      registration::at_point(site_from_new.translation() - place.site_from_cell.translation());
+  place.covariance = (moved * place.covariance * moved.transpose()).eval();
+  place.site_from_cell = site_from_new;
+  ++place.version;
+  return place;
+}
+
 }  // namespace chorus::site

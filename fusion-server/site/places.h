@@ -70,4 +70,7 @@ struct PlacesConfig {
 [[nodiscard]] Result<SitePlaces> places_from_marks(const std::vector<CellMark>& marks,
                                                    const PlacesConfig& config = {});
 
+/// Where the cell stands after its own world was moved: nobody stands elsewhere in the site by it.
+[[nodiscard]] CellPlace after_move(CellPlace place, const Eigen::Isometry3d& new_from_old);
+
 }  // namespace chorus::site

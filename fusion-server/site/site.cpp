@@ -56,6 +56,10 @@ struct Site::State {
     return named;
   }
   void place(HeardCell& cell);
+  /// Their samples are in a world that may have moved.
+  static void forget_trails(HeardCell& cell) {
+    for (auto& [id, body] : cell.bodies) body.trail = {};
+  }
   void watch_cells(Timestamp now);
   void mistrust(HeardCell& cell, double elapsed, Timestamp now);
   void match(Timestamp now);
@@ -71,7 +75,7 @@ void Site::State::place(HeardCell& cell) {
   if (cell.to_ours != by) {  // trails are by our clock
     cell.to_ours = by;
     cell.at = {};
-    for (auto& [id, body] : cell.bodies) body.trail = {};
+    forget_trails(cell);
   }
   cell.error = stated_error(*ours.place, *cell.place, config);
   cell.learned = 0.0;
@@ -205,6 +209,7 @@ Result<void> Site::take(const CellPlace& place, Timestamp) {
   if (place.cell == s.ours.id) {
     if (s.ours.place && same_place(*s.ours.place, place)) return {};
     s.ours.place = place;
+    s.forget_trails(s.ours);
     for (auto& [id, cell] : s.others) s.place(cell);
     return {};
   }
@@ -214,6 +219,7 @@ Result<void> Site::take(const CellPlace& place, Timestamp) {
   HeardCell& cell = s.cell(place.cell);
   if (cell.place && same_place(*cell.place, place)) return {};
   cell.place = place;
+  s.forget_trails(cell);
   s.place(cell);
   return {};
 }

@@ -6,6 +6,7 @@
 #include "common/geometry/rotation.h"
 #include "common/synthetic/coloured_noise.h"
 #include "common/synthetic/draw.h"
+#include "fusion-server/site/places.h"
 
 namespace chorus::bench {
 namespace {
@@ -110,6 +111,15 @@ void Hall::restart(std::size_t cell) {
   sites_[cell] = site::Site(cells_[cell].id, boots_[cell]);
   for (const HallCell& each : cells_) (void)sites_[cell].take(each.stated, clock(cell));
   for (const auto& [id, claim] : store_) sites_[cell].take(claim, clock(cell));
+}
+
+void Hall::move_world(std::size_t cell, const Eigen::Isometry3d& new_from_old) {
+  cells_[cell].site_from_cell = cells_[cell].site_from_cell * new_from_old.inverse();
+  cells_[cell].stated = site::after_move(cells_[cell].stated, new_from_old);
+  for (const Letter& letter : letters_)  // told in the world before
+    (void)sites_[letter.to].take(letter.people, clock(letter.to));
+  letters_.clear();
+  for (site::Site& each : sites_) (void)each.take(cells_[cell].stated, clock(cell));
 }
 
 bool Hall::sees(std::size_t cell, const Eigen::Vector2d& place) const {

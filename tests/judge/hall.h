@@ -87,6 +87,8 @@ class Hall {
   [[nodiscard]] bool sees(std::size_t cell, const Eigen::Vector2d& place) const;
   /// The cell forgets everything and starts again.
   void restart(std::size_t cell);
+  /// The cell moves the origin of its world; every cell that hears it learns so at once.
+  void move_world(std::size_t cell, const Eigen::Isometry3d& new_from_old);
   [[nodiscard]] std::size_t claims() const { return store_.size(); }
   [[nodiscard]] std::size_t contradictory_claims() const { return refused_; }
 

@@ -10,7 +10,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "deploy"), str(ROOT / "tests/system/fusion")]
 import demo_hall  # noqa: E402
-from rig import BIN, Process, Rig, free_port, get_json, wait_for  # noqa: E402
+from rig import BIN, Process, Rig, free_port, get_json, send, wait_for  # noqa: E402
 
 SERVER = shutil.which("nats-server", path="/usr/sbin:/usr/bin:/usr/local/bin:/sbin")
 
@@ -103,7 +103,10 @@ class Stranger:
         self.socket.sendall(data)
 
     def line(self):
-        return self.file.readline().decode().strip()
+        """The next one that is for us: the server asks now and then whether we are there."""
+        while (line := self.file.readline().decode().strip()) == "PING":
+            self.send(b"PONG\r\n")
+        return line
 
     def publish(self, subject, data):
         """What the server says of it: PONG, or an error."""

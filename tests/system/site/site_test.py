@@ -1,11 +1,12 @@
 """Two cells that meet on a real nats-server: without it, with it, with strangers and liars on it, and after it was killed."""
 import json
+import math
 import shutil
 import subprocess
 import time
 import unittest
 
-from site_rig import ROOT, Hall, Stranger, demo_hall, get_json, wait_for
+from site_rig import ROOT, Hall, Stranger, demo_hall, get_json, send, wait_for
 
 NODE = shutil.which("node")
 ENOUGH_HZ = 15  # of 30; a busy machine
@@ -26,12 +27,16 @@ class Site(Hall):
         self.two_of_one_name(a, sensors["b"])
         self.a_killed_server(a, b, ids)
 
+    def goes_on(self, cell):
+        """In some second, because tests beside this one may take the machine for a while."""
+        wait_for("frames come as before", lambda: self.frames_in(cell, 1) > ENOUGH_HZ)
+
     def alone(self, a, b):
         """There is no server at all."""
         for cell in (a, b):
             wait_for("the cell answers", lambda cell=cell: self.cells(cell))
             self.assertFalse(self.cells(cell)["connected"])
-            self.assertGreater(self.frames_in(cell, 1), ENOUGH_HZ)
+            self.goes_on(cell)
         wait_for("one of them names whom it sees", lambda: self.people(a) or self.people(b))
 
     def meet(self, a, b):
@@ -51,7 +56,25 @@ class Site(Hall):
         self.assertEqual(len(ids), 1, "a whole lap through both cells, and one id")
         self.assertEqual(owners, {"a", "b"}, "each cell has answered for the person")
         self.frames_agree(a)
+        self.a_moved_origin(a, b, ids)
         return ids
+
+    def a_moved_origin(self, a, b, ids):
+        """Cell b's world is moved and turned; in the hall nobody moves by it."""
+        before = self.cells(a)["siteCells"]["b"]
+        body = json.dumps({"x": 2.0, "z": 1.0, "yawDegrees": 90}).encode()
+        status, _, answer = send("POST", b.url + "registration/origin", body, {"Content-Type": "application/json"})
+        self.assertLess(status, 300, answer)
+        wait_for("a knows where b stands now", lambda: abs(self.cells(a)["siteCells"]["b"]["x"] - before["x"]) > 0.5)
+        ended = time.monotonic() + 8  # half a lap
+        while time.monotonic() < ended:
+            for cell in (a, b):
+                people = self.people(cell)
+                self.assertLessEqual(people.keys(), ids)
+                for person in people.values():
+                    self.assertLess(abs(math.hypot(person["x"], person["z"]) - demo_hall.SCENE["reach_m"]), 0.3, "on the circle as before")
+            time.sleep(0.1)
+        wait_for("a gets b's frame", lambda: get_json(a.url + "site/cells/b/frame")["bodies"] is not None)
 
     def one_id(self, a, b):
         here, there = self.people(a), self.people(b)
@@ -144,7 +167,7 @@ class Site(Hall):
             self.assertEqual(as_b.publish("chorus.hall.b.people", data), "PONG")
             self.assertEqual(as_b.publish("chorus.hall.b.status", data), "PONG")
         wait_for("they are refused and counted", lambda: self.cells(a)["refused"] >= refused + 10)
-        self.assertGreater(self.frames_in(a, 1), ENOUGH_HZ)
+        self.goes_on(a)
         self.assertEqual(self.people(a).keys() | self.people(b).keys(), before | self.people(b).keys())
         wait_for("b itself is heard all the same", lambda: self.states(a).get("b") == "heard")
 
@@ -166,7 +189,7 @@ class Site(Hall):
         self.stop_server()
         for cell in (a, b):
             wait_for("it notices", lambda cell=cell: not self.cells(cell)["connected"])
-            self.assertGreater(self.frames_in(cell, 1), ENOUGH_HZ, "frames come as before")
+            self.goes_on(cell)
         self.start_server()
         for cell, other in ((a, "b"), (b, "a")):
             wait_for("they hear one another again", lambda cell=cell, other=other: self.states(cell).get(other) == "heard")

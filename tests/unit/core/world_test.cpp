@@ -182,5 +182,20 @@ TEST(Origin, NeedsAPlaceAndSaneNumbers) {
     EXPECT_EQ(with_origin(world_ring({1, 2}), wrong).error().code, ErrorCode::InvalidArgument);
 }
 
+TEST(World, ThatMovedAsAWholeIsToldFromOneThatDidNot) {
+  const Registration before = world_ring({1, 2, 3});
+  const auto moved = moved_world(before, world_ring({1, 2, 4}, kElsewhere));
+  ASSERT_TRUE(moved);
+  EXPECT_TRUE(moved->isApprox(kElsewhere, 1e-9));
+  EXPECT_FALSE(moved_world(before, before)) << "nothing moved";
+  EXPECT_FALSE(moved_world(before, world_ring({4}, kElsewhere))) << "nothing in common";
+  Registration pushed = world_ring({1, 2, 3}, kElsewhere);
+  pushed.sensors[named_sensor(2)].world_from_sensor.translation().x() += 0.01;
+  EXPECT_FALSE(moved_world(before, pushed));
+  Eigen::Isometry3d tilted = kElsewhere;
+  tilted.rotate(Eigen::AngleAxisd(deg(1.0), Eigen::Vector3d::UnitX()));
+  EXPECT_FALSE(moved_world(before, world_ring({1, 2, 3}, tilted)));
+}
+
 }  // namespace
 }  // namespace chorus::core

@@ -32,6 +32,8 @@ site::SiteView view_of_one() {
   other.state.cell = person.cell;
   other.state.mistrusted = true;
   other.state.last = from_unix_ns(1'795'246'200'000'000'000);
+  other.state.learned = 12.34;
+  other.state.off = {0.0512, -0.2};
   view.cells = {own, other};
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->sequence = 5;
@@ -69,6 +71,10 @@ TEST(SiteCells, SayHowTheyAreAndWhetherWeAreConnected) {
   EXPECT_EQ(all.at("siteCells").at("a").at("qw"), 1.0);
   EXPECT_EQ(all.at("siteCells").at("b").at("state"), "mistrusted");
   EXPECT_FALSE(all.at("siteCells").at("b").contains("x"));
+  EXPECT_EQ(all.at("siteCells").at("b").at("learnedFor"), 12.3);
+  EXPECT_EQ(all.at("siteCells").at("b").at("offX"), 0.051);
+  EXPECT_EQ(all.at("siteCells").at("b").at("offZ"), -0.2);
+  EXPECT_FALSE(all.at("siteCells").at("a").contains("offX"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // People who walk from one cell into the next keep their id.
 #include <gtest/gtest.h>
 
+#include "common/base/units.h"
 #include "tests/judge/hall_scenes.h"
 
 namespace chorus::bench {
@@ -156,6 +157,36 @@ TEST(HandOver, LearnsByHowMuchANeighbourStandsElsewhere) {
   EXPECT_NEAR(known[1].off.x(), off.x(), 0.06);
   EXPECT_NEAR(known[1].off.y(), off.z(), 0.06);
   EXPECT_GT(known[1].learned, 5.0);
+}
+
+TEST(HandOver, GoesOnWhenACellMovesItsOrigin) {
+  const auto round = [](double phase) {
+    return HallPerson{[=](double t) -> std::optional<Eigen::Vector2d> {
+      return Eigen::Vector2d(2.6 * std::sin(0.4 * t + phase), 1.2 * std::cos(0.5 * t + phase));
+    }};
+  };
+  Hall hall(two_cells(2.5, 3), {of_own_build(round(0.0), 3, 0), of_own_build(round(2.0), 3, 1)}, 3);
+  while (hall.time() < 12.0) hall.step();
+  std::map<std::size_t, SiteId> before;
+  for (const HallWord& word : hall.words())
+    if (word.id) before[word.person] = *word.id;
+  ASSERT_EQ(before.size(), 2U);
+  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+  moved.linear() = Eigen::AngleAxisd(deg(100), Eigen::Vector3d::UnitY()).toRotationMatrix();
+  moved.translation() = Eigen::Vector3d(-7, 0, 3);
+  hall.move_world(1, moved);
+  while (hall.time() < 40.0) {
+    hall.step();
+    for (const HallWord& word : hall.words()) {
+      if (!word.id) continue;
+      ASSERT_EQ(*word.id, before[word.person]) << hall.time();
+    }
+  }
+  for (const std::size_t cell : {0U, 1U}) {
+    EXPECT_EQ(hall.site(cell).everybody(hall.clock(cell)).size(), 2U);
+    for (const site::SiteEvent& event : hall.events(cell))
+      EXPECT_NE(event.kind, site::SiteEventKind::CellMistrusted);
+  }
 }
 
 }  // namespace
