@@ -39,9 +39,9 @@ class RecordingView {
 
   /// {"from": 3, "to": 5, "messages": [{"seconds": 3.01, "topic": "/frame", "message": {...}}]}:
   /// frames and registrations of both instants and what lies between; instants before the beginning
-  /// or after the end mean these.  Where the stretch was cut at kMostStretch, "to" is one nanosecond
-  /// before the first message that was left out.  InvalidArgument for a stretch that ends before it
-  /// begins, is longer than kLongestStretch, or is not finite.
+  /// or after the end mean these.  Where the stretch was cut at kMostStretch, "to" is one
+  /// nanosecond before the first message that was left out.  InvalidArgument for a stretch that
+  /// ends before it begins, is longer than kLongestStretch, or is not finite.
   [[nodiscard]] Result<std::string> stretch(const Stretch& asked);
 
   /// The last fused frame (or the only sensor's frame) at or before this instant; NotFound if there
