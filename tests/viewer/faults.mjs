@@ -154,7 +154,8 @@ const FAULTS = {
   'a person who presses everything twice': { plant: (world) => { world.fault = async (request) => { if (request.method === 'POST') await later(500); return false; }; },
     steps: [opened('e'), (page) => page.getByRole('button', { name: 'Record', exact: true }).dblclick()], says: LIVE, green: true,
     check: async (page, world) => { await page.waitForFunction(() => !document.getElementById('record').disabled); assert.deepEqual(world.posted, ['/recordings/ 200'], 'once'); } },
-  'a drawer that cannot be loaded': { plant: (world, server, page) => page.route('**/panels/record.js', (route) => route.abort()), steps: [opened('e')], says: LIVE, green: true, check: (page) => page.getByText('This part of the page cannot be loaded').waitFor() },
+  'a drawer that cannot be loaded': { plant: (world, server, page) => page.route('**/panels/record.js', (route) => route.abort()), steps: [opened('e')], says: LIVE, green: true, check: (page) => page.getByText('This part of the page cannot be loaded').waitFor(),
+    heal: (world, page) => page.unroute('**/panels/record.js'), healed: async (page) => { await page.keyboard.press('e'); await page.waitForSelector('#record'); } },
   'a picture that is none': { plant: (world) => { world.fault = (request, response) => { if (!pathOf(request).endsWith('/image')) return false; response.writeHead(200, { 'Content-Type': 'image/jpeg' }).end('no picture'); return true; }; },
     steps: [pressed('picture of s1')], says: LIVE, green: true, check: (page) => page.getByText('what the server sends is no picture').waitFor() },
   'a recording whose outline is broken': { plant: (world) => { recorded(world); world.fault = (request, response) => { if (!/outline$/.test(pathOf(request))) return false; response.writeHead(200).end('{"seconds":'); return true; }; },
@@ -195,7 +196,7 @@ async function shownToBeWell(page, complaints) {
   assert.equal(await page.locator('img[src=x]').count(), 0, 'markup is text');
   await page.keyboard.press('Escape');
   await page.keyboard.press('v');
-  await page.waitForSelector('#show-raw'); // keys work
+  await page.waitForSelector('#tab-view[aria-selected=true]'); // keys work
 }
 
 describe('the page names each fault', { concurrency: 2 }, () => {

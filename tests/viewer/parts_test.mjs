@@ -6,8 +6,10 @@ import { History, linesOf, stripOf } from '../../services/viewer/curves.js';
 import { drawerOfKey, drawersOf } from '../../services/viewer/drawers.js';
 import { Playback, latest, nextStretch, placesAt, timeText } from '../../services/viewer/playback.js';
 import { Player } from '../../services/viewer/player.js';
-import { fetched } from '../../services/viewer/request.js';
+import { Resource, ServerClock } from '../../services/viewer/poll.js';
+import { fetched, requested } from '../../services/viewer/request.js';
 import { boxOf, cellsOf, connectionOf, pageOf, peopleOf, trailsAfter, wordsOf } from '../../services/viewer/hall.js';
+import { frameOf, freshness, registrationOf, sensorsOf, stateOf } from '../../services/viewer/state.js';
 import { addressOf, freeId, stepOf, wishOf } from '../../services/viewer/setup.js';
 
 const at = (seconds, topic = '/frame') => ({ seconds, topic, message: { seconds } });
@@ -261,4 +263,71 @@ test('how limbs were judged in the last minute', () => {
   const { lines, limit } = linesOf(history, 'limbs', '', 9000);
   assert.deepEqual(lines.map(({ name, values }) => [name, values]), [['ForearmLeft, person 1', [null, 9.5, 12, 70.2, null, null]]]);
   assert.equal(limit, 45);
+});
+
+test('what cannot be read is asked for again, and its reason is kept until something can be', async () => {
+  const asked = [];
+  const replies = [];
+  mock.method(globalThis, 'fetch', async (url, { headers }) => { asked.push(headers['If-None-Match'] ?? ''); return replies.shift(); });
+  const reply = (status, text) => replies.push(new Response(status === 304 ? null : text, { status, headers: { ETag: '"7"' } }));
+  const resource = new Resource('http://x/registration', 0, registrationOf);
+  const problem = async () => { await resource.next().catch(() => {}); return [resource.problem?.message ?? '', resource.failures]; };
+  reply(200, '{"verdict":');
+  assert.deepEqual(await problem(), ['its answer cannot be read', 1]);
+  reply(200, '{"reasons":"none"}');
+  assert.deepEqual(await problem(), ['what it says cannot be read', 2]);
+  reply(503, '{"detail":"too many"}');
+  assert.deepEqual(await problem(), ['it answered 503: too many', 3]);
+  reply(401, 'null');
+  assert.deepEqual(await problem(), ['it asks for a token', 4]);
+  assert.equal(resource.problem.status, 401);
+  reply(200, '{"verdict":"Good"}');
+  assert.deepEqual(await resource.next(), { verdict: 'Good' });
+  reply(304, '');
+  assert.equal(await resource.next(), null);
+  assert.deepEqual([resource.problem, resource.failures], [null, 0]);
+  assert.deepEqual(asked, ['', '', '', '', '', '"7"'], 'no ETag of what could not be read');
+  mock.restoreAll();
+});
+
+test('a clock that is set back is believed at once, a late answer is not', () => {
+  const ticking = { now: 0 };
+  const clock = new ServerClock(() => ticking.now);
+  const tells = (ms) => clock.observe(`0 ${ms}000000`);
+  tells(9_000_000);
+  ticking.now = 9000;
+  tells(9_001_000); // eight seconds on its way
+  assert.equal(clock.now(), 9_009_000);
+  tells(9_009_000 - 3_600_000);
+  assert.equal(clock.now(), 9_009_000 - 3_600_000);
+});
+
+test('a frame is a frame: without what is no body, no joint, or too many', () => {
+  const times = { sequence: 1, captured: '2026-11-27T10:00:00Z', capturedNanoseconds: '1' };
+  for (const none of [null, [], 42, 'x', {}, { ...times, sequence: 'x' }, { ...times, captured: 'now' }, { ...times, capturedNanoseconds: '1.5' }]) assert.throws(() => frameOf(none), /is none/);
+  assert.deepEqual(frameOf({ ...times, bodies: 7 }).bodies, []);
+  const frame = frameOf({ ...times, bodies: [null, { bodyId: 1 }, { bodyId: 2, joints: { Head: null, Neck: { x: 1 } } }, ...Array.from({ length: 70 }, () => ({ joints: {} }))] });
+  assert.deepEqual(frame.bodies[0], { bodyId: 2, joints: { Neck: { x: 1 } } });
+  assert.deepEqual([frame.bodies.length, frame.leftOut], [64, 7]);
+  assert.deepEqual(sensorsOf({ sensors: { a: null, b: { state: 'live' } } }).sensors, { b: { state: 'live' } });
+  for (const none of [null, [], { sensors: 'x' }]) assert.throws(() => sensorsOf(none));
+  for (const none of [null, { alarms: {} }, { sensors: [] }]) assert.throws(() => registrationOf(none));
+});
+
+test('a server that refuses is named with its reason, and so is what it says nothing of', () => {
+  const problem = Object.assign(new Error('it asks for a token'), { status: 401 });
+  const link = { error: null, silent: 10 };
+  const refused = { link, frame: null, frameAge: NaN, frameProblem: problem };
+  assert.deepEqual(stateOf(refused), { tone: 'bad', sentence: 'The fusion server gives no frames: it asks for a token.', next: 'Load this page again, and give the token as the password.' });
+  assert.equal(freshness(refused), 'gone');
+  const told = { link, frame: { bodies: [] }, frameAge: 20, frameProblem: problem, sensors: { a: { state: 'live' } }, registration: { verdict: 'Good', sensors: { a: {} } } };
+  assert.equal(stateOf(told).sentence, 'Nobody is in sight.', 'one answer among good ones is not worth a sentence');
+  const unread = stateOf({ ...told, unread: [['the sensors', new Error('it answered 500')]] });
+  assert.deepEqual([unread.tone, unread.sentence], ['warn', 'The fusion server says nothing of the sensors: it answered 500.']);
+});
+
+test('an action that is lost says so', async () => {
+  mock.method(globalThis, 'fetch', async () => { throw new TypeError('Failed to fetch'); });
+  assert.deepEqual(await requested('http://x/'), { problem: 'the server does not answer', body: null });
+  mock.restoreAll();
 });
