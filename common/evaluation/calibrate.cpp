@@ -21,6 +21,9 @@ using inertial::SensorCalibration;
 
 constexpr std::size_t kLeastPairs = 10;
 constexpr int kStarts = 12;              // headings tried
+constexpr std::size_t kKeptStarts = 3;   // that still lead after the widest scales
+constexpr std::size_t kStartPairs = 24;  // which decide between starts
+constexpr double kRaceScale = deg(45);   // to which all starts go on
 constexpr double kFirstScale = deg(90);  // of the loss
 constexpr double kScaleStep = 1.4;       // the loss narrows by this from round to round (GNC)
 constexpr double kScalesOfSigma = 3.0;   // where it stops narrowing
@@ -129,12 +132,24 @@ Eigen::Quaterniond first_mount(const std::vector<Weighted>& pairs, double headin
   return normalised_or_identity(Eigen::Quaterniond(Eigen::Vector4d(solver.eigenvectors().col(3))));
 }
 
-SensorCalibration narrowed(const std::vector<Weighted>& pairs, SensorCalibration at, double least) {
-  constexpr int kRoundsEach = 2;
-  for (double scale = kFirstScale; scale > least; scale /= kScaleStep)
+constexpr int kRoundsEach = 2;
+
+/// Goes down with the scale of the loss from `from` to `to`.
+void narrow(const std::vector<Weighted>& pairs, SensorCalibration& at, double from, double to) {
+  for (double scale = from; scale > to; scale /= kScaleStep)
     for (int i = 0; i < kRoundsEach; ++i) step(at, normal_of(pairs, at, scale));
-  for (int i = 0; i < 4 * kRoundsEach; ++i) step(at, normal_of(pairs, at, least));
-  return at;
+}
+
+void settle(const std::vector<Weighted>& pairs, SensorCalibration& at, double scale) {
+  for (int i = 0; i < 4 * kRoundsEach; ++i) step(at, normal_of(pairs, at, scale));
+}
+
+/// Evenly thinned.
+std::vector<Weighted> some_of(const std::vector<Weighted>& pairs, std::size_t most) {
+  std::vector<Weighted> some;
+  const std::size_t apart = 1 + (pairs.size() - 1) / most;
+  for (std::size_t i = 0; i < pairs.size(); i += apart) some.push_back(pairs[i]);
+  return some;
 }
 
 double cost_of(const std::vector<Weighted>& pairs, const SensorCalibration& at, double scale) {
@@ -144,20 +159,36 @@ double cost_of(const std::vector<Weighted>& pairs, const SensorCalibration& at, 
   return cost;
 }
 
+struct Start {
+  SensorCalibration at;
+  double cost = 0.0;
+};
+
+void cheapest_first(std::vector<Start>& starts, const std::vector<Weighted>& pairs, double scale) {
+  for (Start& start : starts) start.cost = cost_of(pairs, start.at, scale);
+  std::ranges::stable_sort(starts, {}, &Start::cost);
+}
+
+/// All headings race over some of the pairs while the loss is wide; those that lead then go on, and
+/// the best of them is settled with all pairs.
 SensorCalibration best_of_starts(const std::vector<Weighted>& pairs, double scale) {
-  SensorCalibration best;
-  double least = std::numeric_limits<double>::infinity();
+  const std::vector<Weighted> some = some_of(pairs, kStartPairs);
+  std::vector<Start> starts(kStarts);
   for (int i = 0; i < kStarts; ++i) {
-    SensorCalibration start;
+    SensorCalibration& start = starts[static_cast<std::size_t>(i)].at;
     start.heading = wrap_angle(2.0 * std::numbers::pi * i / kStarts);
-    start.limb_from_sensor = first_mount(pairs, start.heading);
-    start = narrowed(pairs, start, scale);
-    const double cost = cost_of(pairs, start, scale);
-    if (cost >= least) continue;
-    least = cost;
-    best = start;
+    start.limb_from_sensor = first_mount(some, start.heading);
+    narrow(some, start, kFirstScale, kRaceScale);
   }
-  return best;
+  cheapest_first(starts, some, kRaceScale);
+  starts.resize(kKeptStarts);
+  for (Start& start : starts) {
+    narrow(some, start.at, kRaceScale, scale);
+    settle(some, start.at, scale);
+    settle(pairs, start.at, scale);
+  }
+  cheapest_first(starts, pairs, scale);
+  return starts.front().at;
 }
 
 /// How many independent instants a take is worth.
@@ -235,7 +266,12 @@ Result<CalibrationFit> fit_calibration(const OrientationPairs& pairs,
                             usable.size(), kLeastPairs));
   CalibrationFit fit;
   const double coarse = kScalesOfSigma * 2.0 * options.least_sigma;
-  fit.calibration = best_of_starts(usable, coarse);
+  if (options.begin) {
+    fit.calibration = *options.begin;
+    settle(usable, fit.calibration, coarse);
+  } else {
+    fit.calibration = best_of_starts(usable, coarse);
+  }
   // Gross errors would widen the residual: after the first round only what agrees counts.
   double gate = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 3; ++round) {

@@ -8,6 +8,7 @@
 // 2020), so that a quarter of wrong frames does not decide where it begins.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/base/result.h"
@@ -26,6 +27,9 @@ struct CalibrateOptions {
   double least_sigma = deg(3.0);
   /// A calibration that would predict worse than this is refused [rad].
   double most_prediction = deg(10.0);
+  /// An earlier calibration to begin from, of pairs that this take goes on from: then no other
+  /// headings are tried, which is most of the work.
+  std::optional<inertial::SensorCalibration> begin = {};
 };
 
 /// What was found, whether or not it is good enough.

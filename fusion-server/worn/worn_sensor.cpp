@@ -100,6 +100,7 @@ void WornSensor::learn(double time, const evaluation::TrackedOrientation& tracke
 void WornSensor::slipped(double time, double angle) {
   slip_ = Slip{time, angle};
   fit_.reset();
+  begin_.reset();
   pairs_.clear();
   heading_ = evaluation::Heading();
   improved_ = 0;
@@ -118,9 +119,13 @@ void WornSensor::calibrate(double time, const WornConfig& config) {
   if (fit_) ++improved_;
   evaluation::CalibrateOptions options;
   options.most_pairs = kFitPairs;
+  // What agrees but is not known well enough is refined; what does not agree is sought again.
+  options.begin = begin_;
   const evaluation::OrientationPairs pairs(pairs_.begin(), pairs_.end());
   auto found = evaluation::fit_calibration(pairs, options);
   if (!found) return;
+  begin_.reset();
+  if (found->inliers >= kLeastAgree) begin_ = found->calibration;
   const double sigma = direction_sigma_of(found->calibration, pairs);
   const std::string refusal = refusal_of(*found, sigma, limb_, config.most_prediction);
   if (!refusal.empty()) {
@@ -135,6 +140,7 @@ void WornSensor::calibrate(double time, const WornConfig& config) {
   // The pairs hold the heading as followed so far, so the fit's is relative to that.
   const double followed = heading_.correction();
   found->calibration.heading = wrap_angle(found->calibration.heading + followed);
+  begin_ = found->calibration;
   heading_ = evaluation::Heading(config.heading_walk);
   for (auto& pair : pairs_)
     pair.inertial_from_sensor = about_y(-followed) * pair.inertial_from_sensor;

@@ -59,7 +59,8 @@ class WornSensor {
   inertial::Limb limb_;
   std::deque<evaluation::OrientationPair> pairs_;  ///< Of the last calibration's span.
   std::optional<evaluation::CalibrationFit> fit_;
-  double fitted_ = 0.0;  ///< When [s].
+  std::optional<inertial::SensorCalibration> begin_;  ///< What the next attempt begins from.
+  double fitted_ = 0.0;                               ///< When [s].
   double tried_ = -1e9;
   std::string refusal_;
   evaluation::Heading heading_;

@@ -75,6 +75,21 @@ TEST(Calibrate, SurvivesAThirdOfGrossErrors) {
   EXPECT_GT(angular_distance(park->limb_from_sensor, kMount), mount_error(fit->calibration));
 }
 
+TEST(Calibrate, GoesOnFromAnEarlierOneToTheSamePlace) {
+  const OrientationPairs pairs = take(30, {deg(5), deg(2), 0.2});
+  CalibrateOptions options;
+  const auto whole = fit_calibration(pairs, options);
+  const auto first = fit_calibration({pairs.begin(), pairs.begin() + 200}, options);
+  ASSERT_TRUE(whole && first);
+  options.begin = first->calibration;
+  const auto further = fit_calibration(pairs, options);
+  ASSERT_TRUE(further);
+  EXPECT_LT(
+      angular_distance(further->calibration.limb_from_sensor, whole->calibration.limb_from_sensor),
+      deg(0.1));
+  EXPECT_NEAR(further->inliers, whole->inliers, 0.01);
+}
+
 TEST(Calibrate, CountsNoTwistThatIsNotSeen) {
   OrientationPairs pairs = take(20, {deg(3), deg(1), 0.0});
   std::mt19937 draw(3);
