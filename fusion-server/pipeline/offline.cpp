@@ -98,6 +98,8 @@ class Replay {
  public:
   Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
       : frames_(std::move(input.lanes), input.sensors, registration),
+        suits_(std::move(input.inertial), config.worn),
+        tell_worn_(std::move(input.tell_worn)),
         registration_(registration),
         config_(config.pipeline),
         grid_(config.rate_hz) {
@@ -113,6 +115,7 @@ class Replay {
     while (index) {
       const Timestamp instant = grid_.at(*index);
       if (auto ok = frames_.read_to(instant); !ok) return ok;
+      if (auto ok = suits_.read_to(instant); !ok) return ok;
       if (frames_.ended() && instant > frames_.newest()) break;
       auto answered = answer(instant);
       if (!answered) {
@@ -124,6 +127,7 @@ class Replay {
       if (auto ok = give(std::move(*answered), take); !ok) return ok;
       ++*index;
     }
+    if (tell_worn_) tell_worn_(suits_.reports(frames_.newest()));
     return smoother_ ? give(smoother_->finish(config_), take) : Result<void>{};
   }
 
@@ -144,7 +148,7 @@ class Replay {
       if (config_.polled) config_.polled->insert(sensor);
     }
     const Timestamp late = instant + config_.align.patience + Duration(1);
-    const Inputs in{instant, late, answered_ + 1};
+    const Inputs in{instant, late, answered_ + 1, suits_.say(instant)};
     Perceived seen = perceive(in, histories_, registration_, memory_, config_);
     std::vector<SensorId> sensors = taking_part(registration_, config_);
     const bool counts = covered(seen.reports, sensors);
@@ -160,6 +164,12 @@ class Replay {
     if (!counts) return std::nullopt;
     Steps steps;
     steps.push_back(std::move(step));
+    return learned(std::move(steps));
+  }
+
+  /// The steps, which the worn sensors have learned from.
+  Steps learned(Steps steps) {
+    for (const Step& step : steps) suits_.learn(step.snapshot.bodies, step.snapshot.instant);
     return steps;
   }
 
@@ -168,7 +178,7 @@ class Replay {
     Perception now = perception_of(in, std::move(sensors), seen);
     memory_ = std::move(seen.memory);
     if (!counts) return std::nullopt;
-    return smoother_->take(std::move(now), config_);
+    return learned(smoother_->take(std::move(now), config_));
   }
 
   /// The index of the first instant after `index` that a frame could cover; none at the end.
@@ -180,6 +190,8 @@ class Replay {
   }
 
   RecordedFrames frames_;
+  RecordedSuits suits_;
+  std::function<void(std::vector<WornReport>)> tell_worn_;
   const Registration& registration_;
   PipelineConfig config_;
   Grid grid_;

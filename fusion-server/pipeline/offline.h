@@ -8,6 +8,7 @@
 
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/pipeline/recorded_frames.h"
+#include "fusion-server/pipeline/recorded_suits.h"
 #include "fusion-server/registration/registration.h"
 
 namespace chorus::pipeline {
@@ -15,6 +16,7 @@ namespace chorus::pipeline {
 struct OfflineConfig {
   PipelineConfig pipeline;
   registration::RegistrationConfig registration;
+  worn::WornConfig worn;  ///< Whether recorded inertial sources are used.
   bool smooth = false;  ///< Every instant is fused with what later ones say about it (smoother.h).
   double rate_hz = 30.0;  ///< Output instants are multiples of 1/rate since the epoch [Hz].
 };
@@ -28,6 +30,9 @@ struct OfflineResult {
 struct OfflineInput {
   std::vector<FrameLane> lanes;
   std::vector<SensorId> sensors = {};  ///< Sensors known in advance.
+  std::vector<InertialLane> inertial = {};
+  /// Told at the end what became of the inertial sources.
+  std::function<void(std::vector<WornReport>)> tell_worn = {};
 };
 
 /// Takes each snapshot; an error stops the fusion.

@@ -33,6 +33,8 @@ struct FuseArguments {
   PlaceOptions places;
   std::string save_registration;
   OfflineOptions options;
+  std::vector<std::string> inertial;  ///< Recordings of worn sensors.
+  double inertial_later = 0.0;        ///< Added to their times [s].
   bool smooth = false;
   bool json = false;
 };
@@ -45,6 +47,7 @@ Result<void> check_outputs(const FuseArguments& arguments,
     read.push_back(**beside);
   read.emplace_back(arguments.places.registration);
   read.emplace_back(arguments.options.config);
+  read.insert(read.end(), arguments.inertial.begin(), arguments.inertial.end());
   if (auto ok = may_write(arguments.out, read); !ok) return ok;
   if (auto ok = may_write(arguments.save_registration, read); !ok) return ok;
   if (!same_file(arguments.out, arguments.save_registration)) return {};
@@ -121,6 +124,47 @@ Result<Fused> fuse_into(const std::string& out, RecordedCell& cell, Registration
   return fused;
 }
 
+nlohmann::json worn_summary(const std::vector<WornReport>& reports) {
+  auto all = nlohmann::json::object();
+  for (const WornReport& report : reports) {
+    nlohmann::json& source = all[report.source.str()];
+    source = {{"sensors", nlohmann::json::object()}};
+    if (report.wearer) source["wearer"] = report.wearer->value;
+    if (!report.reason.empty()) source["reason"] = report.reason;
+    for (const WornSensorReport& one : report.sensors) {
+      source["sensors"][one.sensor] = {{"limb", inertial::name_of(one.limb)},
+                                       {"calibrated", one.calibrated}};
+      if (!one.refusal.empty()) source["sensors"][one.sensor]["reason"] = one.refusal;
+    }
+  }
+  return all;
+}
+
+/// "suit: worn by person 1, 12 of 13 limbs known; left forearm: bend and stretch it"
+std::string worn_line(const WornReport& report) {
+  if (!report.wearer) return fmt::format("{}: {}", report.source.str(), report.reason);
+  const auto known = std::ranges::count_if(report.sensors, &WornSensorReport::calibrated);
+  std::string line = fmt::format("{}: worn by person {}, {} of {} limbs known", report.source.str(),
+                                 report.wearer->value, known, report.sensors.size());
+  for (const WornSensorReport& one : report.sensors) {
+    if (!one.refusal.empty())
+      line += fmt::format("; {}: {}", inertial::words_for(one.limb), one.refusal);
+  }
+  return line;
+}
+
+/// Says what became of worn sensors, or that there are some.
+void note_worn(const RecordedCell& cell, bool enabled, RecordedCell::Told& told) {
+  for (const WornReport& report : told.worn) told.notes.push_back(worn_line(report));
+  if (!enabled && cell.holds_suits())
+    told.notes.emplace_back(
+        "the recordings hold worn inertial sensors; --set fusion.inertial.enabled=true lets them "
+        "help");
+  if (enabled && told.worn.empty())
+    told.notes.emplace_back(
+        "the recordings hold no worn inertial sensors; name a recording of them with --inertial");
+}
+
 nlohmann::json summary_of(const Fused& fused) {
   auto registration = nlohmann::json::parse(wire::write_registration(fused.registration));
   for (const auto& [sensor, place] : fused.registration.sensors) {
@@ -135,7 +179,27 @@ nlohmann::json summary_of(const Fused& fused) {
           {"rateHz", fused.rate_hz},
           {"smoothed", fused.smoothed},
           {"notes", fused.told.notes},
+          {"inertial", worn_summary(fused.told.worn)},
           {"registration", std::move(registration)}};
+}
+
+/// Lets the recordings of worn sensors beside the others help.
+Result<void> wear(const FuseArguments& arguments, RecordedCell& cell) {
+  if (arguments.inertial.empty()) return {};
+  const auto files =
+      record::find_recordings({arguments.inertial.begin(), arguments.inertial.end()});
+  if (!files) return pass(files);
+  return cell.wear(*files, from_seconds(arguments.inertial_later));
+}
+
+/// The options; naming worn sensors switches them on.
+Result<pipeline::OfflineConfig> fuse_config(const FuseArguments& arguments) {
+  OfflineOptions options = arguments.options;
+  if (!arguments.inertial.empty())
+    options.overrides.insert(options.overrides.begin(), "fusion.inertial.enabled=true");
+  auto config = offline_config(options);
+  if (config) config->smooth = arguments.smooth;
+  return config;
 }
 
 /// Only the body filter smooths where joints are; the other methods are given smoothed sides.
@@ -167,20 +231,21 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
 }
 
 Result<int> run_fuse(const FuseArguments& arguments) {
-  auto config = offline_config(arguments.options);
+  auto config = fuse_config(arguments);
   if (!config) return pass(config);
-  config->smooth = arguments.smooth;
   const auto files = record::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
   auto cell = RecordedCell::open(*files);
   if (!cell) return pass(cell);
+  if (auto ok = wear(arguments, *cell); !ok) return pass(ok);
   auto places = places_of(arguments.places, *files, *cell, *config);
   if (!places) return pass(places);
   if (auto ok = check_distances(config->registration, *places); !ok) return pass(ok);
   auto fused = fuse_into(arguments.out, *cell, std::move(*places->registration), *config);
   if (!fused) return pass(fused);
   note_unused(arguments, *places);
+  note_worn(*cell, config->worn.enabled, fused->told);
   auto& notes = fused->told.notes;
   if (!places->note.empty()) notes.insert(notes.begin(), places->note);
   if (!arguments.save_registration.empty()) {
@@ -208,6 +273,11 @@ Run add_fuse(CLI::App& options) {
   options.add_option("--save-registration", arguments->save_registration,
                      "Write the extrinsics used to this file");
   add_offline_options(options, arguments->options);
+  options.add_option("--inertial", arguments->inertial,
+                     "Recording of worn inertial sensors that help (fusion.inertial); may be "
+                     "repeated");
+  options.add_option("--inertial-later", arguments->inertial_later,
+                     "Seconds to add to its times, if its clock was another");
   options.add_flag("--smooth", arguments->smooth,
                    "Fuse each instant knowing the seconds after it (fusion.smoothing)");
   options.add_flag("--json", arguments->json, "Summary as JSON");

@@ -63,6 +63,7 @@ Result<pipeline::OfflineConfig> offline_config(const OfflineOptions& options) {
   pipeline::OfflineConfig config;
   config.pipeline = read->live.pipeline;
   config.registration = read->live.registration;
+  config.worn = read->live.worn;
   config.rate_hz = read->live.output.rate_hz;
   return config;
 }

@@ -25,6 +25,36 @@ Result<std::optional<SensorFrame>> next_frame(record::CellStream& stream, bool c
   }
 }
 
+/// The next instant of worn inertial sensors, `later` by so much; none at the end.
+Result<std::optional<inertial::InertialFrame>> next_suit(record::CellStream& stream,
+                                                         Duration later) {
+  for (auto item = stream.next(); true; item = stream.next()) {
+    if (!item) return pass(item);
+    if (!*item) return std::nullopt;
+    auto* frame = std::get_if<inertial::InertialFrame>(&**item);
+    if (frame == nullptr) continue;
+    frame->captured += later;
+    for (inertial::InertialReading& reading : frame->readings) reading.captured += later;
+    return std::move(*frame);
+  }
+}
+
+pipeline::InertialLane suit_lane(const record::CellLine& line, Duration later) {
+  record::CellQuery query;
+  query.inertial = true;
+  query.raw = false;
+  const auto stream = std::make_shared<record::CellStream>(line.files, query);
+  return {line.files.front().string(), [stream, later] { return next_suit(*stream, later); }};
+}
+
+/// Whether the line's first file says that it holds what worn inertial sensors said.
+bool names_suits(const record::CellLine& line) {
+  const auto stream = record::RecordingStream::open(line.files.front());
+  return stream && std::ranges::any_of(stream->channels(), [](const record::Channel& channel) {
+           return channel.topic.starts_with("/inertial/");
+         });
+}
+
 /// The note "set" of an import, which its files have in common; empty for what was recorded.
 std::string import_of(const record::CellLine& line) {
   const auto stream = record::RecordingStream::open(line.files.front());
@@ -85,9 +115,37 @@ std::set<SensorId> RecordedCell::sensors() const {
   return all;
 }
 
+bool RecordedCell::holds_suits() const { return std::ranges::any_of(lines_, names_suits); }
+
+Result<void> RecordedCell::wear(const std::vector<std::filesystem::path>& files, Duration later) {
+  auto lines = record::cell_lines(files);
+  if (!lines) return pass(lines);
+  for (const record::CellLine& line : *lines) {
+    if (!names_suits(line))
+      return fail(ErrorCode::NotFound, line.files.front().string(),
+                  "has no topic /inertial/{id}/orientations: make such a recording of a log with "
+                  "`chorus import inertial`");
+  }
+  suits_ = std::move(*lines);
+  later_ = later;
+  return {};
+}
+
+std::vector<pipeline::InertialLane> RecordedCell::suits() const {
+  std::vector<pipeline::InertialLane> lanes;
+  for (const record::CellLine& line : lines_) {
+    if (names_suits(line)) lanes.push_back(suit_lane(line, Duration{0}));
+  }
+  for (const record::CellLine& line : suits_) lanes.push_back(suit_lane(line, later_));
+  return lanes;
+}
+
 pipeline::OfflineInput RecordedCell::input() {
   pipeline::OfflineInput input;
   streams_.clear();
+  worn_->clear();
+  input.inertial = suits();
+  input.tell_worn = [worn = worn_](std::vector<WornReport> all) { *worn = std::move(all); };
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const record::CellLine& line = lines_[i];
     const auto stream = std::make_shared<record::CellStream>(line.files);
@@ -102,6 +160,7 @@ pipeline::OfflineInput RecordedCell::input() {
 
 RecordedCell::Told RecordedCell::told() {
   Told told;
+  told.worn = *worn_;
   for (const auto& stream : streams_) {
     const record::CellRecording cell = stream->finish();
     told.sensors += cell.sensors.size();

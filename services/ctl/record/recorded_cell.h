@@ -34,7 +34,14 @@ class RecordedCell {
   /// step as stated.
   void drop_clock_claims() { clocks_dropped_ = true; }
 
-  /// Reads from the beginning.  Of several imports, only the first one's clock counts; the clocks
+  /// Whether the files hold what worn inertial sensors said.
+  [[nodiscard]] bool holds_suits() const;
+  /// Reads what inertial sensors said from these recordings, too, with `later` added to their
+  /// times. Refuses one that holds nothing of the kind.
+  [[nodiscard]] Result<void> wear(const std::vector<std::filesystem::path>& files, Duration later);
+
+  /// Reads from the beginning, also what worn inertial sensors said (OfflineConfig::worn decides
+  /// whether that is used).  Of several imports, only the first one's clock counts; the clocks
   /// of the others are unknown, and those of all imports beside what was recorded.
   [[nodiscard]] pipeline::OfflineInput input();
 
@@ -43,16 +50,22 @@ class RecordedCell {
   struct Told {
     std::vector<std::string> notes;
     std::size_t sensors = 0;
+    std::vector<WornReport> worn;  ///< Of the inertial sources that were used.
   };
   [[nodiscard]] Told told();
 
  private:
   explicit RecordedCell(std::vector<record::CellLine> lines);
 
+  [[nodiscard]] std::vector<pipeline::InertialLane> suits() const;
+
   std::vector<record::CellLine> lines_;
-  std::vector<bool> claims_time_;  ///< Of each line: whether its frames' clock_sigma counts.
+  std::vector<record::CellLine> suits_;  ///< Beside the lines.
+  Duration later_{0};                    ///< Added to the times of suits_.
+  std::vector<bool> claims_time_;        ///< Of each line: whether its frames' clock_sigma counts.
   bool clocks_dropped_ = false;
   std::vector<std::shared_ptr<record::CellStream>> streams_;
+  std::shared_ptr<std::vector<WornReport>> worn_ = std::make_shared<std::vector<WornReport>>();
 };
 
 }  // namespace chorus::ctl
