@@ -9,6 +9,7 @@
 
 #include "fusion-server/associate/assignment.h"
 #include "fusion-server/associate/track_motion.h"
+#include "fusion-server/associate/worn_likeness.h"
 
 namespace chorus::associate {
 namespace {
@@ -16,6 +17,9 @@ namespace {
 constexpr int kRounds = 3;  // Rounds in which sensors use each other's matches.
 // Weight of the track's expected place; one sensor's view of the person has weight 1.
 constexpr double kOwnWeight = 1.0;
+// [m]; cost of limbs that have nothing to do with what the track's inertial sensors say.  Half the
+// gate: sensors on wrong limbs make nobody lose a body that stands where it is expected.
+constexpr double kWornReach = 0.3;
 constexpr double kSizeReach = 0.5;    // [m]; cost of a body that is larger by a factor of e.
 constexpr double kInformative = 1.0;  // Time in view [s] from which a learned length is used.
 constexpr double kDoubtful = 0.3;     // Cost added for unpublished tracks, as a share of the gate.
@@ -24,6 +28,7 @@ constexpr double kDoubtful = 0.3;     // Cost added for unpublished tracks, as a
 struct Loose {
   PlacedView view;
   Spans spans;
+  std::vector<double> unlike = {};  ///< For each track, see unlike_worn().
   std::optional<std::size_t> track = {};
 };
 
@@ -66,21 +71,24 @@ class Places {
 /// Cost of assigning a body to a track; a distance as long as the track's gate costs 1. For a ray
 /// body it is the misfit of the rays, NaN if there is none. For other bodies it combines the
 /// distance from `place` with the difference in size, and is higher for a track that is not
-/// admitted.
-double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
+/// admitted. `unlike`: see unlike_worn().
+double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place,
+               double unlike) {
   const PlacedView& body = loose.view;
+  const double otherwise = kWornReach * unlike;
   if (!body.rays) {
     const Track& track = candidate.track;
     return std::hypot(
                horizontal_distance(body.core, place, body.error + track.error, candidate.gate),
-               kSizeReach * size_difference(loose.spans, track.usual)) /
+               kSizeReach * size_difference(loose.spans, track.usual), otherwise) /
                candidate.gate +
            (candidate.track.admitted ? 0.0 : kDoubtful);
   }
   const Eigen::Vector3d shift = candidate.predicted - candidate.track.core;
   auto off = misfit(body.view, candidate.track.joints, shift);
   if (!off) off = misfit(body.view, candidate.predicted);
-  return off ? *off / candidate.gate : std::numeric_limits<double>::quiet_NaN();
+  return off ? std::hypot(*off, otherwise) / candidate.gate
+             : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Assigns one sensor's bodies to the tracks; true if anything changed.
@@ -89,7 +97,7 @@ bool assign_sensor(std::vector<Loose>& bodies, const std::vector<Candidate>& can
   CostTable table{bodies.size(), candidates.size(), {}, 1.0, 1.0};
   for (const Loose& body : bodies) {
     for (std::size_t i = 0; i < candidates.size(); ++i)
-      table.cost.push_back(cost_of(body, candidates[i], places.at(i)));
+      table.cost.push_back(cost_of(body, candidates[i], places.at(i), body.unlike[i]));
   }
   const auto chosen = assign(table);
   bool changed = false;
@@ -100,11 +108,13 @@ bool assign_sensor(std::vector<Loose>& bodies, const std::vector<Candidate>& can
   return changed;
 }
 
-BySensor by_sensor(std::vector<PlacedView> views) {
+BySensor by_sensor(std::vector<PlacedView> views, const std::vector<Candidate>& candidates) {
   BySensor sensors;
   for (PlacedView& view : views) {
     Loose loose{std::move(view), {}};
     loose.spans = spans_of({&loose.view, 1}, {});
+    for (const Candidate& each : candidates)
+      loose.unlike.push_back(unlike_worn(loose.view.view, each.worn).value_or(0.0));
     sensors[loose.view.view.sensor].push_back(std::move(loose));
   }
   return sensors;
@@ -144,7 +154,7 @@ std::optional<double> linkage(const std::vector<PlacedView>& cluster, const Plac
 }  // namespace
 
 std::vector<PlacedView> match(std::vector<PlacedView> views, std::vector<Candidate>& candidates) {
-  BySensor sensors = by_sensor(std::move(views));
+  BySensor sensors = by_sensor(std::move(views), candidates);
   assign_all(sensors, candidates);
   std::vector<PlacedView> leftovers;
   for (auto& [sensor, bodies] : sensors) {

@@ -2,7 +2,8 @@
 // track explains.
 //
 // Each sensor's bodies are assigned to tracks one-to-one at the lowest total cost, by their
-// distance from where the track is expected and from where the other sensors see it.  The sensors
+// distance from where the track is expected and from where the other sensors see it, and by what
+// inertial sensors on the person say of the limbs.  The sensors
 // take turns until nothing changes, for a few rounds at most.  An unmatched body costs as much as
 // the farthest allowed match, so that forcing an extra pair never pays.
 #pragma once

@@ -9,6 +9,7 @@
 #include "fusion-server/associate/matching.h"
 #include "fusion-server/associate/recognition.h"
 #include "fusion-server/associate/track_motion.h"
+#include "fusion-server/associate/worn_likeness.h"
 
 namespace chorus::associate {
 namespace {
@@ -59,6 +60,24 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
   }
   forget(tracks, instant, config);
   return candidates;
+}
+
+void dress(std::vector<Candidate>& candidates, const WornPeople& worn) {
+  for (Candidate& each : candidates) {
+    const auto own = worn.find(each.track.id);
+    if (own != worn.end()) each.worn = own->second;
+  }
+}
+
+/// Follows how unlike their wearers the views are.
+void compare_worn(std::vector<Candidate>& candidates, double elapsed) {
+  constexpr double kMean = 0.5;  // [s]
+  const double share = elapsed / (elapsed + kMean);
+  for (Candidate& each : candidates) {
+    if (each.sights.empty()) continue;
+    const double now = unlike_worn(each.sights, each.worn);
+    each.track.unlike += share * (now - each.track.unlike);
+  }
 }
 
 /// Removes a new body that only one sensor sees, if this sensor and another one already see a
@@ -230,6 +249,7 @@ Grouping group(Scene scene, const Tracks& before, const AssociationConfig& confi
   tracks.next_id = std::max<std::uint64_t>(tracks.next_id, 1);
   if (before.instant == Timestamp{}) tracks.began = instant;
   std::vector<Candidate> candidates = expected(tracks, instant, config);
+  dress(candidates, scene.worn);
   std::vector<PlacedView> leftovers = match(placed_views(std::move(scene.views)), candidates);
   for (Candidate& each : newcomers(std::move(leftovers), candidates, tracks.next_id, config)) {
     if (candidates.size() < kMaxTracks) candidates.push_back(std::move(each));
@@ -238,7 +258,8 @@ Grouping group(Scene scene, const Tracks& before, const AssociationConfig& confi
   merge_doubles(candidates, config);
   const Duration elapsed = std::clamp(instant - before.instant, Duration{0}, config.coast);
   admit(candidates, scene.observers, elapsed, tracks, config);
-  grouping.corrections = recognise(candidates, tracks, instant, config);
+  compare_worn(candidates, seconds(elapsed));
+  grouping.corrections = recognise(candidates, tracks, {instant, scene.worn}, config);
   std::ranges::sort(candidates, {}, [](const Candidate& one) { return one.track.id; });
   grouping.people = published(candidates, instant, config);
   tracks.people.clear();

@@ -6,8 +6,9 @@
 // for merge_frames. A published track stays rather than an unpublished one, otherwise the older. A
 // person whom only one sensor sees where others look is not published at once (admission.h). People
 // who are not seen are looked for where they are expected. Those who left are remembered, and
-// recognised by their build (recognition.h). Ray bodies of cameras without depth are matched by how
-// far their rays pass from the joints of a track (ray_matching.h); a single ray body starts no
+// recognised by their build (recognition.h). Of people who wear inertial sensors, what these say of
+// the limbs counts as well (worn_likeness.h). Ray bodies of cameras without depth are matched by
+// how far their rays pass from the joints of a track (ray_matching.h); a single ray body starts no
 // track and keeps none alive. A new person never gets an id that was used before.
 #pragma once
 
@@ -17,6 +18,7 @@
 #include "fusion-server/associate/track.h"
 #include "fusion-server/flow/correction.h"
 #include "fusion-server/flow/person.h"
+#include "fusion-server/flow/worn_people.h"
 
 namespace chorus::associate {
 
@@ -41,6 +43,7 @@ struct Scene {
   Timestamp instant;
   std::vector<SensorView> views;
   std::vector<Observer> observers = {};  ///< If empty, no body has to wait for admission.
+  WornPeople worn = {};                  ///< Who wears inertial sensors, and what these say.
 };
 
 [[nodiscard]] Grouping group(Scene scene, const Tracks& tracks, const AssociationConfig& config);

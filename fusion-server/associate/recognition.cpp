@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fusion-server/associate/assignment.h"
+#include "fusion-server/associate/worn_likeness.h"
 
 namespace chorus::associate {
 namespace {
@@ -28,6 +29,9 @@ constexpr double kInQuestion = 2.0;
 constexpr double kTurn = 2.0;
 // Log odds, against the likeliest other answer, below which an id is withheld.
 constexpr double kUnlikely = -0.5;
+// What limbs that do not move as the person's inertial sensors say take from the log odds: enough
+// to question an id that nothing else speaks against, not enough to exclude somebody by itself.
+constexpr double kWornOdds = 4.0;
 // Prior log odds that somebody is a person who is expected at that place, and that somebody who was
 // recognised is still the same.
 constexpr double kExpected = 1.5;
@@ -77,9 +81,18 @@ double turn_of(const Build& build, const Repeatability& repeatability) {
   return kTurn / std::max(1.0, sight_of(build) / repeatability.size);
 }
 
+/// Whether somebody's inertial sensors say that it is not them.  Then everybody is asked, since the
+/// one who took their place seems to be as usual.
+bool is_belied(const std::vector<Candidate>& candidates) {
+  return std::ranges::any_of(candidates, [](const Candidate& each) {
+    return kWornOdds * each.track.unlike >= kInQuestion;
+  });
+}
+
 std::vector<Question> questions_of(std::vector<Candidate>& candidates, const Tracks& tracks,
                                    Timestamp instant, const AssociationConfig& config) {
   std::vector<Question> questions;
+  const bool belied = is_belied(candidates);
   for (Candidate& each : candidates) {
     const Track& track = each.track;
     if (track.seen != instant || track.hits < config.confirm_frames) continue;
@@ -87,7 +100,7 @@ std::vector<Question> questions_of(std::vector<Candidate>& candidates, const Tra
       questions.push_back({&each, track.found, track.build.whole()});
       continue;
     }
-    if (!each.doubt || each.doubt->odds > kInQuestion) continue;
+    if (!each.doubt || (each.doubt->odds > kInQuestion && !belied)) continue;
     const Timestamp since = track.build.all()[each.doubt->cut].begin;
     const Build build = track.build.after(each.doubt->cut);
     questions.push_back(
@@ -118,7 +131,8 @@ std::vector<Known> known_people(std::vector<Question>& questions,
 }
 
 /// Log odds that the person in question is the known one, against somebody new.
-double odds_of(const Question& question, const Known& known, const Repeatability& repeatability) {
+double odds_of(const Question& question, const Known& known, const Repeatability& repeatability,
+               const WornPeople& worn) {
   if (question.own && known.id == track_of(question).id) return question.doubt->odds;
   const Duration late = question.doubt ? kExchange : Duration{0};
   if (known.seen > question.since + late || !can_be_missing(known.build)) return kNever;
@@ -126,15 +140,19 @@ double odds_of(const Question& question, const Known& known, const Repeatability
   const bool expected =
       known.unseen &&
       horizontal_distance(track_of(question).core, known.unseen->predicted) <= known.unseen->gate;
-  return odds + (expected ? kExpected : 0.0);
+  const auto sensors = worn.find(known.id);
+  const double unlike =
+      sensors == worn.end() ? 0.0 : unlike_worn(question.candidate->sights, sensors->second);
+  return odds + (expected ? kExpected : 0.0) - kWornOdds * unlike;
 }
 
 /// The log odds of all pairs, row by row.
 CostTable odds_table(const std::vector<Question>& questions, const std::vector<Known>& known,
-                     const Repeatability& repeatability) {
+                     const Repeatability& repeatability, const WornPeople& worn) {
   CostTable table{questions.size(), known.size(), {}, 0.0, 0.0};
   for (const Question& question : questions) {
-    for (const Known& each : known) table.cost.push_back(-odds_of(question, each, repeatability));
+    for (const Known& each : known)
+      table.cost.push_back(-odds_of(question, each, repeatability, worn));
   }
   return table;
 }
@@ -227,6 +245,7 @@ void split(const Question& question, Tracks& tracks) {
   track.named = false;
   track.withheld = false;
   track.published.reset();
+  track.unlike = 0.0;
 }
 
 /// What was published of a track under its id since its person changed; none if nothing was.
@@ -317,18 +336,20 @@ void forget(PersonId person, Tracks& tracks) {
 }
 
 std::vector<Correction> recognise(std::vector<Candidate>& candidates, Tracks& tracks,
-                                  Timestamp instant, const AssociationConfig& config) {
+                                  const Asked& asked, const AssociationConfig& config) {
+  const Timestamp instant = asked.at;
   for (const Candidate& each : candidates) {
     // A view that only turns the track adds nothing to its build.
     if (each.track.placed == instant) learn(each.track, tracks.repeatability);
   }
   for (Candidate& each : candidates) {
     each.doubt = each.track.build.doubt(tracks.repeatability);
+    if (each.doubt) each.doubt->odds -= kWornOdds * each.track.unlike;
     if (each.track.placed == instant) each.track.usual = missing_of(each.track, each.doubt).build;
   }
   std::vector<Question> questions = questions_of(candidates, tracks, instant, config);
   const std::vector<Known> known = known_people(questions, candidates, tracks, instant);
-  const CostTable table = odds_table(questions, known, tracks.repeatability);
+  const CostTable table = odds_table(questions, known, tracks.repeatability, asked.worn);
   const std::vector<Answer> answers = answers_of(questions, table, instant);
   for (Candidate& each : candidates) {
     if (each.track.seen == instant) each.track.withheld = false;

@@ -1,7 +1,9 @@
-// Decides who the people in view are, by their builds, at every instant.
+// Decides who the people in view are, by their builds and by the inertial sensors that they wear,
+// at every instant.
 //
 // The persons in question are newcomers while people are missing, and those whose build suggests
-// that a sensor went over to somebody else (tracklets.h).  Who they may be: people who are missing
+// that a sensor went over to somebody else (tracklets.h), or who do not move as their sensors say
+// (worn_likeness.h).  Who they may be: people who are missing
 // or out of sight, persons in question as they were before, and somebody new.  All questions are
 // answered together, so that the sum of the log odds is greatest; two people who took each other's
 // place get their ids back at once.  An answer counts when one alternative is much likelier than
@@ -17,6 +19,7 @@
 #include "fusion-server/associate/association_config.h"
 #include "fusion-server/associate/track.h"
 #include "fusion-server/flow/correction.h"
+#include "fusion-server/flow/worn_people.h"
 
 namespace chorus::associate {
 
@@ -30,10 +33,15 @@ void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config);
 /// Forgets one person, whether they are here or missing; their id is never given again.
 void forget(PersonId person, Tracks& tracks);
 
+struct Asked {
+  Timestamp at;
+  const WornPeople& worn;
+};
+
 /// Decides everything that can be decided now, and returns which published ids were another's.  A
 /// candidate who turns out to be a missing person takes over that person's id; a track that had the
 /// id until then is removed.
 std::vector<Correction> recognise(std::vector<Candidate>& candidates, Tracks& tracks,
-                                  Timestamp instant, const AssociationConfig& config);
+                                  const Asked& asked, const AssociationConfig& config);
 
 }  // namespace chorus::associate

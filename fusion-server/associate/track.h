@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/body/bones.h"
@@ -45,6 +46,9 @@ struct Track {
   Duration through{0};
   Tracklets build = {};  ///< What is known of the person's build.
   Build usual = {};      ///< The same, without what may be somebody else's.
+  /// How unlike the wearer of this person's inertial sensors the views are, 0 to 1, in the mean of
+  /// half a second (worn_likeness.h); 0: nobody knows of any sensor.
+  double unlike = 0.0;
   /// True once the id is given: the person is new, or was recognised.
   bool named = false;
   /// True while the person now in view is probably not the one who has the id.
@@ -74,7 +78,8 @@ struct Candidate {
   Eigen::Vector3d predicted = Eigen::Vector3d::Zero();  ///< Where the core is expected [m].
   double gate = 0.0;  ///< How far from there the person is looked for [m].
   std::vector<PlacedView> sights = {};
-  std::optional<Doubt> doubt = {};  ///< That the person changed, as recognise() found it.
+  std::optional<Doubt> doubt = {};      ///< That the person changed, as recognise() found it.
+  std::span<const WornLimb> worn = {};  ///< What inertial sensors on the person say now.
 };
 
 }  // namespace chorus::associate

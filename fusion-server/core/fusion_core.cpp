@@ -135,9 +135,8 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
 /// Fuses one instant; after a change of places also with the old places, so that bodies move
 /// gradually from the old to the new positions.
 pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
-  const pipeline::Inputs in{tick.instant, now, tick.sequence};
+  const pipeline::Inputs in{tick.instant, now, tick.sequence, wear_.say(tick.instant)};
   auto seen = pipeline::perceive(in, histories_, registration(), memory_, config_.pipeline);
-  wear_.dress(seen.people, tick.instant);
   smooth(in, seen);
   pipeline::Step step =
       pipeline::fuse(std::move(seen), in, pipeline::taking_part(registration(), config_.pipeline),
@@ -198,7 +197,7 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
     return std::nullopt;
   }
   const Tick& tick = answered->tick;
-  const pipeline::Inputs in{tick.instant, now, tick.sequence};
+  const pipeline::Inputs in{tick.instant, now, tick.sequence, wear_.say(tick.instant)};
   const pipeline::PipelineConfig& config = config_.pipeline;
   auto seen = pipeline::perceive(in, histories_, registration(), answered->before, config);
   // Whether somebody is published is asked with the late frames, too, but decided once: a client
@@ -207,7 +206,6 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
     note_settled(answered->parts, sensors_);
     return std::nullopt;
   }
-  wear_.dress(seen.people, tick.instant);
   const auto sensors = pipeline::taking_part(registration(), config);
   if (config.smoothing.live) world_.smoother.amend(pipeline::perception_of(in, sensors, seen));
   pipeline::Step step = pipeline::fuse(std::move(seen), in, sensors, config);

@@ -26,6 +26,7 @@ struct Instant {
   bool first = true;
   double upright = 1.0;  ///< See upright_share().
   double posture = 0.0;  ///< See posture_log_odds().
+  double worn = 0.0;     ///< See worn_log_odds().
   std::vector<Spans> views = {};
   std::vector<double> agree = {};     ///< Log odds of each view, see agreement_log_odds().
   std::vector<bool> exchanged = {};   ///< For each view, whether it opposes the held sides.
@@ -206,6 +207,9 @@ Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, con
   evidence.news = now.first
                       ? now.posture
                       : new_evidence(now.posture, sides.posture, now.elapsed, config.posture.same);
+  evidence.news +=
+      now.first ? now.worn : new_evidence(now.worn, sides.worn, now.elapsed, config.worn.same);
+  sides.worn = now.worn;
   for (const LabelStep& step : now.steps) evidence.news += step.log_ratio;
   const double sight = sight_of_all(now, person, memory, config.telling);
   if (!now.first)
@@ -221,6 +225,7 @@ void turn_round(Instant& now, Sides& sides, Spans& spans) {
   sides.filter.turn_round();
   sides.posture = -sides.posture;
   sides.sight = -sides.sight;
+  sides.worn = -sides.worn;
   for (Spans* each : {&sides.spans, &spans}) {
     for (Eigen::Vector3d& span : *each) span = -span;
   }
@@ -284,7 +289,8 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   Sides sides =
       before
           ? std::move(*before)
-          : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, {}};
+          : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, 0.0,
+                  {}};
   now.elapsed = seconds(instant - sides.seen);
   look_at_views(now, person, flat, sides, memory, config);
   Spans spans = joined(now);
@@ -292,6 +298,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   keep_lost(spans, sides.spans);
   step_views(now, person, spans, sides, memory, config);
   now.posture = posture_log_odds(person.views, left_of(spans), now.upright, config.posture);
+  now.worn = worn_log_odds(person, now.exchanged, flat, config.worn);
   sides.walk.follow(person.views, instant, config.walking);
   sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
   const double slipped = slipped_by_turning(now, spans, sides, config);

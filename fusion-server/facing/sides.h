@@ -3,9 +3,9 @@
 // A body tracker assumes that everybody faces it: for a person seen from behind, the skeleton is in
 // place, but left and right are swapped.  So the vectors left - right of two views either agree or
 // oppose each other, which resolves the views relative to one another.  One common sign remains
-// open.  A hidden Markov model estimates it from posture, walking and the learned habits of each
-// sensor, without assuming an angle at which trackers swap sides (docs/papers/sides.md).  Causal:
-// the result for an instant does not depend on later ones.
+// open.  A hidden Markov model estimates it from posture, walking, worn inertial sensors and the
+// learned habits of each sensor, without assuming an angle at which trackers swap sides
+// (docs/papers/sides.md).  Causal: the result for an instant does not depend on later ones.
 #pragma once
 
 #include <map>
@@ -19,6 +19,7 @@
 #include "fusion-server/facing/stand_in.h"
 #include "fusion-server/facing/telling.h"
 #include "fusion-server/facing/walking.h"
+#include "fusion-server/facing/worn_sides.h"
 
 namespace chorus::facing {
 
@@ -36,6 +37,7 @@ struct SidesConfig {
   PersonPrior person = {};
   HabitPrior habit = {};
   TellingPrior telling = {};
+  WornCue worn = {};
   LimbLimits limbs = {};
   double change_odds = 1.0;  ///< The held sides change if the log odds against them exceed this.
   /// Standard deviation of the angle between the held spans and those on which the views agree, of
@@ -63,6 +65,7 @@ struct Sides {
   Walk walk;
   double posture = 0.0;  ///< Log odds of the posture at the previous instant.
   double sight = 0.0;    ///< Log odds of the labels at the previous instant.
+  double worn = 0.0;     ///< Log odds of worn sensors at the previous instant.
   std::map<SensorId, SeenLabels> views;
 };
 

@@ -233,14 +233,16 @@ associate::Scene scene_at(const Inputs& in, const Histories& histories,
 
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
                    const Memory& memory, const PipelineConfig& config) {
-  const auto aligned = align_all(in, histories, registration, config);          // 5.2.4
-  auto grouped = associate::group(scene_of(in, aligned, registration, config),  // 5.2.2, 5.2.3
-                                  memory.tracks, config.association);
+  const auto aligned = align_all(in, histories, registration, config);   // 5.2.4
+  associate::Scene scene = scene_of(in, aligned, registration, config);  // 5.2.2, 5.2.3
+  scene.worn = in.worn;
+  auto grouped = associate::group(std::move(scene), memory.tracks, config.association);
   Perceived perceived;
   perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion, memory.seating};
   perceived.people = std::move(grouped.people);
   perceived.corrections = std::move(grouped.corrections);
   forget(perceived.corrections, perceived.memory);
+  dress(perceived.people, in.worn);
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
   forget_the_gone(perceived.memory);

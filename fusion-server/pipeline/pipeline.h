@@ -13,6 +13,7 @@
 #include "fusion-server/flow/person.h"
 #include "fusion-server/flow/registration.h"
 #include "fusion-server/flow/snapshot.h"
+#include "fusion-server/flow/worn_people.h"
 #include "fusion-server/fusion/fuse.h"
 #include "fusion-server/fusion/quality.h"
 #include "fusion-server/pipeline/seating.h"
@@ -54,6 +55,7 @@ struct Inputs {
   Timestamp instant;  ///< The common instant to fuse.
   Timestamp now;      ///< When the server computes this.
   std::uint64_t sequence = 0;
+  WornPeople worn = {};  ///< What inertial sensors on people say at the instant.
 };
 
 /// The state that one instant passes to the next.

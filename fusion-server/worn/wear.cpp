@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kWearerGone = 5.0;   // [s] for which nobody has seen the wearer
 constexpr double kSlipIsNews = 60.0;  // [s] for which a slip is told
+// Sides that are less probable teach nothing (as SidesConfig::learn_from): what is learned on wrong
+// sides would go on to say that they are right.
+constexpr double kSidesKnown = 0.95;
 
 /// The body as views alone show it: hidden and guessed joints are left out.
 Skeleton<WorldSpace> views_alone(const FusedBody& body) {
@@ -17,6 +20,10 @@ Skeleton<WorldSpace> views_alone(const FusedBody& body) {
     if (body.contributors[j] == 0) alone.joints[j] = {};
   }
   return alone;
+}
+
+bool knows_sides(const FusedBody& body) {
+  return body.sides_confidence.value_or(1.0) >= kSidesKnown;
 }
 
 std::optional<inertial::Limb> limb_of(const inertial::InertialReading& reading) {
@@ -42,18 +49,18 @@ double Wear::time_of(Timestamp instant) const {
   return origin_ ? seconds(instant - *origin_) : 0.0;
 }
 
-void Wear::dress(std::vector<Person>& people, Timestamp instant) const {
+WornPeople Wear::say(Timestamp instant) const {
+  WornPeople people;
   for (const auto& [id, source] : sources_) {
     if (!source.wearer) continue;
-    const auto person = std::ranges::find(people, *source.wearer, &Person::id);
-    if (person == people.end() || person->carried) continue;
     for (const inertial::InertialReading& reading : source.history.at(instant)) {
       const auto sensor = source.sensors.find(reading.sensor);
       if (sensor == source.sensors.end()) continue;
       auto limb = sensor->second.limb_at(time_of(instant), id, reading);
-      if (limb) person->worn.push_back(std::move(*limb));
+      if (limb) people[*source.wearer].push_back(std::move(*limb));
     }
   }
+  return people;
 }
 
 void Wear::search_wearer(Source& source, const std::vector<inertial::InertialReading>& readings,
@@ -93,7 +100,8 @@ void Wear::learn_limbs(Source& source, const std::vector<inertial::InertialReadi
     if (at == source.sensors.end())
       at = source.sensors.emplace(reading.sensor, WornSensor(reading.sensor, *limb)).first;
     const auto tracked = evaluation::limb_from_joints(alone, *limb);
-    if (tracked) at->second.learn(time, *tracked, *reading.inertial_from_sensor, config_);
+    if (tracked && knows_sides(body))
+      at->second.learn(time, *tracked, *reading.inertial_from_sensor, config_);
   }
 }
 

@@ -14,7 +14,7 @@
 #include "common/evaluation/wearing.h"
 #include "common/inertial/orientation_history.h"
 #include "fusion-server/flow/fused_body.h"
-#include "fusion-server/flow/person.h"
+#include "fusion-server/flow/worn_people.h"
 #include "fusion-server/flow/worn_report.h"
 #include "fusion-server/worn/wearer.h"
 #include "fusion-server/worn/worn_sensor.h"
@@ -28,8 +28,8 @@ class Wear {
 
   /// Takes what a source said; the times are by our clock.
   void take(inertial::InertialFrame frame);
-  /// Sets Person::worn of everybody who is known to wear a calibrated source.
-  void dress(std::vector<Person>& people, Timestamp instant) const;
+  /// What calibrated sensors say of the limbs of those who are known to wear them.
+  [[nodiscard]] WornPeople say(Timestamp instant) const;
   /// Learns from the bodies that were fused at `instant`; at most one fit.
   void learn(const std::vector<FusedBody>& bodies, Timestamp instant);
   /// The world has changed: headings and people are others.

@@ -17,7 +17,7 @@ constexpr InertialCase kCases[] = {
     {"residual-real", run_residual_real},
     {"fuse-hidden", run_fuse_hidden}, {"fuse-seen", run_fuse_seen},
     {"heading", run_heading},       {"suit-of-whom", run_suit_of_whom},
-    {"cost", run_worn_cost},
+    {"cost", run_worn_cost},       {"witness", run_witness},
 };
 // clang-format on
 

@@ -56,6 +56,9 @@ struct InertialCase {
 /// What following thirteen sensors costs the fusion server.
 [[nodiscard]] Result<void> run_worn_cost(Report& report);
 
+/// Sides and identities with what worn sensors say, and without.
+[[nodiscard]] Result<void> run_witness(Report& report);
+
 /// The folder of recordings from outside the project: $CHORUS_SHARED/data or ../shared/data.
 [[nodiscard]] std::filesystem::path shared_recordings();
 

@@ -193,11 +193,12 @@ FusedTake fused_with(const WornTake& take, const std::vector<SeenInstant>& seen,
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i].people.empty()) continue;
     std::vector<Person> people = seen[i].people;
+    std::vector<inertial::InertialFrame> frames;
+    for (std::size_t k = 2 * i; faults != nullptr && k < 2 * i + 2; ++k)
+      frames.push_back(said(take, *faults, k));
     const double begin = now_seconds();
-    if (faults != nullptr) {
-      for (std::size_t k = 2 * i; k < 2 * i + 2; ++k) out.wear.take(said(take, *faults, k));
-      out.wear.dress(people, seen[i].at);
-    }
+    for (inertial::InertialFrame& frame : frames) out.wear.take(std::move(frame));
+    if (faults != nullptr) dress(people, out.wear.say(seen[i].at));
     const double dressed = now_seconds();
     const auto bodies = memory.fuse(people, {seen[i].at, seen[i].sensors}, config);
     const double fused = now_seconds();

@@ -36,7 +36,7 @@ TEST(Recognise, OfTwoAlikeWhoComeAtOnceOneIsTheLostPersonAndNobodyVanishes) {
   tracks.next_id = 10;
   std::vector<Candidate> candidates{candidate(1, 1.0, true), candidate(2, 1.0, false),
                                     candidate(3, 1.0, false)};
-  recognise(candidates, tracks, kNow, {});
+  recognise(candidates, tracks, {kNow, {}}, {});
   ASSERT_EQ(candidates.size(), 2u);
   EXPECT_EQ(candidates[0].track.id, PersonId{1});
   EXPECT_EQ(candidates[1].track.id, PersonId{3});
@@ -47,7 +47,7 @@ TEST(Recognise, OfTwoWhoComeAtOnceEachIsWhomBothTogetherFitBest) {
   tracks.next_id = 10;
   std::vector<Candidate> candidates{candidate(1, 1.0, true), candidate(2, 1.03, true),
                                     candidate(3, 1.012, false), candidate(4, 0.985, false)};
-  recognise(candidates, tracks, kNow, {});
+  recognise(candidates, tracks, {kNow, {}}, {});
   ASSERT_EQ(candidates.size(), 2u);
   EXPECT_EQ(candidates[0].track.id, PersonId{2}) << "although the first fits better";
   EXPECT_EQ(candidates[1].track.id, PersonId{1});
@@ -72,7 +72,7 @@ TEST(Recognise, AnIdThatNobodyHasSeenIsNotMissed) {
   tracks.next_id = 10;
   std::vector<Candidate> candidates{found_again(1.0, 1.2, 2.0)};
   candidates[0].track.admitted = false;
-  EXPECT_TRUE(recognise(candidates, tracks, kNow, {}).empty()) << "and nothing is corrected";
+  EXPECT_TRUE(recognise(candidates, tracks, {kNow, {}}, {}).empty()) << "and nothing is corrected";
   EXPECT_EQ(candidates[0].track.id, PersonId{10}) << "somebody else";
   EXPECT_TRUE(tracks.missing.empty()) << "it was never published";
 }
@@ -83,7 +83,7 @@ TEST(Recognise, WhatWasWithheldAllTheTimeIsNotCorrected) {
     tracks.next_id = 10;
     std::vector<Candidate> candidates{found_again(1.0, 1.2, 2.0)};
     candidates[0].track.published = withheld ? kNow - std::chrono::seconds(10) : kNow;
-    EXPECT_EQ(recognise(candidates, tracks, kNow, {}).size(), withheld ? 0u : 1u);
+    EXPECT_EQ(recognise(candidates, tracks, {kNow, {}}, {}).size(), withheld ? 0u : 1u);
     EXPECT_EQ(candidates[0].track.id, PersonId{10});
     EXPECT_FALSE(candidates[0].track.published) << "the new id was not published yet";
   }
@@ -93,12 +93,12 @@ TEST(Recognise, ASecondInViewIsLearnedOnceHoweverLongACameraAloneFollows) {
   Tracks tracks;
   tracks.next_id = 10;
   std::vector<Candidate> candidates{found_again(1.0, 1.0, 1.0)};
-  recognise(candidates, tracks, kNow, {});
+  recognise(candidates, tracks, {kNow, {}}, {});
   const double learned = tracks.repeatability.seconds;
   EXPECT_EQ(learned, Repeatability{}.seconds + 1.0);
   for (int i = 1; i < 90; ++i) {
     candidates[0].track.seen = kNow + i * kFrameInterval;
-    recognise(candidates, tracks, candidates[0].track.seen, {});
+    recognise(candidates, tracks, {candidates[0].track.seen, {}}, {});
   }
   EXPECT_EQ(tracks.repeatability.seconds, learned);
 }
@@ -117,7 +117,7 @@ TEST(Recognise, OfThreeWhoTookEachOthersPlaceNobodyVanishes) {
   tracks.next_id = 10;
   std::vector<Candidate> candidates{gone_over(1, 1.0, 1.16, 0.2), gone_over(2, 1.08, 1.0, 0.2),
                                     gone_over(3, 1.16, 1.08, 2.0)};
-  recognise(candidates, tracks, kNow, {});
+  recognise(candidates, tracks, {kNow, {}}, {});
   ASSERT_EQ(candidates.size(), 3u);
   EXPECT_EQ(candidates[0].track.id, PersonId{3});
   EXPECT_EQ(candidates[1].track.id, PersonId{1});
@@ -133,7 +133,7 @@ Shown shown_while_compared(double size) {
   Tracks tracks;
   tracks.next_id = 10;
   std::vector<Candidate> candidates{found_again(1.0, size, 0.33)};
-  recognise(candidates, tracks, kNow, {});
+  recognise(candidates, tracks, {kNow, {}}, {});
   if (candidates[0].track.id != PersonId{1}) return Shown::AsAnother;
   return candidates[0].track.withheld ? Shown::NotAtAll : Shown::AsBefore;
 }

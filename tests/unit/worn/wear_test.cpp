@@ -30,6 +30,7 @@ struct WornWorld {
       for (const Walker& who : people) bodies.push_back(walker::fused_of(who, time, 0.015, random));
       for (FusedBody& body : bodies)
         for (const JointId id : hidden) body.contributors[index_of(id)] = 0;
+      for (FusedBody& body : bodies) body.sides_confidence = sides;
       wear.learn(bodies, walker::at(time));
       if (until()) return;
     }
@@ -47,9 +48,9 @@ struct WornWorld {
   /// What the sensors say of the first person, at the last instant.
   [[nodiscard]] std::vector<WornLimb> says() {
     const double last = time - 1.0 / 15.0;
-    std::vector<Person> all{Person{PersonId{people.front().id}, {}}};
-    wear.dress(all, walker::at(last));
-    return all.front().worn;
+    const WornPeople said = wear.say(walker::at(last));
+    const auto own = said.find(PersonId{people.front().id});
+    return own == said.end() ? std::vector<WornLimb>{} : own->second;
   }
   /// Largest angle by which a limb's predicted bone is off [rad].
   [[nodiscard]] double worst() {
@@ -70,6 +71,7 @@ struct WornWorld {
   Suit suit;
   std::vector<Walker> people;
   std::vector<JointId> hidden;
+  std::optional<double> sides = {};  ///< Of everybody.
   Wear wear;
   double time = 0.0;
   std::mt19937_64 random{7};
@@ -142,6 +144,16 @@ TEST(Wear, ASensorThatSlipsIsToldLeftOutAndCalibratedAgain) {
   world.run(world.time + 12.0);
   EXPECT_TRUE(shank().calibrated);
   EXPECT_LT(world.worst(), deg(6));
+}
+
+TEST(Wear, NothingIsLearnedOfLimbsWhileItIsInDoubtWhichSideIsWhich) {
+  WornWorld world({kWearer});
+  world.sides = 0.7;
+  world.run(15.0);
+  EXPECT_TRUE(world.says().empty());
+  world.sides = 0.99;
+  world.run(40.0, [&] { return world.all_calibrated(); });
+  EXPECT_TRUE(world.all_calibrated());
 }
 
 TEST(Wear, WhatHiddenLimbsWouldShowIsNotLearned) {
