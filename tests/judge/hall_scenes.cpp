@@ -17,7 +17,8 @@ using synthetic::Draw;
 
 constexpr double kSide = 6.0;     // [m] of a cell
 constexpr double kOverlap = 1.5;  // [m]
-constexpr double kGap = 2.4;      // [m]: two seconds at 1.2 m/s
+constexpr double kPitch = kSide - kOverlap;
+constexpr double kGap = 2.4;  // [m]: two seconds at 1.2 m/s
 constexpr std::size_t kColumns = 4;
 
 /// The sizes of people differ by this, relative, and each length at the same size by that; the
@@ -26,11 +27,10 @@ constexpr double kSizes = 0.05;
 constexpr double kLengths = 0.02;
 
 double column_middle(std::size_t column) {
-  constexpr double kNear = kSide - kOverlap;
-  constexpr std::array kMiddles{0.0, kNear, kNear + kSide + kGap, 2 * kNear + kSide + kGap};
+  constexpr std::array kMiddles{0.0, kPitch, kPitch + kSide + kGap, 2 * kPitch + kSide + kGap};
   return kMiddles[column];
 }
-double row_middle(std::size_t row) { return row == 0 ? 0.0 : kSide - kOverlap; }
+double row_middle(std::size_t row) { return row == 0 ? 0.0 : kPitch; }
 
 Eigen::AlignedBox2d box(double x, double z, double half_x, double half_z) {
   return {Eigen::Vector2d(x - half_x, z - half_z), Eigen::Vector2d(x + half_x, z + half_z)};
@@ -66,24 +66,24 @@ struct Leg {
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
 };
 
-/// Cells that can be reached from one: row * kColumns + column.
-std::vector<std::size_t> neighbours(std::size_t cell) {
+/// Cells that can be reached from one: row * kColumns + column.  `walled`: the rows are joined at
+/// their ends only.
+std::vector<std::size_t> neighbours(std::size_t cell, bool walled) {
   const std::size_t column = cell % kColumns;
+  const std::size_t across = (cell + kColumns) % (2 * kColumns);
   std::vector<std::size_t> all;
+  if (!walled) all.push_back(across);
   if (column > 0) all.push_back(cell - 1);
   if (column + 1 < kColumns) all.push_back(cell + 1);
-  if (column == 0 || column + 1 == kColumns) all.push_back((cell + kColumns) % (2 * kColumns));
+  if (walled && (column == 0 || column + 1 == kColumns)) all.push_back(across);
   return all;
 }
 
-constexpr double kPitch = kSide - kOverlap;
-
-std::vector<std::size_t> grid_neighbours(std::size_t cell) {
-  const std::size_t column = cell % kColumns;
-  std::vector<std::size_t> all{(cell + kColumns) % (2 * kColumns)};
-  if (column > 0) all.push_back(cell - 1);
-  if (column + 1 < kColumns) all.push_back(cell + 1);
-  return all;
+/// Goes on from the end of the path in a straight line; nobody takes less than half a second.
+void walk_to(const Eigen::Vector2d& to, double speed, std::vector<Leg>& legs) {
+  const Leg& last = legs.back();
+  const double duration = std::max(0.5, (to - last.to).norm() / speed);
+  legs.push_back({last.end, last.end + duration, last.to, to});
 }
 
 Eigen::Vector2d spot_in(std::size_t cell, Draw& draw) {
@@ -100,17 +100,15 @@ std::vector<Leg> legs_of(Draw& draw, double length) {
   for (double time = -10.0; time < length + 10.0;) {
     const double pause = draw.uniform() < 0.5 ? draw.uniform(0.0, 1.0) : draw.uniform(2.0, 12.0);
     legs.push_back({time, time + pause, at, at});
-    time += pause;
     if (draw.uniform() < 0.7) {
-      const auto ways = neighbours(cell);
+      const auto ways = neighbours(cell, true);
       cell = ways[draw.bits() % ways.size()];
     }
     Eigen::Vector2d to = spot_in(cell, draw);
     const Eigen::Vector2d along = (to - at).normalized();
     if (along.allFinite()) to += kRight * Eigen::Vector2d(-along.y(), along.x());
-    const double duration = std::max(0.5, (to - at).norm() / draw.uniform(0.8, 1.5));
-    legs.push_back({time, time + duration, at, to});
-    time += duration;
+    walk_to(to, draw.uniform(0.8, 1.5), legs);
+    time = legs.back().end;
     at = to;
   }
   return legs;
@@ -184,10 +182,11 @@ HallPerson walker_through_grid(std::uint64_t seed, double length) {
   Draw draw({seed, 24});
   std::map<std::pair<std::size_t, std::size_t>, int> used;
   std::size_t cell = 0;
-  Eigen::Vector2d at(0, 0);
-  std::vector<Leg> legs;
-  for (double time = -10.0; time < length + 10.0;) {
-    const std::vector<std::size_t> ways = grid_neighbours(cell);
+  constexpr double kBegin = -10.0;
+  const Eigen::Vector2d corner(0, 0);
+  std::vector<Leg> legs{{kBegin, kBegin, corner, corner}};
+  while (legs.back().end < length + 10.0) {
+    const std::vector<std::size_t> ways = neighbours(cell, false);
     const std::size_t next = *std::ranges::min_element(ways, {}, [&](std::size_t way) {
       return used[{cell, way}] + draw.uniform(0.0, 0.9);
     });
@@ -195,10 +194,7 @@ HallPerson walker_through_grid(std::uint64_t seed, double length) {
     const Eigen::Vector2d to(
         kPitch * static_cast<double>(next % kColumns) + draw.uniform(-1.5, 1.5),
         row_middle(next / kColumns) + draw.uniform(-1.5, 1.5));
-    const double duration = std::max(0.5, (to - at).norm() / draw.uniform(0.9, 1.3));
-    legs.push_back({time, time + duration, at, to});
-    time += duration;
-    at = to;
+    walk_to(to, draw.uniform(0.9, 1.3), legs);
     cell = next;
   }
   return {smooth(std::move(legs))};
