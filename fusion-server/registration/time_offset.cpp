@@ -157,8 +157,8 @@ Error cannot_tell(const SensorId& target, const SensorId& source) {
                       both)};
 }
 
-/// Adds to `clocks.open` each pair whose place varies by more than kMaxSpread over the offsets that
-/// the walk does not exclude.
+/// Adds to `clocks.open` each pair whose place varies by more than kMaxSpread, or than a good place
+/// may be off, over the offsets that the walk does not exclude.
 void mark_open(const Network& network, const RegistrationConfig& config, const PairSearch& search,
                WalkClocks& clocks) {
   std::vector<double> spreads(network.pairs.size(), 0.0);
@@ -166,7 +166,7 @@ void mark_open(const Network& network, const RegistrationConfig& config, const P
     if (!search.stopped()) spreads[i] = place_spread(network, network.pairs[i], config);
   });
   for (std::size_t i = 0; i < spreads.size(); ++i) {
-    if (spreads[i] <= kMaxSpread) continue;
+    if (spreads[i] <= std::max(kMaxSpread, config.good_position)) continue;
     const Measured& pair = network.pairs[i];
     const SensorId& target = network.sensors[pair.target];
     const SensorId& source = network.sensors[pair.source];

@@ -51,6 +51,7 @@ registration::RegistrationConfig solver_config(const PlacesConfig& config) {
   solver.min_distance = 0.0;
   solver.max_distance = kAnywhere;
   solver.max_position = config.max_radius;
+  // By as much may a place vary with the clocks, too.
   solver.good_position = config.max_radius;
   solver.find_large_bias = false;
   solver.latency_sigma = Duration{0};
