@@ -26,17 +26,9 @@ struct AssociationConfig {
   /// Two published tracks merge after this many consecutive instants at the same spot without a
   /// common sensor.
   int merge_frames = 15;
-  /// How long a body that only one sensor sees must persist if others look there and see nobody; 0:
-  /// it need not wait.  While others see through it from two sides, it goes on waiting.
-  Duration alone = std::chrono::seconds(3);
-  /// How long a body that appears at rest must persist if only one sensor sees it and no other one
-  /// looks there; less if it moves. 0: it need not wait. Nobody waits while somebody is missing,
-  /// for this long after the first instant, and in a room with a single sensor.
-  Duration motionless = std::chrono::seconds(10);
-  /// A sensor certainly sees a person within this angle of its optical axis [rad] and this range
-  /// [m].
-  double look_angle = deg(25);
-  double look_range = 4.0;
+  /// How long a body must persist where sensors contradict each other so evenly that it would be
+  /// believed if it moved; less if it moves. 0: it need not wait.
+  Duration doubt = std::chrono::seconds(10);
   BodyLimits bodies = {};
 
   bool operator==(const AssociationConfig&) const = default;

@@ -5,8 +5,9 @@
 #include <tuple>
 #include <utility>
 
-#include "fusion-server/associate/admission.h"
+#include "fusion-server/associate/existence.h"
 #include "fusion-server/associate/matching.h"
+#include "fusion-server/associate/mirrors.h"
 #include "fusion-server/associate/recognition.h"
 #include "fusion-server/associate/track_motion.h"
 #include "fusion-server/associate/worn_likeness.h"
@@ -134,12 +135,11 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
 
 /// Removes people whom no sensor sees and through whose place sensors on different sides have seen
 /// for kGone.
-void leave(std::vector<Candidate>& candidates, const Admission& admission, Duration elapsed,
-           Tracks& tracks) {
+void leave(std::vector<Candidate>& candidates, const Gaze& gaze, Duration elapsed, Tracks& tracks) {
   std::erase_if(candidates, [&](Candidate& candidate) {
     Track& track = candidate.track;
     if (!candidate.sights.empty()) return false;
-    const bool through = admission.seen_through(track, candidate.predicted);
+    const bool through = gaze.seen_through(track.id, candidate.predicted);
     track.through = through ? track.through + elapsed : Duration{0};
     if (track.through < kGone) return false;
     miss(track, tracks);
@@ -147,19 +147,46 @@ void leave(std::vector<Candidate>& candidates, const Admission& admission, Durat
   });
 }
 
-void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& observers,
-           Duration elapsed, Tracks& tracks, const AssociationConfig& config) {
+std::vector<Assigned> assigned(const std::vector<Candidate>& candidates,
+                               const AssociationConfig& config) {
   std::vector<Assigned> bodies;
   for (const Candidate& candidate : candidates) {
     const bool settled = is_settled(candidate.track, config);
     for (const PlacedView& sight : candidate.sights)
-      bodies.push_back({sight.view.sensor, sight.core, sight.error, candidate.track.id, settled});
+      bodies.push_back({sight.view.sensor, sight.core, sight.error, candidate.track.id, settled,
+                        is_on_floor(sight)});
   }
-  const bool by_walking =
-      tracks.missing.empty() && tracks.instant - tracks.began >= config.motionless;
-  const Admission admission(observers, bodies, elapsed, by_walking, config);
-  for (Candidate& candidate : candidates) admission.judge(candidate.track);
-  leave(candidates, admission, elapsed, tracks);
+  return bodies;
+}
+
+/// True if the sensors' own floors, or the people so far, show that the floor is at y = 0.
+bool knows_floor(const std::vector<Observer>& observers, const Tracks& tracks) {
+  return tracks.floor_seen || std::ranges::any_of(observers, &Observer::knows_floor);
+}
+
+/// Judges everybody who is seen, and removes who has left.
+std::vector<Standing> judge_all(std::vector<Candidate>& candidates,
+                                const std::vector<Observer>& observers, Duration elapsed,
+                                Tracks& tracks, const AssociationConfig& config) {
+  reflect(candidates, observers, seconds(elapsed), tracks.mirrors);
+  const std::vector<Assigned> bodies = assigned(candidates, config);
+  const Gaze gaze(observers, bodies, tracks.fields, config.gate);
+  const Sitting sitting{elapsed, config.doubt, knows_floor(observers, tracks)};
+  std::vector<Standing> standings;
+  for (Candidate& candidate : candidates) {
+    if (candidate.sights.empty()) continue;
+    standings.push_back(judge(candidate.track, gaze, sitting));
+  }
+  leave(candidates, gaze, elapsed, tracks);
+  for (const Candidate& candidate : candidates) {
+    if (candidate.sights.empty()) continue;
+    learn(candidate.track, gaze, seconds(elapsed), tracks.fields);
+    const bool sure = candidate.track.admitted && candidate.sights.size() > 1;
+    const bool stands =
+        std::ranges::all_of(gaze.sights_of(candidate.track.id), &Assigned::on_floor);
+    tracks.floor_seen = tracks.floor_seen || (sure && stands);
+  }
+  return standings;
 }
 
 /// Keeps only as many people as a frame may contain; false bodies must not displace people whom
@@ -244,10 +271,9 @@ std::vector<Candidate> newcomers(std::vector<PlacedView> views,
 
 Grouping group(Scene scene, const Tracks& before, const AssociationConfig& config) {
   const Timestamp instant = scene.instant;
-  Grouping grouping{{}, before, {}};
+  Grouping grouping{{}, {}, before, {}};
   Tracks& tracks = grouping.tracks;
   tracks.next_id = std::max<std::uint64_t>(tracks.next_id, 1);
-  if (before.instant == Timestamp{}) tracks.began = instant;
   std::vector<Candidate> candidates = expected(tracks, instant, config);
   dress(candidates, scene.worn);
   std::vector<PlacedView> leftovers = match(placed_views(std::move(scene.views)), candidates);
@@ -257,7 +283,7 @@ Grouping group(Scene scene, const Tracks& before, const AssociationConfig& confi
   for (Candidate& candidate : candidates) update(candidate, instant);
   merge_doubles(candidates, config);
   const Duration elapsed = std::clamp(instant - before.instant, Duration{0}, config.coast);
-  admit(candidates, scene.observers, elapsed, tracks, config);
+  grouping.standings = judge_all(candidates, scene.observers, elapsed, tracks, config);
   compare_worn(candidates, seconds(elapsed));
   grouping.corrections = recognise(candidates, tracks, {instant, scene.worn}, config);
   std::ranges::sort(candidates, {}, [](const Candidate& one) { return one.track.id; });

@@ -4,7 +4,7 @@
 // (matching.h); the remaining bodies are clustered across sensors into new people. Two tracks that
 // different sensors see on one spot are one person; two published tracks only once this has lasted
 // for merge_frames. A published track stays rather than an unpublished one, otherwise the older. A
-// person whom only one sensor sees where others look is not published at once (admission.h). People
+// track is published only while more sensors see the person than miss them (existence.h). People
 // who are not seen are looked for where they are expected. Those who left are remembered, and
 // recognised by their build (recognition.h). Of people who wear inertial sensors, what these say of
 // the limbs counts as well (worn_likeness.h). Ray bodies of cameras without depth are matched by
@@ -15,9 +15,11 @@
 #include <vector>
 
 #include "fusion-server/associate/association_config.h"
+#include "fusion-server/associate/gaze.h"
 #include "fusion-server/associate/track.h"
 #include "fusion-server/flow/correction.h"
 #include "fusion-server/flow/person.h"
+#include "fusion-server/flow/standing.h"
 #include "fusion-server/flow/worn_people.h"
 
 namespace chorus::associate {
@@ -26,15 +28,11 @@ struct Grouping {
   /// The confirmed, admitted and named people, seen or expected, ordered by id.  At most as many as
   /// a frame holds; if there are more, those whom several sensors see are preferred.
   std::vector<Person> people;
+  /// What the sensors say of everybody whom some of them see, published or not.
+  std::vector<Standing> standings;
   Tracks tracks;
   /// Who was published under another's id until now.
   std::vector<Correction> corrections = {};
-};
-
-/// A registered sensor that has delivered a frame for the instant, even if it saw nobody.
-struct Observer {
-  SensorId sensor;
-  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
 };
 
 /// All bodies at one instant: each view contains the world skeleton of one body.  Two views of the
@@ -42,7 +40,7 @@ struct Observer {
 struct Scene {
   Timestamp instant;
   std::vector<SensorView> views;
-  std::vector<Observer> observers = {};  ///< If empty, no body has to wait for admission.
+  std::vector<Observer> observers = {};  ///< If empty, nobody is contradicted.
   WornPeople worn = {};                  ///< Who wears inertial sensors, and what these say.
 };
 

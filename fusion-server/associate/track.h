@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/body/bones.h"
+#include "fusion-server/associate/sight_field.h"
 #include "fusion-server/associate/tracklets.h"
 
 namespace chorus::associate {
@@ -16,6 +17,32 @@ struct Footprint {
   SensorId sensor;
   BodyId body;
   std::array<std::optional<Eigen::Vector3d>, kCoreJoints.size()> core;  ///< World [m].
+};
+
+/// How far the sensors agree that there is somebody (existence.h).
+struct Belief {
+  double balance = 0.0;  ///< Integral of what spoke for and against it, within limits [s].
+  bool moved = false;    ///< True once the person has left the place where they appeared.
+  std::optional<Eigen::Vector3d> last = {};  ///< Track::core at the last instant with sights.
+  Duration waited{0};  ///< How long it has been seen while only moving would have decided.
+};
+
+/// A plane that reflects, in world space: all x with normal . x = offset.
+struct Mirror {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Of length 1; either side.
+  double offset = 0.0;                                ///< [m]
+};
+using Mirrors = std::vector<Mirror>;
+
+/// Whose image in a mirror a track may be (mirrors.h).
+struct Image {
+  PersonId of;                                     ///< The person whom it resembles.
+  Mirror mirror = {};                              ///< The plane in which it does.
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< Where `way` was counted to, world [m].
+  double way = 0.0;     ///< How far the person has gone while the image followed [m].
+  double unlike = 0.0;  ///< For how long it has resembled nobody [s].
+  bool like = false;    ///< True if it resembles them at this instant.
+  bool sure = false;    ///< True once it is an image and not a second person.
 };
 
 /// What is remembered of one person.
@@ -36,12 +63,10 @@ struct Track {
   int shadowed = 0;
   /// Positions of the joints when the person was last seen; empty if no view then was a ray body.
   Located joints;
-  bool admitted = false;  ///< True if the track may be published; it stays true.
+  bool admitted = false;                               ///< True while the track may be published.
   Eigen::Vector3d appeared = Eigen::Vector3d::Zero();  ///< `core` at the first instant.
-  bool moved = false;  ///< True once the person has left the place where they appeared.
-  /// True once a sensor has looked at the person's place without seeing the person.
-  bool doubted = false;
-  Duration alone{0};  ///< How long the doubted person has been seen; see Admission::judge().
+  Belief belief = {};
+  Image image = {};
   /// How long sensors have seen through the place where the person is expected.
   Duration through{0};
   Tracklets build = {};  ///< What is known of the person's build.
@@ -66,10 +91,12 @@ struct Missing {
 struct Tracks {
   std::uint64_t next_id = 1;
   Timestamp instant;  ///< The last instant that group() has processed.
-  Timestamp began;    ///< The first one.
   std::vector<Track> people;
   std::vector<Missing> missing = {};  ///< In the order in which they left.
   Repeatability repeatability = {};
+  SightFields fields = {};  ///< Where each sensor sees people.
+  Mirrors mirrors = {};
+  bool floor_seen = false;  ///< True once somebody whom several sensors saw stood on the floor.
 };
 
 /// A track while its instant is being processed.

@@ -126,8 +126,8 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   world_.hindsight.remember(std::move(answered));
   schedule_.answered(now);
   guard_.look(step.people, tick.instant, config_.watch);
-  strays_.look({tick.instant, step.snapshot.reports, step.people, registration()},
-               config_.pipeline.association);
+  strays_.look({tick.instant, step.snapshot.reports, step.people, step.standings, registration()});
+  contests_.look(tick.instant, step.standings);
   displace_moved(tick.instant);
   return std::move(step.snapshot);
 }
@@ -305,7 +305,8 @@ void FusionCore::forget(PersonId person) {
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays
-  memory_.seating = {};           // nobody left: whoever is here gets the low slots again
+  contests_.forget();
+  memory_.seating = {};  // nobody left: whoever is here gets the low slots again
   world_ = DecidedWorld(config_.output.late_frames);
   fade_.stop();
   wear_.leave_world();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fusion-server/core/contests.h"
 #include "fusion-server/core/core_config.h"
 #include "fusion-server/core/cross_fade.h"
 #include "fusion-server/core/decided_world.h"
@@ -92,6 +93,14 @@ class FusionCore {
   [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
   /// The alarm as a sentence for people; empty if there is none.
   [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
+  /// Who contradicts what this sensor sees, as a sentence for people; empty if nobody does.
+  [[nodiscard]] std::string contested(const SensorId& sensor) const {
+    return contests_.sentence_of(sensor);
+  }
+  /// How many bodies the sensor has seen since the start that nobody believed.
+  [[nodiscard]] std::uint64_t contests(const SensorId& sensor) const {
+    return contests_.count_of(sensor);
+  }
   /// What is known of the inertial sources and who wears them; empty while they are not used.
   [[nodiscard]] std::vector<WornReport> worn(Timestamp now) const { return wear_.reports(now); }
   /// How often a sensor lost its place because it was moved.
@@ -129,6 +138,7 @@ class FusionCore {
   Told told_;
   Guard guard_;
   Strays strays_;
+  Contests contests_;
   worn::Wear wear_;
 };
 

@@ -22,41 +22,24 @@ bool sees(const SensorId& sensor, const Person& person) {
   return std::ranges::find(person.views, sensor, &SensorView::sensor) != person.views.end();
 }
 
-std::optional<Eigen::Vector3d> place_of(const Person& person) {
-  for (const SensorView& view : person.views) {
-    for (const JointId id : {JointId::SpineMid, JointId::SpineBase, JointId::Neck, JointId::Head}) {
-      const auto& joint = view.skeleton[id];
-      if (joint.state != JointState::NotTracked && joint.position.allFinite())
-        return joint.position;
-    }
-  }
-  return std::nullopt;
-}
-
-/// Whether a sensor at this place would certainly see the person, if nothing is in between.
-bool looks_at(const Extrinsics& place, const Person& person,
-              const associate::AssociationConfig& config) {
-  const auto there = place_of(person);
-  if (!there) return false;
-  const Eigen::Vector3d seen = place.world_from_sensor.inverse() * *there;
-  const double distance = seen.norm();
-  return distance <= config.look_range && seen.z() >= distance * std::cos(config.look_angle);
+/// The sensors that look at the person and see nobody there.
+const std::vector<SensorId>& missing(const Person& person, const Sights& sights) {
+  static const std::vector<SensorId> kNone;
+  const auto found = std::ranges::find(sights.standings, person.id, &Standing::id);
+  return found == sights.standings.end() ? kNone : found->missed_by;
 }
 
 /// Whether some sensor that sees people looks at this one and sees nobody there.
-bool missed_by_others(const Person& person, const Sights& sights,
-                      const associate::AssociationConfig& config) {
-  return std::ranges::any_of(sights.reports, [&](const SensorReport& report) {
-    const auto place = sights.registration.sensors.find(report.sensor);
-    return report.bodies > 0 && place != sights.registration.sensors.end() &&
-           !sees(report.sensor, person) && looks_at(place->second, person, config);
+bool missed_by_others(const Person& person, const Sights& sights) {
+  return std::ranges::any_of(missing(person, sights), [&](const SensorId& sensor) {
+    const auto report = std::ranges::find(sights.reports, sensor, &SensorReport::sensor);
+    return report != sights.reports.end() && report->bodies > 0;
   });
 }
 
 enum class Finding { Nothing, Together, Apart };
 
-Finding finding_of(const SensorReport& report, const Sights& sights,
-                   const associate::AssociationConfig& config) {
+Finding finding_of(const SensorReport& report, const Sights& sights) {
   const auto place = sights.registration.sensors.find(report.sensor);
   if (report.bodies == 0 || place == sights.registration.sensors.end()) return Finding::Nothing;
   bool own = false;         // this sensor alone sees somebody
@@ -67,9 +50,9 @@ Finding finding_of(const SensorReport& report, const Sights& sights,
     const bool here = sees(report.sensor, person);
     if (here && person.views.size() > 1) return Finding::Together;
     own = own || here;
-    own_missed = own_missed || (here && missed_by_others(person, sights, config));
+    own_missed = own_missed || (here && missed_by_others(person, sights));
     others = others || (!here && !person.views.empty());
-    missed = missed || (!here && looks_at(place->second, person, config));
+    missed = missed || std::ranges::count(missing(person, sights), report.sensor) > 0;
   }
   const bool apart = own ? own_missed && missed : others;
   return apart ? Finding::Apart : Finding::Nothing;
@@ -77,12 +60,12 @@ Finding finding_of(const SensorReport& report, const Sights& sights,
 
 }  // namespace
 
-void Strays::look(const Sights& sights, const associate::AssociationConfig& config) {
+void Strays::look(const Sights& sights) {
   const Duration passed = last_ ? sights.instant - *last_ : Duration{0};
   const Duration step = passed > kLongestStep ? Duration{0} : std::max(passed, Duration{0});
   last_ = sights.instant;
   for (const SensorReport& report : sights.reports) {
-    const Finding found = finding_of(report, sights, config);
+    const Finding found = finding_of(report, sights);
     if (found == Finding::Together) apart_.erase(report.sensor);
     if (found == Finding::Apart)
       apart_.try_emplace(report.sensor, Apart{sights.instant}).first->second.seen += step;

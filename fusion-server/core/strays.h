@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "fusion-server/associate/association_config.h"
 #include "fusion-server/flow/person.h"
 #include "fusion-server/flow/registration.h"
 #include "fusion-server/flow/snapshot.h"
+#include "fusion-server/flow/standing.h"
 
 namespace chorus::core {
 
@@ -22,19 +22,19 @@ struct Sights {
   Timestamp instant;
   const std::vector<SensorReport>& reports;  ///< Of the sensors that have a place.
   const std::vector<Person>& people;         ///< The published ones.
+  const std::vector<Standing>& standings;    ///< What the sensors say of everybody.
   const Registration& registration;
 };
 
 class Strays {
  public:
-  /// `config` says where a sensor certainly sees people.
-  void look(const Sights& sights, const associate::AssociationConfig& config);
+  void look(const Sights& sights);
 
   /// Since when the sensor has seen somebody, but none of the people whom others see.  None before
   /// it has done so for ten seconds.  One view of a person whom others see, too, ends it; time in
   /// which this sensor or all others see nobody does not count.  While this sensor alone sees a
   /// published person, there may be two people.  Then only those instants count in which each side
-  /// misses a person of the other side whom it would certainly see.
+  /// misses a person of the other side (Standing::missed_by).
   [[nodiscard]] std::optional<Timestamp> since(const SensorId& sensor) const;
 
   void forget() { apart_.clear(); }

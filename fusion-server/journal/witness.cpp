@@ -25,6 +25,9 @@ constexpr Kind kSensorRefused{"sensor-refused", Severity::Error,
                               "Correct its address or its token under \"sensors\" in the "
                               "configuration."};
 constexpr Kind kSensorMoved{"sensor-moved", Severity::Warning, "Register the sensors anew."};
+constexpr Kind kContested{"sensor-contested", Severity::Warning,
+                          "A mirror, a coat or a moved sensor shows somebody who is not there; "
+                          "if somebody is, something hides them from the others."};
 constexpr Kind kSensorInPlace{"sensor-in-place"};
 constexpr Kind kVerdict{"verdict-changed"};
 constexpr Kind kVerdictWorse{"verdict-changed", Severity::Warning,
@@ -57,11 +60,11 @@ constexpr Kind kBack{"person-back"};
 constexpr Kind kCorrected{"person-corrected"};
 
 constexpr std::array kKinds{
-    kSensorLive,      kSensorLost, kSensorBack, kSensorRefused, kSensorMoved,
-    kSensorInPlace,   kVerdict,    kAdopted,    kNotAdopted,    kProposed,
-    kReplaced,        kNotStored,  kClientCame, kClientLost,    kOutputFailed,
-    kOutputOpen,      kDiskLow,    kDiskRoom,   kRecording,     kRecordingEnded,
-    kRecordingFailed, kCame,       kLeft,       kBack,          kCorrected};
+    kSensorLive,    kSensorLost, kSensorBack,     kSensorRefused,   kSensorMoved, kContested,
+    kSensorInPlace, kVerdict,    kAdopted,        kNotAdopted,      kProposed,    kReplaced,
+    kNotStored,     kClientCame, kClientLost,     kOutputFailed,    kOutputOpen,  kDiskLow,
+    kDiskRoom,      kRecording,  kRecordingEnded, kRecordingFailed, kCame,        kLeft,
+    kBack,          kCorrected};
 
 /// Collects the events of one comparison.
 class Teller {
@@ -117,6 +120,8 @@ void tell_sensors(Teller& out, const Glimpse& now, const Glimpse* last) {
     if (was || sensor.state != "live") tell_state(out, sensor, was ? was->state : "connecting");
     const bool alarm_was = was && !was->alarm.empty();
     if (!sensor.alarm.empty() && !alarm_was) tell_moved(out, sensor);
+    if (!sensor.contested.empty() && !(was && !was->contested.empty()))
+      out.tell(kContested, sensor.id.str(), sensor.contested + ".");
     if (sensor.alarm.empty() && alarm_was)
       out.tell(kSensorInPlace, sensor.id.str(), sensor.id.str() + " stands where it should.");
   }

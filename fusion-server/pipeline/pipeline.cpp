@@ -1,6 +1,7 @@
 #include "fusion-server/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -89,6 +90,13 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
 
 bool has_spoken(Basis basis) { return basis == Basis::Exact || basis == Basis::Interpolated; }
 
+/// True if the floor that the sensor measures is where the world has it.
+bool knows_floor(const AlignedSensor& sensor, const Eigen::Isometry3d& world_from_sensor) {
+  constexpr double kSameHeight = 0.5;  // [m]
+  return sensor.floor &&
+         std::abs(world_from_sensor.translation().y() - sensor.floor->offset) < kSameHeight;
+}
+
 /// The sensors that have delivered for this instant.  Another fusion server, whose bodies are in
 /// world space with the floor at y = 0, is not an observer.
 std::vector<associate::Observer> observers_of(const std::vector<AlignedSensor>& aligned,
@@ -98,7 +106,8 @@ std::vector<associate::Observer> observers_of(const std::vector<AlignedSensor>& 
     const auto place = registration.sensors.find(sensor.sensor);
     const bool eyeless = sensor.floor && sensor.floor->offset == 0.0;
     if (place == registration.sensors.end() || !has_spoken(sensor.basis) || eyeless) continue;
-    observers.push_back({sensor.sensor, place->second.world_from_sensor});
+    const Eigen::Isometry3d& at = place->second.world_from_sensor;
+    observers.push_back({sensor.sensor, at, knows_floor(sensor, at)});
   }
   return observers;
 }
@@ -243,6 +252,7 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   perceived.corrections = std::move(grouped.corrections);
   forget(perceived.corrections, perceived.memory);
   dress(perceived.people, in.worn);
+  perceived.standings = std::move(grouped.standings);
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
   forget_the_gone(perceived.memory);
@@ -263,7 +273,8 @@ Step fuse(Perceived seen, const Inputs& in, std::vector<SensorId> sensors,
     associate::follow(seen.memory.tracks, body.id, points_of(body.skeleton));
   seen.memory.seating.seat(snapshot.bodies, in.instant, config.association.coast, config.seating);
   snapshot.reports = std::move(seen.reports);
-  return {std::move(snapshot), std::move(seen.memory), std::move(seen.people)};
+  return {std::move(snapshot), std::move(seen.memory), std::move(seen.people),
+          std::move(seen.standings)};
 }
 
 Step step(const Inputs& in, const Histories& histories, const Registration& registration,

@@ -79,12 +79,14 @@ struct Perceived {
   Memory memory;
   std::uint64_t registration_version = 0;
   std::vector<Correction> corrections = {};
+  std::vector<Standing> standings = {};  ///< As Grouping::standings.
 };
 
 struct Step {
   Snapshot snapshot;
   Memory memory;
   std::vector<Person> people;  ///< What was fused: for each person all views, in world space.
+  std::vector<Standing> standings = {};  ///< As Grouping::standings.
 };
 
 /// A sensor whose frame for an instant may still arrive, and how long it is waited for.

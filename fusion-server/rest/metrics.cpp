@@ -44,6 +44,10 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
   out.gauge({"chorus_sensor_moved",
              "1 while an alarm says that the sensor may not stand where it was registered."},
             s.alarm.empty() ? 0.0 : 1.0, labels);
+  out.counter({"chorus_sensor_contested_total",
+               "Bodies that the sensor saw and that were not published, because others look there "
+               "and see nobody, or nobody can stand there."},
+              number(s.contests), labels);
   if (s.shift) {
     out.gauge({"chorus_sensor_displacement_meters",
                "How far from the others the sensor sees people now, beyond what is usual for it."},

@@ -82,6 +82,7 @@ resource::Node sensor_node(const SensorStatus& sensor, std::string id) {
   }
   if (sensor.shift) out.emplace_back("displacedMillimetres", Decimal{to_mm(*sensor.shift), 1});
   if (!sensor.alarm.empty()) out.emplace_back("alarm", sensor.alarm);
+  if (!sensor.contested.empty()) out.emplace_back("contested", sensor.contested);
   if (!sensor.last_error.empty()) out.emplace_back("lastError", sensor.last_error);
   out.emplace_back("frame", resource::Ref{"/sensors/" + sensor.id.str() + "/frame"});
   return node;

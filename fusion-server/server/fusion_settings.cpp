@@ -103,10 +103,7 @@ void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read_s("slow_down_s", out.slow_down, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read_s("remember_s", out.remember, std::chrono::seconds(0), std::chrono::seconds(3600));
   reader.read("merge_frames", out.merge_frames, 1, 1000);
-  reader.read_s("alone_s", out.alone, std::chrono::seconds(0), std::chrono::seconds(60));
-  reader.read_s("motionless_s", out.motionless, std::chrono::seconds(0), std::chrono::seconds(60));
-  reader.read_deg("look_angle_deg", out.look_angle, 1.0, 90.0);
-  reader.read("look_range_m", out.look_range, 0.5, 100.0);
+  reader.read_s("doubt_s", out.doubt, std::chrono::seconds(0), std::chrono::seconds(60));
   reader.read("max_range_m", out.bodies.max_range, 1.0, 1000.0);
   reader.read_s("frozen_s", out.bodies.max_frozen, std::chrono::seconds(0),
                 std::chrono::seconds(3600));

@@ -324,6 +324,8 @@ SensorStatus PipelineLoop::status_of(const client::FollowReport& report, Timesta
   status.bodies = core_.bodies(report.service.id, now);
   status.shift = core_.guard().shift_of(report.service.id);
   status.alarm = core_.alarm_text(report.service.id, now);
+  status.contested = core_.contested(report.service.id);
+  status.contests = core_.contests(report.service.id);
   return status;
 }
 

@@ -77,6 +77,9 @@ struct SensorStatus {
   /// Says in a sentence for people that the sensor was moved, or sees people where others see
   /// nobody; empty if nothing of the kind is known.
   std::string alarm;
+  /// Says in such a sentence who contradicts what the sensor sees at present; empty: nobody.
+  std::string contested;
+  std::uint64_t contests = 0;  ///< How many bodies it has seen that were not published for that.
 
   bool operator==(const SensorStatus&) const = default;
 };

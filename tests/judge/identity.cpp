@@ -21,6 +21,29 @@ struct Followed {
   std::optional<Timestamp> answered;  ///< The first instant at which the person was reported.
 };
 
+/// The longest of the spells in which something is so, each of which belongs to somebody.
+class Spells {
+ public:
+  void note(std::uint64_t whose, bool is_so, Timestamp now) {
+    if (!is_so) {
+      began_.erase(whose);
+      return;
+    }
+    const Timestamp since = began_.try_emplace(whose, now).first->second;
+    longest_ = std::max(longest_, seconds(now - since));
+  }
+  /// Ends the spells of all but those of whom `is_here` is true.
+  template <class IsHere>
+  void keep(const IsHere& is_here) {
+    std::erase_if(began_, [&](const auto& entry) { return !is_here(entry.first); });
+  }
+  [[nodiscard]] double longest() const { return longest_; }
+
+ private:
+  std::map<std::uint64_t, Timestamp> began_;
+  double longest_ = 0.0;
+};
+
 /// Counts all figures in one pass over the instants.
 class Census {
  public:
@@ -35,6 +58,7 @@ class Census {
     keep(roll, before, taken);
     assign_rest(roll, taken);
     count(roll, before);
+    time_spells(roll);
   }
 
   [[nodiscard]] Identity result(double minutes) const {
@@ -49,6 +73,8 @@ class Census {
       found.ghosts += followed < config_.ghost ? 1U : 0U;
     }
     found.first_answer = first_answer();
+    found.longest_false = false_.longest();
+    found.longest_unseen = unseen_.longest();
     if (minutes > 0) count_heirs(found, static_cast<double>(instants_) / (60.0 * minutes));
     const std::size_t all = present_ + claims_;
     found.idf1 = all > 0 ? 2.0 * share(true_positives(), all) : 0.0;
@@ -114,6 +140,20 @@ class Census {
     }
   }
 
+  void time_spells(const Roll& roll) {
+    false_.keep([&](std::uint64_t id) {
+      return std::ranges::find(roll.claimed, id, &Claimed::id) != roll.claimed.end();
+    });
+    for (const Claimed& claim : roll.claimed) {
+      const auto is_near = [&](const Eigen::Vector2d& place) {
+        return (place - claim.place).norm() <= config_.reach;
+      };
+      false_.note(claim.id, std::ranges::none_of(roll.exact, is_near), roll.instant);
+    }
+    for (std::size_t p = 0; p < roll.exact.size(); ++p)
+      unseen_.note(p, roll.exact[p].allFinite() && !people_[p].now, roll.instant);
+  }
+
   /// Counts `inherited` and `spare_ids`; `rate` is in instants per second.
   void count_heirs(Identity& found, double rate) const {
     std::map<std::uint64_t, std::size_t> people;  // number of people that an id followed
@@ -171,6 +211,8 @@ class Census {
   std::size_t answered_ = 0;
   std::size_t switches_ = 0;
   std::size_t fragmentations_ = 0;
+  Spells false_;   // by id
+  Spells unseen_;  // by person
 };
 
 }  // namespace

@@ -49,6 +49,9 @@ struct Identity {
   /// How often an id that had followed one person followed another one for a second or longer.
   std::size_t inherited = 0;
   std::size_t spare_ids = 0;  ///< Additional ids of people who already had one.
+  /// The longest time for which somebody was reported where nobody was, and for which somebody in
+  /// the room was not reported [s].
+  double longest_false = 0.0, longest_unseen = 0.0;
 };
 
 [[nodiscard]] Identity identity_of(const std::vector<Roll>& rolls,

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -68,6 +69,11 @@ std::string sensors_report(const nlohmann::json& sensors) {
   for (const auto& [name, sensor] : sensors.items()) {
     const std::string error = client::text_at(sensor, "lastError", "");
     if (!error.empty()) text += printable(name + ": " + error) + "\n";
+  }
+  std::set<std::string> contested;  // The same words stand with each sensor that sees the body.
+  for (const auto& sensor : sensors) contested.insert(client::text_at(sensor, "contested", ""));
+  for (const std::string& words : contested) {
+    if (!words.empty()) text += "contested: " + printable(words) + "\n";
   }
   return text + host_clocks_line(sensors);
 }

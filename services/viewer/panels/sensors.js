@@ -25,7 +25,7 @@ export function cardOf(id, sensor, registration) {
       ['share', live ? number(sensor.share, 2) : '–'],
       ['place', placed ? [place.verdict ?? 'known', radius].filter(Boolean).join(' ') : 'none'],
     ],
-    words: [sensor.lastError, sensor.alarm, ...(placed ? [] : place?.reasons ?? [])].filter(Boolean),
+    words: [sensor.lastError, sensor.alarm, sensor.contested, ...(placed ? [] : place?.reasons ?? [])].filter(Boolean),
   };
 }
 

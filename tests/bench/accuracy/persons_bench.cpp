@@ -39,6 +39,8 @@ constexpr std::array kFigures{
            [](const Identity& i) { return static_cast<double>(i.inherited) / i.minutes; }},
     Figure{"spare_ids_per_minute", "1/min",
            [](const Identity& i) { return static_cast<double>(i.spare_ids) / i.minutes; }},
+    Figure{"longest_false_s", "s", [](const Identity& i) { return i.longest_false; }},
+    Figure{"longest_unseen_s", "s", [](const Identity& i) { return i.longest_unseen; }},
     Figure{"first_answer_s", "s", [](const Identity& i) { return i.first_answer; }},
     Figure{"missing_percent", "%",
            [](const Identity& i) { return kPercent * (1.0 - i.coverage); }}};
@@ -77,7 +79,7 @@ std::vector<Association> ablations() {
   config.gate = 10.0;  // [m] reaches across the whole room
   all.push_back({"without-gate", config});
   config = whole;
-  config.alone = Duration{0};
+  config.doubt = Duration{0};
   all.push_back({"without-waiting", config});
   config = whole;
   config.remember = Duration{0};
@@ -129,6 +131,15 @@ void report_mean_ghosts(Report& report, const std::string& name, const Draws& dr
   report.row(name, "mean_ghosts_per_minute", sum / static_cast<double>(draws.size()), "1/min");
 }
 
+/// Reports the share of the draws in which nobody is published for more than a second who is not
+/// there.
+void report_short_ghosts(Report& report, const std::string& name, const Draws& draws) {
+  const auto gone = std::ranges::count_if(
+      draws, [](const Identities& found) { return found.at(kOurs).longest_false <= 1.0; });
+  report.row(name, "false_within_1s_percent",
+             kPercent * static_cast<double>(gone) / static_cast<double>(draws.size()), "%");
+}
+
 void report_sides(Report& report, PersonsCase each) {
   if (report.quick()) each.length = std::min(each.length, kQuickLength);
   const auto wrong = over_draws(report.quick() ? kQuickDraws : each.draws, [&](std::size_t draw) {
@@ -143,6 +154,7 @@ void report_sides(Report& report, PersonsCase each) {
 void report_draws(Report& report, const std::string& name, const Draws& draws) {
   report_no_switch(report, name, draws);
   report_mean_ghosts(report, name, draws);
+  report_short_ghosts(report, name, draws);
   for (const Figure& figure : kFigures) report_figure(report, name, draws, figure);
 }
 

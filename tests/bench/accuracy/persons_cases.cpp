@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tests/bench/accuracy/false_bodies.h"
 #include "tests/bench/methods/moments.h"
 #include "tests/bench/methods/nearest_neighbour.h"
 #include "tests/judge/crowd.h"
@@ -65,6 +66,23 @@ PersonsCase beside_furniture() {
   return each;
 }
 
+/// Every sensor does.
+PersonsCase before_furniture(std::string name, std::vector<Eigen::Isometry3d> places) {
+  PersonsCase each{std::move(name), "B", std::move(places), crossing_two};
+  each.adjust = [](synthetic::kinect::Profile& profile, std::size_t) {
+    profile.gross.ghosts_per_minute = 6.0;
+    profile.gross.ghost_time = 4.0;  // [s]
+  };
+  return each;
+}
+
+PersonsCase deceived(std::string name, void (*distort)(Workshop& workshop)) {
+  PersonsCase each{std::move(name), "A", ring(6), crossing_two};
+  each.distort = distort;
+  each.length = std::chrono::seconds(10);  // what is false is so from the first instant on
+  return each;
+}
+
 PersonsCase at_work_side_by_side(std::string name, std::size_t sensors) {
   PersonsCase each{std::move(name), "A", ring(sensors), side_by_side};
   each.sides = true;
@@ -81,6 +99,12 @@ Setting setting_of(const PersonsCase& each, std::uint64_t seed) {
   setting.length = each.length;
   setting.adjust = each.adjust;
   return setting;
+}
+
+Workshop workshop_of(const PersonsCase& each, std::uint64_t seed) {
+  Workshop workshop = draw_workshop(setting_of(each, seed));
+  if (each.distort) each.distort(workshop);
+  return workshop;
 }
 
 /// True horizontal place of a person; NaN while the person is out of the room.
@@ -214,6 +238,10 @@ std::vector<PersonsCase> persons_cases() {
           {"relay-3", "A", ring(6), relayed},
           {"return-3", "A", ring(6), returning, {}, kMinute},
           beside_furniture(),
+          before_furniture("furniture-all-B", ring(6)),
+          before_furniture("furniture-two-B", places_behind_screen()),
+          deceived("mirror-2of6", stand_a_mirror),
+          deceived("agreeing-liars", let_two_lie),
           at_work_side_by_side("side-2", 6),
           at_work_side_by_side("side-2-ring3", 3),
           {"circled-2", "A", ring(6), circled_person},
@@ -225,7 +253,7 @@ std::vector<PersonsCase> persons_cases() {
 
 Identities identities_in(const PersonsCase& each, std::uint64_t seed,
                          const std::vector<Association>& ours) {
-  const Workshop workshop = draw_workshop(setting_of(each, seed));
+  const Workshop workshop = workshop_of(each, seed);
   std::vector<Contestant> contestants = contestants_in(workshop, ours);
   call_rolls(workshop, contestants);
   Identities identities;

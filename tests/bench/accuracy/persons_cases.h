@@ -23,6 +23,8 @@ struct PersonsCase {
   std::function<void(synthetic::kinect::Profile&, std::size_t place)> adjust = {};
   std::size_t draws = 20;
   bool sides = false;  ///< True: sides_wrong_in() is measured, too.
+  /// Changes what the sensors have recorded.
+  void (*distort)(Workshop& workshop) = nullptr;
 };
 
 /// The case for which the share of draws without a change of id is checked.

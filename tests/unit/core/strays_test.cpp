@@ -12,8 +12,7 @@ using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
-/// A sensor "near" sees one person throughout; what "far" sees is told instant by instant.  Both
-/// look along +z, from the same place.
+/// A sensor "near" sees one person throughout; what "far" sees is told instant by instant.
 struct TwoViews {
   TwoViews() {
     registration.sensors[near];
@@ -30,11 +29,12 @@ struct TwoViews {
     return person;
   }
 
-  void run(Duration length, const std::vector<Person>& people, std::size_t bodies_of_far) {
+  void run(Duration length, const std::vector<Person>& people, std::size_t bodies_of_far,
+           const std::vector<Standing>& standings = {}) {
     for (const Duration end = t + length; t < end; t += std::chrono::milliseconds(100)) {
       const std::vector<SensorReport> reports{{near, Basis::Exact, 1},
                                               {far, Basis::Exact, bodies_of_far}};
-      strays.look({kStart + t, reports, people, registration}, {});
+      strays.look({kStart + t, reports, people, standings, registration});
     }
   }
 
@@ -94,8 +94,16 @@ TEST(Strays, OneSharedViewEndsIt) {
 
 TEST(Strays, AGhostThatIsPublishedIsToldOfWhereEitherMissesTheOthersPerson) {
   TwoViews two;
-  const Person ours = two.person_at({0, -1.5, 3}, {two.near});
-  two.run(seconds(11), {ours, two.person_at({1, -1.5, 3}, {two.far})}, 1);
+  Person ours = two.person_at({0, -1.5, 3}, {two.near});
+  Person ghost = two.person_at({1, -1.5, 3}, {two.far});
+  ours.id = PersonId{1};
+  ghost.id = PersonId{2};
+  const Standing of_ours{ours.id, {}, {two.near}, {two.far}};
+  const Standing of_ghost{ghost.id, {}, {two.far}, {two.near}};
+  two.run(seconds(60), {ours, ghost}, 1, {of_ours});
+  two.run(seconds(60), {ours, ghost}, 1, {of_ghost});
+  EXPECT_FALSE(two.told()) << "one of them may see farther than the other";
+  two.run(seconds(11), {ours, ghost}, 1, {of_ours, of_ghost});
   EXPECT_TRUE(two.told());
 }
 

@@ -97,6 +97,16 @@ TEST(StatusTable, ShowsTheErrorOfASensorThatIsLiveAgain) {
   EXPECT_THAT(told.out, HasSubstr("s1: a frame came late\n"));
 }
 
+TEST(StatusTable, TellsOnceWhomOtherSensorsContradict) {
+  const std::string words = "s1, s2 see somebody at (1.2, -0.4) m, where s3 looks and sees nobody";
+  const Json sensors{
+      {"s1", live({{"contested", words}})}, {"s2", live({{"contested", words}})}, {"s3", live()}};
+  const std::string text = status_with(sensors).out;
+  const auto at = text.find("contested: " + words + "\n");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(text.find("contested", at + 1), std::string::npos);
+}
+
 TEST(StatusTable, AsksOnlySensorsThatAnswerWithoutFrames) {
   const ScriptedServer sensor(ScriptedServer::Texts{{"/healthz", {}}});
   const Json sensors{

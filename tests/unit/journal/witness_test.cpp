@@ -88,6 +88,18 @@ TEST(Witness, SeesThatASensorWasMovedWhateverTheSentence) {
   EXPECT_THAT(kinds(told(quiet(), moved)), ElementsAre("sensor-in-place"));
 }
 
+TEST(Witness, SeesOnceThatASensorIsContradicted) {
+  Glimpse contested = quiet();
+  contested.sensors[1].contested =
+      "s2 sees somebody at (1.0, 0.0) m, where s1 looks and sees nobody";
+  const auto events = told(contested);
+  ASSERT_THAT(kinds(events), ElementsAre("sensor-contested"));
+  EXPECT_EQ(events[0].about, "s2");
+  Glimpse later = contested;
+  later.sensors[1].contested = "s2 sees somebody at (1.1, 0.0) m, where s1 looks and sees nobody";
+  EXPECT_THAT(told(later, contested), IsEmpty());
+}
+
 TEST(Witness, FollowsTheRegistration) {
   Glimpse walking = quiet();
   SessionStatus session;

@@ -30,6 +30,17 @@ TEST(Identity, OfFaithfulTracksIsPerfect) {
   EXPECT_NEAR(found.minutes, 4.0 / 60, 1e-12);
 }
 
+TEST(Identity, TellsTheLongestFalseSpellAndTheLongestGap) {
+  auto rolls = two_people(100);
+  for (std::size_t i = 10; i < 40; ++i) rolls[i].claimed.push_back({7, {5.0, 0.0}});
+  rolls[25].claimed.pop_back();  // two spells of 15 and 14 instants
+  for (std::size_t i = 50; i < 60; ++i) rolls[i].claimed.pop_back();
+  const Identity found = identity_of(rolls);
+  const double instant = 60.0 * found.minutes / 99.0;
+  EXPECT_NEAR(found.longest_false, 14 * instant, 1e-9);
+  EXPECT_NEAR(found.longest_unseen, 9 * instant, 1e-9);
+}
+
 TEST(Identity, ExchangedIdsAreASwitchOfEach) {
   auto rolls = two_people(100);
   for (std::size_t i = 75; i < 100; ++i) std::swap(rolls[i].claimed[0].id, rolls[i].claimed[1].id);
