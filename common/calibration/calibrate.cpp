@@ -17,7 +17,8 @@ constexpr double kGoodViewPx = 0.25;  // a view this good is never left out
 // An error of a flat board's corners, relative to the picture's longer side, that no lens's
 // distortion explains.  Solving for a lens would take minutes then, and find none.
 constexpr double kNoFlatBoard = 0.06;
-constexpr std::size_t kTerms = 9;  // fx fy cx cy k1 k2 p1 p2 k3
+constexpr double kNoFlatBoardFisheye = 0.15;  // A fisheye bends straight lines far more.
+constexpr std::size_t kTerms = 9;             // fx fy cx cy k1 k2 p1 p2 k3
 
 /// The output of OpenCV.
 struct Solution {
@@ -92,8 +93,90 @@ Solution solve(const std::vector<const View*>& views, PictureSize size, bool wit
   return out;
 }
 
+/// One solution by cv::fisheye: the lens, and the turns of the views.
+struct FisheyeSolution {
+  Intrinsics camera;
+  double error = 0.0;
+  std::vector<cv::Mat> turns, places;
+};
+
+FisheyeSolution fisheye_once(const Points& points, PictureSize size) {
+  cv::Mat matrix = cv::Mat::eye(3, 3, CV_64F);
+  cv::Mat terms = cv::Mat::zeros(4, 1, CV_64F);
+  std::vector<std::vector<cv::Point3d>> on_board;
+  std::vector<std::vector<cv::Point2d>> pixels;
+  for (const auto& view : points.on_board) on_board.emplace_back(view.begin(), view.end());
+  for (const auto& view : points.pixels) pixels.emplace_back(view.begin(), view.end());
+  FisheyeSolution out;
+  out.error = cv::fisheye::calibrate(
+      on_board, pixels, {size.width, size.height}, matrix, terms, out.turns, out.places,
+      cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW,
+      {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-9});
+  cv::Mat five = cv::Mat::zeros(5, 1, CV_64F);
+  terms.copyTo(five.rowRange(0, 4));
+  out.camera = intrinsics_of(matrix, five, size);
+  out.camera.model = LensModel::Fisheye;
+  return out;
+}
+
+double fisheye_error(const Points& points, const FisheyeSolution& solution, std::size_t view) {
+  const Intrinsics& c = solution.camera;
+  const cv::Matx33d matrix(c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
+  const cv::Vec4d terms(c.distortion[0], c.distortion[1], c.distortion[2], c.distortion[3]);
+  std::vector<cv::Point3d> on_board(points.on_board[view].begin(), points.on_board[view].end());
+  std::vector<cv::Point2d> seen(points.pixels[view].begin(), points.pixels[view].end());
+  std::vector<cv::Point2d> made;
+  cv::fisheye::projectPoints(on_board, made, cv::Mat(solution.turns[view]).reshape(1, 3),
+                             cv::Mat(solution.places[view]).reshape(1, 3), matrix, terms);
+  return cv::norm(made, seen) / std::sqrt(static_cast<double>(seen.size()));
+}
+
+std::array<double, kTerms> terms_in(const Intrinsics& c) {
+  return {
+      c.fx, c.fy, c.cx, c.cy, c.distortion[0], c.distortion[1], c.distortion[2], c.distortion[3],
+      0.0};
+}
+
+/// Standard deviations by the jackknife, because cv::fisheye tells none: each view is left out
+/// once.
+std::array<double, kTerms> jackknifed(const Points& points, PictureSize size) {
+  std::vector<std::array<double, kTerms>> all;
+  const std::size_t count = points.on_board.size();
+  for (std::size_t left_out = 0; left_out < count; ++left_out) {
+    Points rest = points;
+    rest.on_board.erase(rest.on_board.begin() + static_cast<std::ptrdiff_t>(left_out));
+    rest.pixels.erase(rest.pixels.begin() + static_cast<std::ptrdiff_t>(left_out));
+    all.push_back(terms_in(fisheye_once(rest, size).camera));
+  }
+  std::array<double, kTerms> sigma{};
+  const double n = static_cast<double>(count);
+  for (std::size_t term = 0; term < kTerms; ++term) {
+    double mean = 0.0;
+    double squares = 0.0;
+    for (const auto& each : all) mean += each[term] / n;
+    for (const auto& each : all) squares += (each[term] - mean) * (each[term] - mean);
+    sigma[term] = std::sqrt((n - 1.0) / n * squares);
+  }
+  return sigma;
+}
+
+Solution solve_fisheye(const std::vector<const View*>& views, PictureSize size) {
+  const Points points = for_opencv(views);
+  const FisheyeSolution solved = fisheye_once(points, size);
+  Solution out;
+  out.camera = solved.camera;
+  out.error = solved.error;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    out.view_errors.push_back(fisheye_error(points, solved, i));
+    out.tilts.push_back(tilt_of(cv::Mat(solved.turns[i]).reshape(1, 3)));
+  }
+  out.sigma = jackknifed(points, size);
+  return out;
+}
+
 /// Estimates k3 if its standard deviation is below a third of its value and it improves the fit.
-Solution solve_well(const std::vector<const View*>& views, PictureSize size) {
+Solution solve_well(const std::vector<const View*>& views, PictureSize size, LensModel model) {
+  if (model == LensModel::Fisheye) return solve_fisheye(views, size);
   Solution plain = solve(views, size, false);
   Solution full = solve(views, size, true);
   const bool needed = full.error < 0.98 * plain.error &&
@@ -174,7 +257,7 @@ double Calibration::focal_sigma() const {
 
 std::size_t Calibration::used() const { return used_of(*this).size(); }
 
-Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size) {
+Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size, LensModel model) {
   if (views.size() < kLeastViews)
     return fail(ErrorCode::InvalidArgument, "calibration",
                 "needs three views of the board or more");
@@ -184,15 +267,16 @@ Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size) 
   std::size_t may_leave = views.size() / 3;
   try {
     out.error_px = median_flat_error(used_of(out));
-    if (out.error_px > kNoFlatBoard * std::max(size.width, size.height)) return out;
+    const double most = model == LensModel::Fisheye ? kNoFlatBoardFisheye : kNoFlatBoard;
+    if (out.error_px > most * std::max(size.width, size.height)) return out;
     for (int round = 0; round < kRounds; ++round) {
-      const Solution solution = solve_well(used_of(out), size);
+      const Solution solution = solve_well(used_of(out), size, model);
       tell(solution, out);
       const std::size_t left = leave_out(solution, out, may_leave);
       if (left == 0) break;
       may_leave -= left;
     }
-    tell(solve_well(used_of(out), size), out);
+    tell(solve_well(used_of(out), size, model), out);
   } catch (const cv::Exception&) {
     return fail(ErrorCode::InvalidArgument, "calibration",
                 "no lens fits these views; are --board and --squares those of the board?");

@@ -21,7 +21,8 @@ struct SolvedView {
 
 struct Calibration {
   Intrinsics intrinsics;  ///< Only with width and height where these views are of another board.
-  /// Standard deviations, in the intrinsics' units: fx, fy, cx, cy, k1, k2, p1, p2, k3.
+  /// Standard deviations, in the intrinsics' units: fx, fy, cx, cy, k1, k2, p1, p2, k3 (of a
+  /// fisheye k1, k2, k3, k4, 0).
   std::array<double, 9> sigma{};
   double error_px = 0.0;  ///< Root mean square reprojection error over all used views.
   std::vector<SolvedView> views;
@@ -35,6 +36,7 @@ struct Calibration {
 /// if the views show that it is needed.  InvalidArgument with fewer than three views, or if
 /// nothing fits.  Does not solve for a lens, and states the error, if the corners are so far from
 /// their places that the board is another one.
-[[nodiscard]] Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size);
+[[nodiscard]] Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size,
+                                            LensModel model = LensModel::Brown);
 
 }  // namespace chorus::calibration

@@ -35,6 +35,7 @@ std::string intrinsics_json(const Intrinsics& camera, double focal_sigma) {
                              {"cx", rounded(camera.cx, kPixels)},
                              {"cy", rounded(camera.cy, kPixels)},
                              {"distortion", nlohmann::ordered_json::array()}};
+  if (camera.model == LensModel::Fisheye) out["model"] = "fisheye";
   for (const double term : camera.distortion) out["distortion"].push_back(rounded(term, kRounding));
   // Rounded up, because 0 would mean that the focal length is known exactly.
   out["focal_sigma_percent"] = std::ceil(focal_sigma * 1e4) / 100.0;

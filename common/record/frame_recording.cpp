@@ -58,6 +58,7 @@ std::optional<Intrinsics> intrinsics_of(const Strings& values) {
   for (std::size_t i = 0; i < kDistortion.size(); ++i) {
     camera.distortion[i] = number_at(values, kDistortion[i]).value_or(0.0);
   }
+  if (text_at(values, "lens") == "fisheye") camera.model = LensModel::Fisheye;
   return camera;
 }
 
@@ -140,6 +141,7 @@ Strings metadata_of(const FrameRecording& recording) {
     for (std::size_t i = 0; i < kDistortion.size(); ++i) {
       values[kDistortion[i]] = text_of(camera->distortion[i]);
     }
+    if (camera->model == LensModel::Fisheye) values["lens"] = "fisheye";
   }
   if (const auto& floor = recording.floor) {
     values["floor_normal_x"] = text_of(floor->normal.x());

@@ -23,6 +23,7 @@ Node image_node(const CameraImage& image, std::string iri) {
              {"cx", Decimal{camera.cx, kPixelDigits}},
              {"cy", Decimal{camera.cy, kPixelDigits}},
              {"distortion", std::move(distortion)}}};
+  if (camera.model == LensModel::Fisheye) node.properties.emplace_back("lensModel", "fisheye");
   if (image.media_type == "image/png") {
     node.properties.emplace_back("metresPerUnit", Decimal{kMetresPerDepthUnit, 4});
   }

@@ -16,10 +16,21 @@ namespace chorus {
 [[nodiscard]] std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel,
                                                     const Intrinsics& camera);
 
-/// The pixel that shows a point in the camera's axes, by Brown's model; none behind the camera (z
-/// of at most a millimetre).  The inverse of ray_of() where the lens has one.
+/// The pixel that shows a point in the camera's axes, by the lens's model; none behind the camera
+/// (z of at most a millimetre; of a fisheye, more than 100 degrees from the axis, or where its
+/// polynomial turns back).  The inverse of ray_of() where the lens has one.
 [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& in_camera,
                                                       const Intrinsics& camera);
+
+/// How the pixel of a point moves with the point, in the camera's axes [px/m]: the derivative of
+/// pixel_of(); none where that has no pixel.
+[[nodiscard]] std::optional<Eigen::Matrix<double, 2, 3>> pixel_slope(
+    const Eigen::Vector3d& in_camera, const Intrinsics& camera);
+
+/// How large a metre across the line of sight is at a point ahead of the camera [px/m]: of a
+/// pinhole the focal length by the depth; of a fisheye the mean along and across the angle from the
+/// axis.
+[[nodiscard]] double pixels_per_metre(const Eigen::Vector3d& in_camera, const Intrinsics& camera);
 
 /// Camera axes from sensor axes: x right, y down, z ahead from x left, y up, z ahead.
 [[nodiscard]] inline Eigen::Matrix3d camera_from_sensor_axes() {
@@ -32,7 +43,8 @@ namespace chorus {
                                              double sigma);
 
 /// Derivative of a ray with respect to the relative error of the focal length [rad]: with a larger
-/// focal length, the ray turns towards the camera's axis, +z.
+/// focal length, the ray turns towards the camera's axis, +z.  Of a pinhole; of a fisheye it is up
+/// to twice as large at the edge of the picture.
 [[nodiscard]] Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray);
 
 /// Adds the effect of an uncertain focal length (relative standard deviation `focal_sigma`) to a

@@ -138,7 +138,6 @@ std::vector<FlatCapsule> flat_capsules(const Skeleton<WorldSpace>& body,
                                        const Intrinsics& camera) {
   const Eigen::Isometry3d camera_from_world =
       Eigen::Isometry3d(camera_from_sensor_axes()) * world_from_sensor.inverse();
-  const double focal = 0.5 * (camera.fx + camera.fy);
   std::vector<FlatCapsule> out;
   for (const ShapedBone& bone : shape) {
     if (!body[bone.from].seen() || !body[bone.to].seen()) continue;
@@ -147,8 +146,8 @@ std::vector<FlatCapsule> flat_capsules(const Skeleton<WorldSpace>& body,
     const auto a_pixel = pixel_of(a, camera);
     const auto b_pixel = pixel_of(b, camera);
     if (!a_pixel || !b_pixel || a.z() < kNearest || b.z() < kNearest) continue;
-    out.push_back({*a_pixel, *b_pixel, focal * bone.from_radius / a.z(),
-                   focal * bone.to_radius / b.z(), a.z(), b.z()});
+    out.push_back({*a_pixel, *b_pixel, pixels_per_metre(a, camera) * bone.from_radius,
+                   pixels_per_metre(b, camera) * bone.to_radius, a.z(), b.z()});
   }
   return out;
 }

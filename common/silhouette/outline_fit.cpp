@@ -45,15 +45,28 @@ double mean_distance(const std::vector<OutlinePoint>& outline, const Evidence& e
   return sum / std::max(1.0, static_cast<double>(outline.size()));
 }
 
-/// How the pixel of an outline's point moves with the body, in world axes.
-Eigen::Matrix<double, 2, 3> pixel_slope(const SearchView& view, const OutlinePoint& point) {
-  const Intrinsics& camera = view.camera;
-  const double x = (point.pixel.x() - camera.cx) / camera.fx;
-  const double y = (point.pixel.y() - camera.cy) / camera.fy;
-  Eigen::Matrix<double, 2, 3> flat;
-  flat << camera.fx / point.depth, 0.0, -camera.fx * x / point.depth,  //
-      0.0, camera.fy / point.depth, -camera.fy * y / point.depth;
-  return flat * camera_from_sensor_axes() * view.world_from_sensor.linear().transpose();
+/// An outline's point in the camera's axes, at its capsule's depth; none outside the lens's model.
+std::optional<Eigen::Vector3d> in_camera(const OutlinePoint& point, const Intrinsics& camera) {
+  const auto ray = ray_of(point.pixel, camera);
+  if (!ray || !(ray->z() > 0.0)) return std::nullopt;
+  return *ray / ray->z() * point.depth;
+}
+
+/// How the pixel of an outline's point moves with the body, in world axes, and how it swells
+/// [px/m].
+struct PointSlope {
+  Eigen::Matrix<double, 2, 3> moves;
+  double swells = 0.0;
+};
+
+std::optional<PointSlope> slope_at(const SearchView& view, const OutlinePoint& point) {
+  const auto place = in_camera(point, view.camera);
+  if (!place) return std::nullopt;
+  const auto slope = pixel_slope(*place, view.camera);
+  if (!slope) return std::nullopt;
+  return PointSlope{
+      *slope * camera_from_sensor_axes() * view.world_from_sensor.linear().transpose(),
+      pixels_per_metre(*place, view.camera)};
 }
 
 /// How far the body is moved, and by how much it is thicker all around than its shape [m].
@@ -67,10 +80,11 @@ struct Normal {
 Normal normal_at(const SearchView& view, const std::vector<OutlinePoint>& outline,
                  const Unknowns& since, const OutlineSettings& settings) {
   Normal normal;
-  const double focal = 0.5 * (view.camera.fx + view.camera.fy);
   for (const OutlinePoint& point : outline) {
-    const Eigen::Matrix<double, 2, 3> moves = pixel_slope(view, point);
-    const Eigen::Vector2d swells = focal / point.depth * point.normal;
+    const auto by = slope_at(view, point);
+    if (!by) continue;
+    const Eigen::Matrix<double, 2, 3>& moves = by->moves;
+    const Eigen::Vector2d swells = by->swells * point.normal;
     const Eigen::Vector2d pixel = point.pixel + moves * since.head<3>() + swells * since[3];
     const double away = view.evidence.distance(pixel);
     const Eigen::Vector2d slope = view.evidence.slope(pixel);

@@ -40,6 +40,7 @@ constexpr double kPhotoSigma = 0.04;
 struct CalibrateArguments {
   std::vector<std::string> sources;
   BoardOptions board;
+  bool fisheye = false;
   std::string print_board;
   bool letter = false;
   double fov_deg = 0.0;  ///< 0: not stated.
@@ -136,10 +137,10 @@ struct Judged {
   std::vector<std::string> weaknesses;
 };
 
-Result<Judged> judged(const BoardViews& found) {
+Result<Judged> judged(const BoardViews& found, LensModel model) {
   const auto views = calibration::varied_views(found.views, found.size, kMostViews);
   Judged out;
-  auto solved = calibration::calibrate(views, found.size);
+  auto solved = calibration::calibrate(views, found.size, model);
   if (solved) {
     out.calibration = std::move(*solved);
     out.weaknesses = weaknesses(out.calibration);
@@ -180,7 +181,7 @@ Result<int> from_board(const CalibrateArguments& arguments) {
   if (auto ok = has_folder(arguments.out); !ok) return pass(ok);
   const auto found = look(arguments, *board);
   if (!found) return pass(found);
-  const auto outcome = judged(*found);
+  const auto outcome = judged(*found, arguments.fisheye ? LensModel::Fisheye : LensModel::Brown);
   if (!outcome) return pass(outcome);
   const Calibration& calibration = outcome->calibration;
   if (auto ok = write_coverage(arguments, calibration, found->size); !ok) return pass(ok);
@@ -236,6 +237,8 @@ Run add_calibrate(CLI::App& options) {
   lens->add_option("input", arguments->sources,
                    "Pictures of the board: photos, folders, videos, or /dev/video0");
   add_board_options(*lens, arguments->board);
+  lens->add_flag("--fisheye", arguments->fisheye,
+                 "The lens is a fisheye: Kannala and Brandt's model instead of Brown's");
   add_other_ways(*lens, *arguments);
   lens->add_option("--seconds", arguments->seconds, "How long a camera or stream is watched")
       ->check(number_range(5.0, 600.0))

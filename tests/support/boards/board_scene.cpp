@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -23,9 +24,19 @@ Eigen::Vector3d middle_of(const calibration::Board& board) {
           0.0};
 }
 
+Eigen::Vector2d projected_by_fisheye(const Eigen::Vector3d& x, const Intrinsics& camera) {
+  const cv::Matx33d matrix(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  const auto& k = camera.distortion;
+  std::vector<cv::Point2d> pixel;
+  cv::fisheye::projectPoints(std::vector<cv::Point3d>{{x.x(), x.y(), x.z()}}, pixel, cv::Vec3d(),
+                             cv::Vec3d(), matrix, cv::Vec4d(k[0], k[1], k[2], k[3]));
+  return {pixel[0].x, pixel[0].y};
+}
+
 }  // namespace
 
 Eigen::Vector2d projected(const Eigen::Vector3d& x_in_camera, const Intrinsics& camera) {
+  if (camera.model == LensModel::Fisheye) return projected_by_fisheye(x_in_camera, camera);
   const auto& [k1, k2, p1, p2, k3] = camera.distortion;
   const double x = x_in_camera.x() / x_in_camera.z();
   const double y = x_in_camera.y() / x_in_camera.z();

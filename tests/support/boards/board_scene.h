@@ -13,8 +13,8 @@
 
 namespace chorus::testing {
 
-/// Projects a point by Brown's lens model.  The camera's axes are OpenCV's: x right, y down, z
-/// forward.
+/// Projects a point by Brown's lens model, or by OpenCV's fisheye.  The camera's axes are OpenCV's:
+/// x right, y down, z forward.
 [[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& x_in_camera,
                                         const Intrinsics& camera);
 

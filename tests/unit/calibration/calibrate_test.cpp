@@ -26,6 +26,22 @@ TEST(Calibrate, AKnownLensIsFoundWithinItsStatedError) {
   EXPECT_NEAR(found->error_px, 0.1 * std::sqrt(2.0), 0.02);
 }
 
+TEST(Calibrate, AFisheyeIsFoundWithinItsStatedError) {
+  const Intrinsics truth = fisheye();
+  const auto views = views_of({.count = 24, .share = 0.4}, 0.1, truth);
+  const auto found = calibrate(views, kSize, LensModel::Fisheye);
+  ASSERT_THAT(found, chorus::testing::IsOk());
+  EXPECT_EQ(found->intrinsics.model, LensModel::Fisheye);
+  EXPECT_NEAR(found->intrinsics.fx / truth.fx, 1.0, 0.003);
+  EXPECT_LT(std::abs(found->intrinsics.fx - truth.fx), 4.0 * found->sigma[0]);
+  EXPECT_NEAR(found->error_px, 0.1 * std::sqrt(2.0), 0.03);
+  const std::string text = intrinsics_json(found->intrinsics, found->focal_sigma());
+  EXPECT_THAT(text, HasSubstr(R"("model": "fisheye")"));
+  // A pinhole does not explain the same corners.
+  const auto pinhole = calibrate(views, kSize);
+  if (pinhole) EXPECT_GT(pinhole->error_px, 2.0 * found->error_px);
+}
+
 TEST(Calibrate, TheStatedErrorGrowsWithTheNoise) {
   const auto quiet = calibrate(views_of({.count = 15}, 0.1), kSize);
   const auto loud = calibrate(views_of({.count = 15}, 0.4), kSize);

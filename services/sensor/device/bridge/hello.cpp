@@ -92,6 +92,11 @@ Result<Intrinsics> read_intrinsics(const Json& value) {
     const auto ok = read_numbers(*distortion, camera.distortion, {-100.0, 100.0}, at["distortion"]);
     if (!ok) return pass(ok);
   }
+  if (const Json* model = find(value, "model")) {
+    if (*model != "brown" && *model != "fisheye")
+      return wrong(at["model"], "must be \"brown\" or \"fisheye\"");
+    if (*model == "fisheye") camera.model = LensModel::Fisheye;
+  }
   if (const auto objection = objection_to(camera))
     return wrong(at[objection->key], objection->text);
   return camera;

@@ -16,9 +16,15 @@ constexpr double kMaxPixels = 1e5;
 void read_distortion(ConfigReader& section, Intrinsics& out) {
   std::vector<double> distortion;
   section.read("distortion", distortion);
+  std::size_t model = 0;
+  section.read_choice("model", model, {"brown", "fisheye"});
+  if (model == 1) out.model = LensModel::Fisheye;
   if (distortion.empty()) return;
   if (distortion.size() != out.distortion.size())
-    return section.complain("distortion", "must be k1, k2, p1, p2, k3, as OpenCV has them");
+    return section.complain(
+        "distortion",
+        "must be k1, k2, p1, p2, k3, as OpenCV has them; of a fisheye k1, k2, k3, "
+        "k4 and 0");
   std::copy(distortion.begin(), distortion.end(), out.distortion.begin());
 }
 

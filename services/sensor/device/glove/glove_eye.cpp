@@ -107,7 +107,7 @@ Result<hand::GlovePlace> GloveEye::place(const camera::Picture& picture,
   if (!network_) {
     cv::Mat grey;
     cv::cvtColor(*picture.pixels, grey, cv::COLOR_BGR2GRAY);
-    if (camera.distortion != std::array<double, 5>{}) {
+    if (camera.model != LensModel::Brown || camera.distortion != std::array<double, 5>{}) {
       if (!undistortion_ || !(undistortion_->camera == camera))
         undistortion_ = std::make_shared<Undistortion>(camera);
       cv::remap(grey, grey, undistortion_->map, cv::noArray(), cv::INTER_LINEAR,
