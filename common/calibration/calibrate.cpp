@@ -137,19 +137,27 @@ std::array<double, kTerms> terms_in(const Intrinsics& c) {
       0.0};
 }
 
-/// Standard deviations by the jackknife, because cv::fisheye tells none: each view is left out
-/// once.
-std::array<double, kTerms> jackknifed(const Points& points, PictureSize size) {
-  std::vector<std::array<double, kTerms>> all;
-  const std::size_t count = points.on_board.size();
-  for (std::size_t left_out = 0; left_out < count; ++left_out) {
-    Points rest = points;
-    rest.on_board.erase(rest.on_board.begin() + static_cast<std::ptrdiff_t>(left_out));
-    rest.pixels.erase(rest.pixels.begin() + static_cast<std::ptrdiff_t>(left_out));
-    all.push_back(terms_in(fisheye_once(rest, size).camera));
+/// Every `groups`-th view, from `first` on, is left out.
+Points without_group(const Points& points, std::size_t first, std::size_t groups) {
+  Points rest;
+  for (std::size_t i = 0; i < points.on_board.size(); ++i) {
+    if (i % groups == first) continue;
+    rest.on_board.push_back(points.on_board[i]);
+    rest.pixels.push_back(points.pixels[i]);
   }
+  return rest;
+}
+
+/// Standard deviations by the grouped jackknife, because cv::fisheye tells none: each group of
+/// views is left out once.
+std::array<double, kTerms> jackknifed(const Points& points, PictureSize size) {
+  constexpr std::size_t kGroups = 8;
+  const std::size_t groups = std::min(kGroups, points.on_board.size());
+  std::vector<std::array<double, kTerms>> all;
+  for (std::size_t group = 0; group < groups; ++group)
+    all.push_back(terms_in(fisheye_once(without_group(points, group, groups), size).camera));
   std::array<double, kTerms> sigma{};
-  const double n = static_cast<double>(count);
+  const double n = static_cast<double>(groups);
   for (std::size_t term = 0; term < kTerms; ++term) {
     double mean = 0.0;
     double squares = 0.0;
