@@ -194,9 +194,9 @@ Result<void> watch_witness(Report& report, const WitnessPlan& plan) {
     const std::string name = fmt::format("witness-{}-{}", plan.name, kinds.at(wears));
     const double judged = std::max(1.0, score.judged);
     report.row(name, "wrong_sides_percent", 100.0 * score.wrong_sides / judged, "%");
-    if (!plan.crossing) continue;
     report.row(name, "wrong_id_percent", 100.0 * score.wrong_ids / judged, "%");
     report.row(name, "id_changes", score.changes, "");
+    report.row(name, "judged", score.judged, "instants");
   }
   const WitnessScore& without = scores.at(Wears::Nothing);
   const WitnessScore& with = scores.at(Wears::Witness);
