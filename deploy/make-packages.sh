@@ -33,7 +33,7 @@ while (( $# > 0 )); do
   shift
 done
 
-# 0.1.0+20261122.1504.8f4d3d4: a later commit has a higher version, and one can return to an earlier one.
+# 0.5.0+20261122.1504.8f4d3d4: a later commit has a higher version, and one can return to an earlier one.
 own_version() {
   local number
   number=$(sed -n 's/^project(chorus VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)

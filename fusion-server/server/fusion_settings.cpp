@@ -1,6 +1,7 @@
 #include "fusion-server/server/fusion_settings.h"
 
 #include <array>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -92,7 +93,18 @@ void read_quality(ConfigReader reader, fusion::QualityLimits& out) {
   out.bearing_of = static_cast<fusion::BearingOf>(bearing_of);
 }
 
+/// A key that is no longer read, and what to say instead of it.
+void refuse_gone(ConfigReader& reader, std::string_view key, std::string_view instead) {
+  if (!reader.has(key)) return;
+  double unused = 0.0;
+  reader.read(key, unused, std::numeric_limits<double>::lowest(),
+              std::numeric_limits<double>::max());
+  reader.complain(key, "is no longer read, take it out: " + std::string(instead));
+}
+
 void read_association(ConfigReader reader, associate::AssociationConfig& out) {
+  for (const char* key : {"alone_s", "motionless_s", "look_angle_deg", "look_range_m"})
+    refuse_gone(reader, key, "association.doubt_s says how long a newcomer is doubted");
   reader.read("gate_m", out.gate, 0.05, 10.0);
   reader.read("gate_growth_m_s", out.gate_growth, 0.0, 10.0);
   reader.read("cluster_m", out.cluster, 0.05, 10.0);

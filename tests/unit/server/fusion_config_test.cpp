@@ -97,6 +97,14 @@ TEST(FusionConfig, EveryMistakeIsNamedAtOnce) {
   }
 }
 
+TEST(FusionConfig, AKeyOfAnEarlierVersionIsNamedWithWhatReplacesIt) {
+  const std::string text = why(R"({"association": {"alone_s": 3, "look_range_m": "far"}})");
+  for (const char* key : {"association.alone_s", "association.look_range_m"})
+    EXPECT_NE(text.find(std::string(key) + ": is no longer read"), std::string::npos) << text;
+  EXPECT_NE(text.find("association.doubt_s"), std::string::npos) << text;
+  EXPECT_EQ(text.find("unknown key"), std::string::npos) << text;
+}
+
 TEST(FusionConfig, TwoSensorsOfOneNameOrTooManyAreRefused) {
   EXPECT_NE(
       why(R"({"sensors": [{"id": "a", "url": "http://h/"}, {"id": "a", "url": "http://i/"}]})")
