@@ -168,6 +168,7 @@ test('a proposed registration is shown beside the old one, and accepted or decli
   const server = await startFusion(FILES, world);
   const { page } = await openViewer(browser, server.url);
   await headline(page, /^New places wait for your decision\.$/);
+  await page.waitForSelector('#changes tr:nth-child(2) td:nth-child(5)');  // the drawer is loaded when it is opened
   assert.deepEqual(await page.locator('#changes tr:nth-child(2) td').allTextContents(), ['s2', '–', '23 mm', '117 mm', '1.3°']);
   await picture(page, 'proposal');
   await page.click('#accept');

@@ -61,8 +61,8 @@ class Tracker(Rig):
         self.assertEqual(old["sequence"], sequences[-30])
         self.assertEqual(get(fusion.url + "frames/1")[0], 410)
         self.assertEqual(get(fusion.url + f"frames/{sequences[-1] + 10**6}")[0], 404)
-        at = get_json(fusion.url + f"frame?at={int(old['capturedNanoseconds']) + 1000}")
-        self.assertEqual(int(at["capturedNanoseconds"]), int(old["capturedNanoseconds"]) + 1000)
+        between = int(old["capturedNanoseconds"]) + 5000  # within a microsecond it would be that frame
+        self.assertEqual(int(get_json(fusion.url + f"frame?at={between}")["capturedNanoseconds"]), between)
         self.assertEqual(get(fusion.url + "frame?at=yesterday")[0], 400)
         self.assertEqual(get(fusion.url + "frame?at=2026-01-01T00:00:00Z")[0], 410)
 
