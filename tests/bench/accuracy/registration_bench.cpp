@@ -390,7 +390,7 @@ Result<void> run_registration(Report& report) {
       "then the median over draws; a draw in which a sensor was refused has no value and counts as "
       "infinitely bad.  Percentages are over all sensors of all draws.");
   report.note(
-      "table1: the paper's sensors, 20 walks: scatter about their mean; ours is against the truth.");
+      "table1: the paper's sensors, 20 walks: scatter about the mean; ours is against truth.");
   report.note(
       "All methods get the same frames and floor planes; stamps are the hosts' own unless the case "
       "says otherwise.  ratio = ours / baseline; won = draws in which ours is strictly better.");
