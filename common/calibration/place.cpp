@@ -32,7 +32,7 @@ std::vector<Eigen::Isometry3d> plane_solutions(const View& sight, const Intrinsi
   std::vector<cv::Point2d> seen;
   for (const Corner& corner : sight.corners) {
     const auto ray = ray_of(corner.pixel, lens);
-    if (!ray) continue;
+    if (!ray || !(ray->z() > 0.0)) continue;
     plane.emplace_back(corner.on_board.x(), corner.on_board.y(), 0.0);
     seen.emplace_back(ray->x() / ray->z(), ray->y() / ray->z());
   }

@@ -17,6 +17,7 @@ Eigen::Vector2d distorted(const Eigen::Vector2d& x, const Intrinsics& camera) {
           x.y() * radial + p1 * (r2 + 2.0 * x.y() * x.y()) + 2.0 * p2 * xy};
 }
 
+constexpr double kOnAxis = 1e-9;          // Sine of the angle below which a direction is the axis.
 constexpr double kWidestFisheye = 1.745;  // 100 degrees from the axis [rad].
 
 /// Radius at an angle from the axis of a fisheye, for a focal length of 1, and its derivative.
@@ -80,7 +81,6 @@ Eigen::Matrix3d fisheye_covariance(const Eigen::Vector3d& ray, const Intrinsics&
                                    double sigma) {
   const double variance = sigma * sigma / (camera.fx * camera.fy);
   const double aside = ray.head<2>().norm();
-  constexpr double kOnAxis = 1e-9;
   if (aside < kOnAxis) return variance * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal();
   const Eigen::Vector2d out = ray.head<2>() / aside;
   const auto [radius, slope] = fisheye_radius(std::atan2(aside, ray.z()), camera);
@@ -118,18 +118,24 @@ std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& in_camera,
   return Eigen::Vector2d(camera.fx * x.x() + camera.cx, camera.fy * x.y() + camera.cy);
 }
 
-std::optional<Eigen::Matrix<double, 2, 3>> pixel_slope(const Eigen::Vector3d& in_camera,
-                                                       const Intrinsics& camera) {
-  const double step = 1e-5 * std::max(0.1, in_camera.norm());
-  Eigen::Matrix<double, 2, 3> out;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d by = step * Eigen::Vector3d::Unit(axis);
-    const auto above = pixel_of(in_camera + by, camera);
-    const auto below = pixel_of(in_camera - by, camera);
-    if (!above || !below) return std::nullopt;
-    out.col(axis) = (*above - *below) / (2.0 * step);
+Eigen::Matrix<double, 2, 3> pixel_slope(const Eigen::Vector3d& in_camera,
+                                        const Intrinsics& camera) {
+  const Eigen::Vector2d focal(camera.fx, camera.fy);
+  const double aside = in_camera.head<2>().norm();
+  const double away = in_camera.norm();
+  Eigen::Matrix<double, 2, 3> flat;
+  if (camera.model != LensModel::Fisheye || !(aside > kOnAxis * away)) {
+    flat << 1.0, 0.0, -in_camera.x() / in_camera.z(), 0.0, 1.0, -in_camera.y() / in_camera.z();
+    return focal.asDiagonal() * flat / in_camera.z();
   }
-  return out;
+  const Eigen::Vector2d out = in_camera.head<2>() / aside;
+  const Eigen::Vector2d around(-out.y(), out.x());
+  const auto [radius, slope] = fisheye_radius(std::atan2(aside, in_camera.z()), camera);
+  const Eigen::Vector3d outwards(in_camera.z() / away * out.x(), in_camera.z() / away * out.y(),
+                                 -aside / away);
+  flat = slope / away * out * outwards.transpose();
+  flat.leftCols<2>() += radius / aside * around * around.transpose();
+  return focal.asDiagonal() * flat;
 }
 
 double pixels_per_metre(const Eigen::Vector3d& in_camera, const Intrinsics& camera) {
@@ -138,7 +144,7 @@ double pixels_per_metre(const Eigen::Vector3d& in_camera, const Intrinsics& came
   const double aside = in_camera.head<2>().norm();
   const auto [radius, slope] = fisheye_radius(std::atan2(aside, in_camera.z()), camera);
   const double away = in_camera.norm();
-  const double across = aside > 1e-9 * away ? radius / aside : 1.0 / away;
+  const double across = aside > kOnAxis * away ? radius / aside : 1.0 / away;
   return 0.5 * focal * (slope / away + across);
 }
 

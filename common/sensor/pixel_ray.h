@@ -22,10 +22,10 @@ namespace chorus {
 [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& in_camera,
                                                       const Intrinsics& camera);
 
-/// How the pixel of a point moves with the point, in the camera's axes [px/m]: the derivative of
-/// pixel_of(); none where that has no pixel.
-[[nodiscard]] std::optional<Eigen::Matrix<double, 2, 3>> pixel_slope(
-    const Eigen::Vector3d& in_camera, const Intrinsics& camera);
+/// How the pixel of a point ahead of the camera moves with the point, in the camera's axes [px/m]:
+/// the derivative of pixel_of(), of a pinhole without that of its distortion.
+[[nodiscard]] Eigen::Matrix<double, 2, 3> pixel_slope(const Eigen::Vector3d& in_camera,
+                                                      const Intrinsics& camera);
 
 /// How large a metre across the line of sight is at a point ahead of the camera [px/m]: of a
 /// pinhole the focal length by the depth; of a fisheye the mean along and across the angle from the

@@ -46,7 +46,11 @@ double mean_distance(const std::vector<OutlinePoint>& outline, const Evidence& e
 }
 
 /// An outline's point in the camera's axes, at its capsule's depth; none outside the lens's model.
+/// Brown's distortion, which hardly changes how the point moves, is left out.
 std::optional<Eigen::Vector3d> in_camera(const OutlinePoint& point, const Intrinsics& camera) {
+  if (camera.model == LensModel::Brown)
+    return point.depth * Eigen::Vector3d((point.pixel.x() - camera.cx) / camera.fx,
+                                         (point.pixel.y() - camera.cy) / camera.fy, 1.0);
   const auto ray = ray_of(point.pixel, camera);
   if (!ray || !(ray->z() > 0.0)) return std::nullopt;
   return *ray / ray->z() * point.depth;
@@ -62,11 +66,9 @@ struct PointSlope {
 std::optional<PointSlope> slope_at(const SearchView& view, const OutlinePoint& point) {
   const auto place = in_camera(point, view.camera);
   if (!place) return std::nullopt;
-  const auto slope = pixel_slope(*place, view.camera);
-  if (!slope) return std::nullopt;
-  return PointSlope{
-      *slope * camera_from_sensor_axes() * view.world_from_sensor.linear().transpose(),
-      pixels_per_metre(*place, view.camera)};
+  return PointSlope{pixel_slope(*place, view.camera) * camera_from_sensor_axes() *
+                        view.world_from_sensor.linear().transpose(),
+                    pixels_per_metre(*place, view.camera)};
 }
 
 /// How far the body is moved, and by how much it is thicker all around than its shape [m].

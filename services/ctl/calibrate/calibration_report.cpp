@@ -20,20 +20,22 @@ struct Term {
   double sigma;
 };
 
-std::array<Term, 9> terms_of(const Calibration& calibration) {
+std::vector<Term> terms_of(const Calibration& calibration) {
   const Intrinsics& c = calibration.intrinsics;
   const auto& [k1, k2, p1, p2, k3] = c.distortion;
   const auto& s = calibration.sigma;
   const bool fisheye = c.model == LensModel::Fisheye;
-  return {{{"fx", " px", c.fx, s[0]},
-           {"fy", " px", c.fy, s[1]},
-           {"cx", " px", c.cx, s[2]},
-           {"cy", " px", c.cy, s[3]},
-           {"k1", "", k1, s[4]},
-           {"k2", "", k2, s[5]},
-           {fisheye ? "k3" : "p1", "", p1, s[6]},
-           {fisheye ? "k4" : "p2", "", p2, s[7]},
-           {fisheye ? "k5" : "k3", "", k3, s[8]}}};
+  std::vector<Term> out{{"fx", " px", c.fx, s[0]},
+                        {"fy", " px", c.fy, s[1]},
+                        {"cx", " px", c.cx, s[2]},
+                        {"cy", " px", c.cy, s[3]},
+                        {"k1", "", k1, s[4]},
+                        {"k2", "", k2, s[5]},
+                        {fisheye ? "k3" : "p1", "", p1, s[6]},
+                        {fisheye ? "k4" : "p2", "", p2, s[7]},
+                        {"k3", "", k3, s[8]}};
+  if (fisheye) out.pop_back();  // It has four.
+  return out;
 }
 
 std::string view_table(const Calibration& calibration) {

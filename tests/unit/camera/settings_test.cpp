@@ -8,6 +8,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 struct Read {
@@ -83,6 +84,19 @@ TEST(CameraSettings, TheFloorLiesAsFarBelowAsTheCameraIsHigh) {
   EXPECT_NEAR(floor->normal.norm(), 1.0, 1e-12);
   EXPECT_GT(floor->normal.y(), 0.0);
   EXPECT_FALSE(read(R"({"pitch_deg": 30})").settings.floor) << "a pitch alone says no height";
+}
+
+TEST(CameraSettings, AFisheyeIsAskedForByName) {
+  const std::string lens = R"({"intrinsics": {"width": 640, "height": 480, "fx": 150, "fy": 150,
+                               "cx": 320, "cy": 240)";
+  EXPECT_EQ(read(lens + R"(, "model": "fisheye"}})").settings.intrinsics->model,
+            LensModel::Fisheye);
+  EXPECT_THAT(read(lens + R"(, "model": "fisheye"}})").problems, IsEmpty());
+  EXPECT_THAT(read(lens + R"(, "model": "barrel"}})").problems, HasSubstr("fisheye"));
+  EXPECT_THAT(read(R"({"intrinsics": {"width": 640, "height": 480, "fx": 3.67, "fy": 3.67,
+                       "cx": 320, "cy": 240, "model": "fisheye"}})")
+                  .problems,
+              HasSubstr("intrinsics.fx: is 3.67 px"));
 }
 
 TEST(CameraSettings, MistakesAreNamed) {

@@ -68,6 +68,15 @@ TEST(CalibrationText, GivesEachNumberWithItsStandardDeviation) {
   EXPECT_THAT(text, Not(HasSubstr("not good enough")));
 }
 
+TEST(CalibrationText, GivesTheFourTermsOfAFisheye) {
+  calibration::Calibration wide = lens();
+  wide.intrinsics.model = LensModel::Fisheye;
+  const std::string text = calibration_text(wide, found(), {});
+  EXPECT_THAT(text, HasSubstr("\nk3 0.001 +- 0.0003\n"));
+  EXPECT_THAT(text, HasSubstr("\nk4 0.002 +- 0.0004\n"));
+  EXPECT_THAT(text, Not(HasSubstr("not needed")));
+}
+
 TEST(CalibrationText, AddsWhatWasLeftOutAndWhatDoesNotSuffice) {
   BoardViews views = found();
   views.notes = {"c.png is damaged\x1b[31m"};

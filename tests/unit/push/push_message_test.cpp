@@ -1,6 +1,7 @@
 // What pushers send, line by line: what is accepted, and how refusals are worded.
 #include "services/sensor/device/bridge/push_message.h"
 
+#include <numbers>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -132,6 +133,8 @@ TEST(Hello, MistakesAreNamed) {
           "intrinsics.distortion", "5 numbers");
   refused(with(kHelloMessage, "intrinsics", with(with(half, "fx", 3.67), "fy", 3.67)),
           "intrinsics.fx", "is it in millimetres?");
+  refused(with(kHelloMessage, "intrinsics", with(with(half, "fy", 500), "model", "barrel")),
+          "intrinsics.model", "fisheye");
 }
 
 TEST(PushedFrame, BringsPointsIntoSensorSpace) {
@@ -186,6 +189,19 @@ TEST(PushedFrame, PixelsBecomeRaysAndNothingInventsDepth) {
   EXPECT_THAT(right.position, VectorNear(Eigen::Vector3d(0, half, half), 1e-9)) << "up is +y";
   EXPECT_NEAR(left.covariance.matrix()(1, 1), std::pow(3.0 / 900 * half, 2), 1e-9);
   EXPECT_NEAR(right.covariance.matrix()(0, 0), std::pow(9.0 / 900 * half, 2), 1e-8);
+}
+
+TEST(PushedFrame, PixelsOfAFisheyeFollowItsAngles) {
+  const double quarter = std::numbers::pi / 4.0;
+  Json camera{{"width", 1280}, {"height", 720}, {"fx", 400},         {"fy", 400},
+              {"cx", 640},     {"cy", 360},     {"model", "fisheye"}};
+  const auto pixels = frame_of("pixels", landmarks({{9, {640 + 400 * quarter, 360, 0.8}}}));
+  const auto frame = read_frame(pixels, with(kHelloMessage, "intrinsics", camera));
+  ASSERT_THAT(frame, IsOk());
+  const double half = std::sqrt(0.5);
+  EXPECT_THAT(joint_of(frame, JointId::WristLeft).position,
+              VectorNear(Eigen::Vector3d(-half, 0, half), 1e-9))
+      << "a pixel at f * 45 degrees";
 }
 
 TEST(PushedFrame, AnUncertainFocalLengthIsInEachRayAndNotLessInTheMeanOfTwo) {

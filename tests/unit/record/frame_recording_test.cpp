@@ -34,6 +34,16 @@ FrameRecording walk(int frames) {
   return out;
 }
 
+TEST(FrameRecording, KeepsWhichModelALensHas) {
+  const TemporaryFolder folder;
+  FrameRecording written = walk(2);
+  written.intrinsics->model = LensModel::Fisheye;
+  ASSERT_TRUE(write_frame_recording(folder / "a.mcap", written));
+  const auto read = read_frame_recording(folder / "a.mcap");
+  ASSERT_TRUE(read) << to_string(read.error());
+  EXPECT_EQ(read->intrinsics, written.intrinsics);
+}
+
 TEST(FrameRecording, ReadsBackWhatWasWritten) {
   const TemporaryFolder folder;
   const FrameRecording written = walk(100);

@@ -107,6 +107,10 @@ TEST(ImageResource, HasTheLensInPixelsAndTheDistortionInItsOrder) {
   EXPECT_EQ(json.at("distortion"), nlohmann::json({0.1, -0.2, 0.001, -0.002, 0.03}));
   EXPECT_EQ(json.at("captured"), "2026-11-21T07:30:00.250000001Z");
   EXPECT_EQ(json.at("capturedNanoseconds"), "1795246200250000001");
+  EXPECT_FALSE(json.contains("lensModel")) << "Brown's";
+  image.intrinsics.model = LensModel::Fisheye;
+  const auto wide = nlohmann::json::parse(write(image_node(image, "images/color"), Format::Json));
+  EXPECT_EQ(wide.at("lensModel"), "fisheye");
 }
 
 TEST(ClockResource, NeedsNoNumbersThatJavaScriptRounds) {

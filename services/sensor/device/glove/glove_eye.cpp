@@ -126,7 +126,8 @@ Result<hand::GlovePlace> GloveEye::place(const camera::Picture& picture,
         std::string("the network sees no ") + std::string(name_of(skeleton_.side)) + " hand");
   for (hand::Pixel& joint : seen->front().joints) {
     const auto ray = ray_of(joint, camera);
-    if (!ray) return fail(ErrorCode::NotFound, "glove", "is outside the lens's model");
+    if (!ray || !(ray->z() > 0.0))
+      return fail(ErrorCode::NotFound, "glove", "is outside the lens's model");
     joint = {camera.cx + camera.fx * ray->x() / ray->z(),
              camera.cy + camera.fy * ray->y() / ray->z()};
   }
