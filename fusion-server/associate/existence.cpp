@@ -173,10 +173,9 @@ bool is_early(const Track& track, const std::vector<Miss>& missing, const Gaze& 
 Standing standing_of(const Track& track, const std::vector<Miss>& missing, const Gaze& gaze,
                      const Sitting& sitting) {
   Standing standing{track.id, track.core, {}, {}};
-  for (const Assigned& body : gaze.sights_of(track.id)) {
-    standing.seen_by.push_back(body.sensor);
-    standing.on_floor = standing.on_floor && (body.on_floor || !sitting.floor_known);
-  }
+  const std::vector<Assigned>& bodies = gaze.sights_of(track.id);
+  for (const Assigned& body : bodies) standing.seen_by.push_back(body.sensor);
+  standing.on_floor = !sitting.floor_known || std::ranges::any_of(bodies, &Assigned::on_floor);
   for (const Miss& miss : missing) standing.missed_by.push_back(miss.observer->sensor);
   std::ranges::sort(standing.seen_by);
   std::ranges::sort(standing.missed_by);

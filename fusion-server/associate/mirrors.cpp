@@ -17,8 +17,8 @@ constexpr double kOnPlane = 0.15;  // [m] between the core and the reflected cor
 constexpr double kStep = 0.05;     // [m]; a shorter way may be noise
 constexpr double kWay = 0.5;       // [m] that a person goes while the image follows
 constexpr double kUnlike = 1.0;    // [s] of another posture or place, after which it is no image
-constexpr std::size_t kMostMirrors = 8;
-constexpr double kLearn = 0.05;  // Share of the newest instant in a known plane.
+constexpr std::size_t kMostMirrors = 8;  // the oldest is forgotten then
+constexpr double kLearn = 0.05;          // Share of the newest instant in a known plane.
 
 const PlacedView* view_by(const std::vector<PlacedView>& sights, const SensorId& sensor) {
   const auto at = std::ranges::find_if(
@@ -125,6 +125,15 @@ void follow_image(Image& image, const Eigen::Vector3d& core, const Likeness& lik
   image.unlike = 0.0;
 }
 
+/// False while the person of whom the track is the image is only unseen by those who see the image.
+bool comparable(const Candidate& image, const std::vector<Candidate>& all) {
+  const auto person = std::ranges::find_if(
+      all, [&](const Candidate& each) { return each.track.id == image.track.image.of; });
+  return person == all.end() || std::ranges::any_of(image.sights, [&](const PlacedView& sight) {
+           return view_by(person->sights, sight.view.sensor) != nullptr;
+         });
+}
+
 }  // namespace
 
 Eigen::Vector3d reflected(const Mirror& mirror, const Eigen::Vector3d& place) {
@@ -173,12 +182,13 @@ void reflect(std::vector<Candidate>& candidates, const std::vector<Observer>& ob
     if (like) {
       follow_image(image, candidate.track.core, *like);
     } else {
-      image.unlike += elapsed;
+      if (comparable(candidate, candidates)) image.unlike += elapsed;
       if (image.unlike > kUnlike) image = {};
     }
     if (!like || image.sure) continue;
     image.sure = like->known || image.way > kWay;
-    if (!image.sure || like->known || mirrors.size() >= kMostMirrors) continue;
+    if (!image.sure || like->known) continue;
+    if (mirrors.size() >= kMostMirrors) mirrors.erase(mirrors.begin());
     mirrors.push_back(image.mirror);
   }
 }

@@ -1,4 +1,4 @@
-// Finds mirrors: upright or lying planes in which one body is another one's image.
+// Finds mirrors: planes in which one body is another one's image.
 //
 // A tracker that looks into a mirror, or at a glossy wall, sees everybody a second time behind it.
 // Each joint of the image is the joint of the other side of the person, reflected in one plane,

@@ -275,9 +275,9 @@ void learn(const Track& track, Repeatability& repeatability) {
   const auto all = track.build.all();
   if (!track.named || all.empty() || sight_of(all.back().build) < 1.0) return;
   const Build usual = track.build.before(all.size() - 1);
+  if (sight_of(usual) < kUsual) return;
   const auto doubt = track.build.doubt(repeatability);
-  if (sight_of(usual) >= kUsual && (!doubt || doubt->odds > kInQuestion))
-    repeatability.learn(all.back().build, usual);
+  if (!doubt || doubt->odds > kInQuestion) repeatability.learn(all.back().build, usual);
 }
 
 /// Computes the doubt about a track, and by it the person's usual build.

@@ -174,6 +174,7 @@ void FusionCore::displace_moved(Timestamp instant) {
   Registration before = registration();
   if (!registrar_.displace(*moved, reason_of(*moved, *guard_.alarm_of(*moved)))) return;
   guard_.displaced(*moved);
+  memory_.tracks.fields.erase(*moved);  // what hides the view belongs to the old place
   strays_.forget();
   last = instant;
   change_places(std::move(before));
@@ -184,6 +185,7 @@ Result<void> FusionCore::register_anew(const SensorId& sensor) {
   if (auto released = registrar_.release(sensor); !released) return released;
   if (!before.sensors.contains(sensor)) return {};
   guard_.released();
+  memory_.tracks.fields.erase(sensor);
   strays_.forget();
   change_places(std::move(before));
   return {};
@@ -304,7 +306,9 @@ void FusionCore::forget(PersonId person) {
 /// Forgets what is remembered about people, because it is in coordinates of the old world.
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
-  memory_.sides.people.clear();   // what was learned about each sensor stays
+  memory_.tracks.mirrors.clear();
+  memory_.tracks.floor_seen = false;
+  memory_.sides.people.clear();  // what was learned about each sensor stays
   contests_.forget();
   memory_.seating = {};  // nobody left: whoever is here gets the low slots again
   world_ = DecidedWorld(config_.output.late_frames);

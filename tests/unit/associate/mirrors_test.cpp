@@ -134,6 +134,33 @@ TEST(Mirrors, ThatAreKnownShowNobodyFromTheFirstInstantOn) {
   }
 }
 
+TEST(Mirrors, ShowNobodyWhileThePersonIsUnseenForAWhile) {
+  RoomWithMirror room;
+  Skeleton<WorldSpace> image;
+  for (int i = 0; i < 60; ++i) {
+    const auto body = walker_at(-0.6 + 0.02 * i, 0.1, 0.2 * i);
+    image = image_in_wall(body);
+    room.see({body, image});
+  }
+  ASSERT_EQ(room.tracks.people.size(), 2u);
+  const PersonId nobody = room.tracks.people[1].id;
+  for (int i = 0; i < 60; ++i) {  // two seconds
+    for (const Person& person : room.see({image})) EXPECT_NE(person.id, nobody) << i;
+  }
+}
+
+TEST(Mirrors, TheOldestIsForgottenForANewOne) {
+  RoomWithMirror room;
+  for (int i = 0; i < 8; ++i) room.tracks.mirrors.push_back({Eigen::Vector3d::UnitX(), 20.0 + i});
+  for (int i = 0; i < 60; ++i) {
+    const auto body = walker_at(-0.6 + 0.02 * i, 0.1, 0.2 * i);
+    room.see({body, image_in_wall(body)});
+  }
+  ASSERT_EQ(room.tracks.mirrors.size(), 8u);
+  EXPECT_NEAR(room.tracks.mirrors.front().offset, 21.0, 1e-9);
+  EXPECT_NEAR(std::abs(room.tracks.mirrors.back().offset), 1.0, 0.02);
+}
+
 TEST(Mirrors, AreNotBetweenTwoWhoWalkSideBySide) {
   RoomWithMirror room;
   std::size_t people = 0;

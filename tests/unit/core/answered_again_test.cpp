@@ -73,6 +73,8 @@ TEST(AnsweredAgain, WhoWasPublishedStays) {
   const AnsweredTwice all = answered_twice({milliseconds(100), milliseconds(300)});
   for (const auto& [sequence, people] : all.again)
     EXPECT_TRUE(std::ranges::includes(people, all.first.at(sequence))) << sequence;
+  EXPECT_TRUE(std::ranges::any_of(
+      all.again, [&](const auto& each) { return !all.first.at(each.first).empty(); }));
   EXPECT_GE(all.again.size(), 78u) << "all others are";
 }
 
