@@ -1,5 +1,6 @@
 // The last minute of the room, as lines over time: what people do, how the sensors deliver, what worn sensors say.  Pure.
 import { colourOf } from './certainty.js';
+import { limbsOf } from './judged.js';
 
 const KEPT_MS = 60000;
 const EVERY_MS = 100;
@@ -14,9 +15,9 @@ const finite = (value) => (Number.isFinite(value) ? value : null);
 /// One instant in few numbers: places by person and joint, rates and ages by source, angles by limb.
 function sampleOf({ frame, rate, age, sensors, evaluation }, at) {
   const people = new Map((frame?.bodies ?? []).map((body) => [body.bodyId, new Map(Object.entries(body.joints).filter(([, joint]) => Number.isFinite(joint.x))
-    .map(([name, { x, y, z }]) => [name, Float32Array.of(x, y, z)]))]));
+    .map(([name, { x, y, z }]) => [name, [x, y, z]]))]));
   const delivering = Object.entries(sensors ?? {}).map(([id, sensor]) => [id, sensor.state === 'live' ? { rate: sensor.rateHz, age: sensor.ageMilliseconds } : {}]);
-  const limbs = (evaluation?.limbs ?? []).map(({ bodyId, limb, state, angleDegrees, thresholdDegrees }) => [`${limb}${bodyId === undefined ? '' : `, person ${bodyId}`}`,
+  const limbs = limbsOf(evaluation).map(({ bodyId, limb, state, angleDegrees, thresholdDegrees }) => [`${limb}${bodyId === undefined ? '' : `, person ${bodyId}`}`,
     { state, angle: Number(angleDegrees ?? NaN), limit: Number(thresholdDegrees ?? NaN) }]);
   return { at, captured: Date.parse(frame?.captured), people, sources: new Map([['fused', { rate, age }], ...delivering]), limbs: new Map(limbs) };
 }
@@ -24,7 +25,7 @@ function sampleOf({ frame, rate, age, sensors, evaluation }, at) {
 export class History {
   constructor() { this.samples = []; }
 
-  /// `known`: { frame, rate, age, sensors, evaluation } as served; `now`: [ms] of a steady clock.  Ten times a second suffice.
+  /// `known`: { frame, rate, age, sensors, evaluation } as served, those that are current; `now`: [ms] of a steady clock.  Ten times a second suffice.
   take(known, now) {
     if (now - (this.samples.at(-1)?.at ?? -Infinity) < EVERY_MS - 5) return;
     this.samples.push(sampleOf(known, now));
@@ -52,14 +53,16 @@ const VALUES = {
 const SOURCES = { height: 'people', speed: 'people', rate: 'sources', age: 'sources', limbs: 'limbs' };
 
 /// The lines of one kind: { seconds: [before now, negative], lines: [{ name, colour, values }], leftOut, limit }; null in a line is a gap.
+/// What the newest sample has comes first, so that it is not left out.
 /// `limit`: what a limb is allowed, where all that are judged have the same.
 export function linesOf({ samples }, kind, joint, now) {
   const all = names(samples, (sample) => sample[SOURCES[kind]].keys());
-  const drawn = all.slice(0, MOST_LINES);
+  const present = (name) => Number(samples.at(-1)[SOURCES[kind]].has(name));
+  const drawn = [...all].sort((first, second) => present(second) - present(first)).slice(0, MOST_LINES);
   const broken = samples.map((sample, i) => i > 0 && sample.at - samples[i - 1].at > BROKEN_MS);
-  const lines = drawn.map((name, k) => ({
+  const lines = drawn.map((name) => ({
     name: OF_JOINTS.includes(kind) ? `person ${name}` : String(name),
-    colour: colourOf(OF_JOINTS.includes(kind) ? name : k),
+    colour: colourOf(OF_JOINTS.includes(kind) ? name : all.indexOf(name)),
     values: samples.map((_, i) => (broken[i] ? null : VALUES[kind](samples, i, name, joint))),
   }));
   const limits = kind === 'limbs' ? [...new Set(samples.flatMap(({ limbs }) => [...limbs.values()].map(({ limit }) => limit)).filter(Number.isFinite))] : [];

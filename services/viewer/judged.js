@@ -1,5 +1,8 @@
 // What worn sensors say of the limbs (/evaluation): colours and sentences.  Pure.
 
+/// The judged limbs that an answer holds; none where it is of another kind.
+export const limbsOf = (evaluation) => (Array.isArray(evaluation?.limbs) ? evaluation.limbs : []).filter((limb) => limb && typeof limb === 'object');
+
 /// The bones of each limb, by the joint at their end.
 const BONES = {
   Pelvis: ['SpineMid'], Chest: ['SpineShoulder', 'Neck'], Head: ['Head'],
@@ -17,7 +20,7 @@ export function bonesOf(limb) {
 /// By person and joint at the bone's end: its colour.  Limbs that nobody judges at present have none.
 export function judgedBones(evaluation) {
   const people = new Map();
-  for (const { bodyId, limb, state } of evaluation?.limbs ?? []) {
+  for (const { bodyId, limb, state } of limbsOf(evaluation)) {
     if (bodyId === undefined || !(state in COLOURS)) continue;
     const bones = people.get(Number(bodyId)) ?? {};
     for (const joint of bonesOf(limb)) bones[joint] = COLOURS[state];
@@ -31,7 +34,7 @@ const ORDER = Object.keys(TONES);
 
 /// Sentences about the limbs that are not well, the worst first, and one for all that are.
 export function judgedLines(evaluation) {
-  const limbs = evaluation?.limbs ?? [];
+  const limbs = limbsOf(evaluation);
   const good = limbs.filter(({ state }) => state === 'good').length;
   const others = limbs.filter(({ state }) => state in TONES)
     .sort((first, second) => ORDER.indexOf(first.state) - ORDER.indexOf(second.state))

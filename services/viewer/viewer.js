@@ -181,9 +181,9 @@ follow(frames, 0, (frame) => {
   if (frame.captured !== known.frame?.captured) cameAt = performance.now();
   known.frame = frame;
   known.rate = outputRate.after(frame);
-  known.history.take({ ...known, age: ageOf(frame) }, performance.now());
   if (!known.playback) showBodies(frame);
   watchOrigin(frame);
+  known.history.take({ ...known, age: ageOf(frame) }, performance.now());
 }, failed);
 
 const sensorsNow = resource('sensors/', 0, sensorsOf);
@@ -279,13 +279,16 @@ setInterval(() => {
   // Its own clock counts too: a server may tell the time wrong, or not at all.
   const frameAge = known.frame ? Math.max(age || 0, performance.now() - cameAt) : NaN;
   const now = { ...known, link: link.state(), frameAge, frameProblem: frames.problem, unread, held };
-  const fresh = known.playback ? 'recorded' : freshness(now);
+  const ofTheRoom = freshness(now);
+  const fresh = known.playback ? 'recorded' : ofTheRoom;
   const state = known.playback ? stateOfPlayback(known.playback, recordingOnly) : stateOf(now);
   document.body.dataset.fresh = fresh;
   document.title = state.tone === 'good' || state.tone === 'calm' ? 'Chorus cockpit' : `${state.sentence} – Chorus cockpit`;
   Object.assign(shown, { fresh, age });
   change({ state, sceneTrouble: room.trouble, age: known.playback ? NaN : age, shownFrame: known.playback ? player.frame : fresh === 'gone' ? null : known.frame, shownRate: fresh === 'live' ? known.rate : NaN });
   if (fresh === 'gone' && known.frame) forget();
+  // Without a current frame nobody is anywhere and nothing is judged; sensors are as a server says that answers.
+  if (ofTheRoom !== 'live') known.history.take({ age, sensors: now.link.error ? null : known.sensors }, performance.now());
 }, STATE_EVERY_MS);
 
 /// Shows nothing of a server that no longer answers, except that its sensors exist.

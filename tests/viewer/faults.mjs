@@ -99,6 +99,11 @@ const FAULTS = {
   'sensors that answer 500': { plant: answers(500, detail('broke down'), /^\/sensors\/$/), says: /^The fusion server says nothing of the sensors: it answered 500: broke down\.$/ },
   'sensors that are no list': { plant: tells('/sensors/', () => '{"sensors":"none"}'), says: /says nothing of the sensors: what it says cannot be read/ },
   'a registration of another kind': { plant: tells('/registration', () => '{"verdict":"Good","reasons":"all well"}'), says: /says nothing of where the sensors stand: what it says cannot be read/ },
+  'judgements that are none': {
+    early: true, plant: (world) => { let count = 0; world.evaluation = { limbs: [] }; tells('/evaluation', () => [{ limbs: {} }, { limbs: 'x' }, { limbs: [null] }][(count += 1) % 3])(world); }, says: LIVE, green: true,
+    steps: [opened('c'), (page) => page.getByRole('combobox', { name: 'of the last minute' }).selectOption('height')],
+    check: async (page, world, { framesAfter }) => { await framesAfter(20); await page.getByText('person 1 1.66 m').waitFor(); },
+  },
   'places that are no numbers': { plant: tells('/registration', (told) => ({ ...told, sensors: { s1: { ...SENSORS.s1, x: null }, s2: { ...SENSORS.s2, qw: 'one' } } })), says: LIVE, green: true, check: (page, world, { framesAfter }) => framesAfter(10) },
   'facts that the panels cannot show': { plant: (world) => { world.events = { 0: null, length: 1 }; }, says: /./, green: true, check: (page) => page.getByText('cannot show what the server says').waitFor(), heal: (world) => { world.events = []; } },
   'a hundred sensors, some with names of JavaScript': {

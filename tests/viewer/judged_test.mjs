@@ -28,6 +28,10 @@ test('limbs are coloured by their state, those of whom nobody judges are not', (
   assert.equal(bones.get(3).AnkleRight, COLOURS.calibrating);
   assert.equal(bones.get(3).HandRight, undefined);
   assert.equal(judgedBones(null).size, 0);
+  for (const limbs of [{}, 'x', 7, [null, 7]]) {
+    assert.equal(judgedBones({ limbs }).size, 0);
+    assert.deepEqual(judgedLines({ limbs }), []);
+  }
 });
 
 test('what is off comes first, what is well in one line', () => {

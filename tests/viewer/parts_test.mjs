@@ -237,7 +237,7 @@ test('the last minute as lines: heights and speeds by person, rates and ages by 
   assert.deepEqual(speed.lines.map(({ name }) => name), ['person 4']);
   assert.equal(speed.lines[0].values[0], null, 'nothing before it');
   assert.ok(Math.abs(speed.lines[0].values.at(-1) - 0.5) < 1e-4, '50 mm in 100 ms');
-  assert.ok(Math.abs(linesOf(history, 'height', 'Head', 70000).lines[0].values.at(-1) - 1.7) < 1e-6);
+  assert.equal(linesOf(history, 'height', 'Head', 70000).lines[0].values.at(-1), 1.7, 'as it was served');
   assert.deepEqual(linesOf(history, 'height', 'Neck', 70000).lines[0].values.at(-1), null);
   const newest = (kind) => Object.fromEntries(linesOf(history, kind, '', 70000).lines.map(({ name, values }) => [name, values.at(-1)]));
   assert.deepEqual(newest('rate'), { fused: 30, s1: 29, s2: null });
@@ -248,6 +248,33 @@ test('the last minute as lines: heights and speeds by person, rates and ages by 
   assert.equal(linesOf(history, 'height', 'Head', 80000).lines[0].values.at(-1), null, 'a gap');
   history.take(moment(801, { frame: { captured: 'x', bodies: Array.from({ length: 20 }, (_, i) => ({ bodyId: i, joints: {} })) } }), 80100);
   assert.equal(linesOf(history, 'height', 'Head', 80100).leftOut, 20 - 12);
+});
+
+test('of more names than lines, those that the newest sample has are drawn, each in the colour that it had', () => {
+  const history = new History();
+  const twenty = Array.from({ length: 20 }, (_, i) => [`s${i}`, { state: 'live', rateHz: i }]);
+  const body = (bodyId) => ({ bodyId, joints: { Head: { x: 0, y: 1.7, z: 0 } } });
+  history.take({ sensors: Object.fromEntries(twenty), frame: { bodies: twenty.map((_, i) => body(i)) } }, 0);
+  const before = linesOf(history, 'rate', '', 0).lines;
+  assert.deepEqual(before.slice(0, 3).map(({ name }) => name), ['fused', 's0', 's1']);
+  history.take({ sensors: Object.fromEntries([twenty[19], twenty[2]]), frame: { bodies: [body(18), body(3)] } }, 100);
+  const rates = linesOf(history, 'rate', '', 100);
+  assert.deepEqual([rates.lines.length, rates.leftOut], [12, 9]);
+  assert.deepEqual(rates.lines.slice(0, 4).map(({ name, values }) => [name, values.at(-1)]), [['fused', null], ['s2', 2], ['s19', 19], ['s0', null]]);
+  for (const { name, colour } of before) assert.equal(rates.lines.find((line) => line.name === name)?.colour ?? colour, colour, name);
+  assert.deepEqual(linesOf(history, 'height', 'Head', 100).lines.slice(0, 3).map(({ name, values }) => [name, values.at(-1)]), [['person 3', 1.7], ['person 18', 1.7], ['person 0', null]]);
+
+  history.take({ age: NaN, sensors: null }, 200); // the server is gone
+  for (const kind of ['height', 'rate', 'age']) assert.ok(linesOf(history, kind, 'Head', 200).lines.every(({ values }) => values.at(-1) === null), kind);
+});
+
+test('judgements that are none are left out of the curves', () => {
+  for (const limbs of [{}, 'x', 7, null, [null, 7, 'x']]) {
+    const history = new History();
+    history.take({ evaluation: { limbs }, rate: 30 }, 0);
+    assert.deepEqual(stripOf(history, 0), [], JSON.stringify(limbs));
+    assert.equal(linesOf(history, 'rate', '', 0).lines[0].values[0], 30);
+  }
 });
 
 test('how limbs were judged in the last minute', () => {

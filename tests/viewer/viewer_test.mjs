@@ -267,9 +267,11 @@ test('frames that stand still are grey, then gone', async () => {
 });
 
 test('says so when the server goes away, and shows nothing of it any more', async () => {
-  const doomed = await startFusion(FILES);
+  const doomed = await startFusion(FILES, { ...usualWorld(), evaluation: { limbs: [{ bodyId: 1, limb: 'ForearmLeft', state: 'off', angleDegrees: '70.2', comment: 'off by 70 deg' }] } });
   const { page } = await openViewer(browser, doomed.url);
-  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5 && window.chorusViewer.rawBones.s1 > 0, null, SOON);
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5 && window.chorusViewer.rawBones.s1 > 0 && /off by 70 deg/.test(document.body.textContent), null, SOON);
+  await page.keyboard.press('c');
+  await page.getByText('ForearmLeft, person 1 70.2 °').waitFor();
   doomed.stop();
   await headlineIn(page, /^The fusion server has not answered for \d+ s\.$/, RED);
   await page.waitForFunction(() => window.chorusViewer.fresh === 'gone', null, SOON);
@@ -279,6 +281,7 @@ test('says so when the server goes away, and shows nothing of it any more', asyn
   assert.equal(shown.rawBones.s1, 0);
   assert.equal(await text(page, '#verdict'), '–');
   assert.equal(await text(page, '[data-sensor=s1] .state'), 'unknown');
+  assert.deepEqual([await text(page, '#curves-now strong'), await page.getAttribute('#strip svg', 'aria-label')], ['– °', 'now waiting']);
   await picture(page, 'gone');
   await page.close();
 });

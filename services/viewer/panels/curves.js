@@ -65,7 +65,7 @@ export function Curves({ history, judged }) {
   const now = performance.now();
   const [name, unit] = KINDS[kind];
   const told = linesOf(history, kind, joint, now);
-  const kinds = Object.entries(KINDS).filter(([key]) => key !== 'limbs' || judged);
+  const kinds = Object.entries(KINDS).filter(([key]) => key !== 'limbs' || judged || kind === 'limbs');
   return html`<div id="curves-drawer">
     <div class="row">
       <label>of the last minute <select id="curves-kind" value=${kind} onChange=${(event) => setKind(event.target.value)}>${kinds.map(([key, [label]]) => html`<option key=${key} value=${key}>${label}</option>`)}</select></label>
