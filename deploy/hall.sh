@@ -36,30 +36,41 @@ def read(path):
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         wrong(f"{path}: {error}")
+def word(value, what):
+    if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z0-9_.:@/\[\]-]+", value) or value.startswith("-"):
+        wrong(f"{what} is {value!r}; it needs letters, digits and _ . : @ / - only, and does not begin with -")
+    return value
 whole = read(file)
 if not isinstance(whole, dict) or not isinstance(whole.get("cells"), dict) or len(whole["cells"]) < 2:
     wrong('needs "cells": the inventory of each of two or more cells, by its name')
 for key in whole:
     if key not in ("name", "server", "cells", "places"):
         wrong(f"has the unknown key {key!r}; it takes name, server, cells, places")
-WORD = re.compile(r"[A-Za-z0-9_-]{1,64}")
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,63}")
 cells = whole["cells"]
 for name in [whole.get("name", ""), *cells]:
-    if not isinstance(name, str) or not WORD.fullmatch(name):
-        wrong(f'the name {name!r} is not of 1 to 64 letters, digits, _ or - ("name" is the hall\'s)')
+    if not isinstance(name, str) or not NAME.fullmatch(name):
+        wrong(f'the name {name!r} is not of 1 to 64 letters, digits, _ or -, with no - before the others ("name" is the hall\'s)')
 server = whole.get("server")
-if server not in cells:
+if not isinstance(server, str) or server not in cells:
     wrong(f'"server" is {server!r}; it is one of {", ".join(cells)}, on whose fusion host the server is to run')
+places = whole.get("places", "places.json")
+if not isinstance(places, str) or not places.isprintable() or not places.strip() or places.startswith("-"):
+    wrong(f'"places" is {places!r}; it is the name of a file, such as "places.json"')
 print("name", whole["name"])
-print("places", file.parent / whole.get("places", "places.json"))
+print("places", file.parent / places)
 entered = {}
 for cell in [server] + [each for each in cells if each != server]:
-    inventory = file.parent / cells[cell]
-    fusion = read(inventory).get("fusion", {})
-    address = fusion.get("address", "")
-    ssh = fusion.get("ssh", f"root@{address}")
-    if any(not isinstance(word, str) or not re.fullmatch(r"[A-Za-z0-9_.:@/\[\]-]+", word) for word in (address, ssh, str(inventory))):
-        wrong(f"{inventory}: fusion.address is missing, or a word has letters other than A-Z a-z 0-9 _ . : @ / -")
+    inventory = file.parent / word(cells[cell], f"the inventory of cell {cell}")
+    word(str(inventory), f"the path of cell {cell}'s inventory")
+    content = read(inventory)
+    fusion = content.get("fusion") if isinstance(content, dict) else None
+    if not isinstance(fusion, dict):
+        wrong(f'{inventory}: needs an object "fusion", as in docs/guide/workshop.md')
+    if "address" not in fusion:
+        wrong(f'{inventory}: fusion has no "address": that under which the other hosts reach it, such as 10.0.0.10')
+    address = word(fusion["address"], f"{inventory}: fusion.address")
+    ssh = word(fusion.get("ssh", "root@" + address), f"{inventory}: fusion.ssh")
     if ssh in entered:
         wrong(f"cells {entered[ssh]} and {cell} are the same host, {ssh}; a cell needs a fusion host of its own")
     entered[ssh] = cell
@@ -89,14 +100,18 @@ each_workshop() {  # TASK
   (( bad == 0 )) || fail "$bad of ${#cells[@]} cells are not well; what to do stands above"
 }
 
-# The server's accounts are made once; what is there is kept.
+# The server's accounts are made once; what is there is kept.  A server that runs already takes new ones when it is started again.
 start_server() {
   local cell rest wishes=''
   for entry in "${cells[@]}"; do read -r cell rest <<<"$entry"; wishes+=" --cell $cell"; done
   step "server on $server_host"
-  on "$server_host" "command -v nats-server >/dev/null || test -x /usr/sbin/nats-server || DEBIAN_FRONTEND=noninteractive apt-get -q -y install nats-server" </dev/null
-  on "$server_host" "test -e /etc/chorus/site/nats-server.conf || chorus init site --name $name$wishes --address $server_address >/dev/null" </dev/null
+  # Debian starts its own nats-server.service on the port that the cells' server needs.
+  on "$server_host" "command -v nats-server >/dev/null || test -x /usr/sbin/nats-server || { DEBIAN_FRONTEND=noninteractive apt-get -q -y install nats-server && systemctl disable --now nats-server.service; }" </dev/null
+  on "$server_host" "test -e /etc/chorus/site/nats-server.conf || { chorus init site --name $name$wishes --address $server_address >/dev/null && systemctl restart chorus-site; }" </dev/null
   on "$server_host" "systemctl enable --now chorus-site" </dev/null
+  # One that ends at once is started again and again, so it is looked at more than once.
+  on "$server_host" "for i in 1 2 3; do sleep 0.5; systemctl is-active --quiet chorus-site || exit 1; done" </dev/null ||
+    fail "the server does not run on $server_host: journalctl -u chorus-site there says why (is port 4222 taken by another program?); mend that and run this again"
 }
 
 # What a cell needs: its section, with the authority of the server beside its own and the file of places.  Standard input: CELL.json.
@@ -110,15 +125,37 @@ whole["site"]["places"] = "/etc/chorus/places.json"
 json.dump(whole, sys.stdout, indent=2)'
 }
 
+# Whether a configuration on standard input has a section "site": 0, or 1, or 2 if it cannot be read.  Comments do not count.
+has_site() {
+  python3 -c '
+import json, re, sys
+text = re.sub(r"(\"(?:\\.|[^\"\\])*\")|//[^\n]*|/\*.*?\*/", lambda match: match.group(1) or " ", sys.stdin.read(), flags=re.DOTALL)
+try:
+    sys.exit(0 if "site" in json.loads(text) else 1)
+except ValueError as error:
+    print(error, file=sys.stderr)
+    sys.exit(2)'
+}
+
+# May be repeated after a break: the section is written and taken into use in one step, after all it names.
 join_cell() {  # CELL SSH
+  local kept code=0
   step "cell $1 joins"
-  if on "$2" "grep -q '\"site\"' /etc/chorus/fusion.json" </dev/null; then echo "it has a section \"site\" already, which is kept"; return; fi
-  on "$server_host" "cat /etc/chorus/tls/ca.crt 2>/dev/null || true" </dev/null | on "$2" "cat > /etc/chorus/site-ca.crt"
+  on "$server_host" "cat /etc/chorus/tls/ca.crt 2>/dev/null || true" </dev/null |
+    on "$2" "cat > /etc/chorus/site-ca.crt.new && if test -s /etc/chorus/site-ca.crt.new; then mv /etc/chorus/site-ca.crt.new /etc/chorus/site-ca.crt; else rm /etc/chorus/site-ca.crt.new; fi"
+  kept=$(on "$2" "cat /etc/chorus/fusion.json" </dev/null) || fail "cell $1 has no configuration on $2: lay it out first ($0 $hall lay-out)"
+  printf '%s\n' "$kept" | has_site || code=$?
+  case $code in
+    0) echo "it has a section \"site\" already, which is kept"; return ;;
+    1) ;;
+    *) fail "/etc/chorus/fusion.json of $2 cannot be read; why stands above" ;;
+  esac
+  on "$server_host" "test -e /etc/chorus/site/$1.json" </dev/null ||
+    fail "the server on $server_host has no account for cell $1: remove /etc/chorus/site there and the section \"site\" of each cell, and run this again (docs/guide/hall.md, Many cells)"
   on "$2" "test -e /etc/chorus/places.json || echo '{\"cells\": {}}' > /etc/chorus/places.json" </dev/null
   # The password passes through our pipe, never through a command line or a file of ours.
   on "$server_host" "cat /etc/chorus/site/$1.json" </dev/null | cell_file |
-    on "$2" "umask 077; t=\$(mktemp -d) && trap 'rm -rf \$t' EXIT && cat > \$t/cell.json && chorus init site --join \$t/cell.json >/dev/null"
-  on "$2" "systemctl restart chorus-fusion" </dev/null
+    on "$2" "umask 077; t=\$(mktemp -d) && trap 'rm -rf \$t' EXIT && cat > \$t/cell.json && chorus init site --join \$t/cell.json >/dev/null && systemctl restart chorus-fusion"
 }
 
 join() {

@@ -63,7 +63,8 @@ class Promises(unittest.TestCase):
         for unit in UNITS:
             text = unit.read_text(encoding="utf-8")
             if unit.stem == SITE:
-                for line in ("Restart=always", "User=chorus", "ProtectSystem=strict", "ConditionPathExists=/etc/chorus/site/nats-server.conf"):
+                for line in ("Restart=always", "User=chorus", "ProtectSystem=strict", "ConditionPathExists=/etc/chorus/site/nats-server.conf",
+                             "Conflicts=nats-server.service", "After=nats-server.service"):
                     self.assertIn(f"\n{line}\n", text)
                 continue
             with self.subTest(unit.name):
