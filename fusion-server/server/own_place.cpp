@@ -1,5 +1,8 @@
 #include "fusion-server/server/own_place.h"
 
+#include <filesystem>
+#include <utility>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -14,12 +17,14 @@ namespace {
 
 constexpr std::size_t kMostBytes = 1 << 16;
 
-/// Numbers lose their last digits in a file.
+/// Numbers lose their last digits in a file.  The origin of a newly found hall lies where that of
+/// the old one lay: only the version tells them apart.
 bool same(const site::CellPlace& one, const site::CellPlace& other) {
   constexpr double kExact = 1e-6;
   const auto clock = std::chrono::abs(one.clock_added - other.clock_added) +
                      std::chrono::abs(one.clock_sigma - other.clock_sigma);
-  return one.site_from_cell.isApprox(other.site_from_cell, kExact) &&
+  return one.version == other.version &&
+         one.site_from_cell.isApprox(other.site_from_cell, kExact) &&
          (one.covariance - other.covariance).cwiseAbs().maxCoeff() < kExact &&
          clock < std::chrono::microseconds(10);
 }
@@ -39,6 +44,15 @@ void write(const std::string& file, const std::string& text) {
     log::warn("where the cell was moved to is not kept", {{"reason", to_string(done.error())}});
 }
 
+void forget(const std::filesystem::path& file) {
+  std::error_code failed;
+  std::filesystem::remove(file, failed);
+  if (failed)
+    log::warn("where the cell was moved to is not forgotten: remove the file",
+              {{"file", file.string()}, {"reason", failed.message()}});
+  sync_folder(file.parent_path());
+}
+
 }  // namespace
 
 OwnPlace::OwnPlace(const std::string& folder)
@@ -47,7 +61,8 @@ OwnPlace::OwnPlace(const std::string& folder)
 }
 
 void OwnPlace::load() {
-  if (file_.empty() || !is_there(file_)) return;
+  kept_ = !file_.empty() && is_there(file_);
+  if (!kept_) return;
   const auto text = read_file(file_, kMostBytes);
   const auto json = text ? parse_json(*text) : Result<nlohmann::json>(pass(text));
   if (json) {
@@ -60,17 +75,19 @@ void OwnPlace::load() {
 }
 
 std::optional<site::CellPlace> OwnPlace::typed(const std::optional<site::CellPlace>& place) {
-  const std::scoped_lock lock(mutex_);
-  if (!place || !typed_ || !now_ || !same(*place, *typed_)) now_ = place;
+  if (!place || !typed_ || !now_ || !same(*place, *typed_)) {
+    now_ = place;
+    if (std::exchange(kept_, false)) worker_.post([file = file_] { forget(file); });
+  }
   typed_ = place;
   return now_;
 }
 
 std::optional<site::CellPlace> OwnPlace::moved(const Eigen::Isometry3d& new_from_old) {
-  const std::scoped_lock lock(mutex_);
   if (!now_ || !typed_) return std::nullopt;
   now_ = site::after_move(*now_, new_from_old);
   if (!file_.empty()) {
+    kept_ = true;
     worker_.post(
         [file = file_, text = fmt::format("{{\"typed\": {},\n\"now\": {}}}\n", text_of(*typed_),
                                           text_of(*now_))] { write(file, text); });

@@ -17,7 +17,9 @@ SiteMember::SiteMember(SiteMemberOptions options, const std::string& places)
 void SiteMember::places(const std::string& text) {
   if (text == text_) return;
   text_ = text;
-  if (const auto own = own_.typed(place_in_file(settings_, text_))) link_.place(*own);
+  const auto place = place_in_file(settings_, text_);
+  const std::scoped_lock lock(placing_);
+  if (const auto own = own_.typed(place)) link_.place(*own);
 }
 
 void SiteMember::follow(const Registration& next) {
@@ -25,6 +27,7 @@ void SiteMember::follow(const Registration& next) {
   const auto new_from_old = core::moved_world(before_, next);
   before_ = next;
   if (!new_from_old) return;
+  const std::scoped_lock lock(placing_);
   if (const auto own = own_.moved(*new_from_old)) link_.place(*own, next.version);
 }
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "fusion-server/flow/registration.h"
@@ -26,7 +27,8 @@ class SiteMember {
   /// `places`: the text of the file of places.
   SiteMember(SiteMemberOptions options, const std::string& places);
 
-  /// The file of places, as it is now.  Only a change counts.
+  /// The file of places, as it is now.  Only a change counts.  Only from one thread, which need not
+  /// be that of follow().
   void places(const std::string& text);
   /// The registration that is in use; only from one thread.  The neighbours learn of an origin that
   /// was moved with the first people in the new world.
@@ -37,8 +39,9 @@ class SiteMember {
 
  private:
   const SiteSettings settings_;
-  std::string text_;  ///< Of the file of places.
-  OwnPlace own_;
+  std::string text_;    ///< Of the file of places.
+  std::mutex placing_;  ///< Held until the link knows what own_ says: it takes the newest.
+  OwnPlace own_;        ///< Guarded by placing_.
   Registration before_;
   nats::CellLink link_;
 };

@@ -95,7 +95,7 @@ std::vector<CellLink> links_of(const std::vector<PairwiseRegistration>& edges) {
   return links;
 }
 
-CellPlace place_of(const Registration& found, const CellId& cell) {
+CellPlace place_of(const Registration& found, const CellId& cell, std::uint64_t version) {
   const Extrinsics& place = found.sensors.at(cell);
   const Eigen::Isometry3d site_from_world =
       world_from_cell(found.sensors.at(found.master)).inverse();
@@ -109,15 +109,15 @@ CellPlace place_of(const Registration& found, const CellId& cell) {
     out.clock_added = own->second.added - origin->second.added;
     out.clock_sigma = std::max<Duration>(own->second.sigma, std::chrono::milliseconds(1));
   }
-  out.version = 1;
+  out.version = version;
   return out;
 }
 
-SitePlaces places_of(const Registration& found) {
+SitePlaces places_of(const Registration& found, std::uint64_t version) {
   SitePlaces places;
   places.origin = found.master;
   for (const auto& [cell, place] : found.sensors) {
-    places.cells.push_back(place_of(found, cell));
+    places.cells.push_back(place_of(found, cell, version));
     places.radius.push_back(radius_on_floor(places.cells.back().covariance));
   }
   places.links = links_of(found.edges);
@@ -167,7 +167,7 @@ Result<SitePlaces> places_from_walks(const std::vector<CellWalk>& walks,
     }
     const auto misfit = misfit_of(found.edges, {config.loop_sigmas, config.least_loop});
     if (!misfit) {
-      SitePlaces places = places_of(found);
+      SitePlaces places = places_of(found, config.version);
       places.refused.insert(places.refused.end(), misfits.begin(), misfits.end());
       return places;
     }

@@ -6,6 +6,7 @@
 // must close, or the cell that does not fit is named.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,6 +60,9 @@ struct PlacesConfig {
   /// A loop may fail to close by this many standard deviations, or by `least_loop` [m].
   double loop_sigmas = 3.5;
   double least_loop = 0.10;
+  /// Of every place that is found.  To tell it from an older one that lies in the same spot, as
+  /// that of the origin always does: larger than that.
+  std::uint64_t version = 1;
 };
 
 /// Places and clocks from walks.  NotFound: no two cells saw the walk together; the message says

@@ -83,11 +83,11 @@ Result<std::vector<PairwiseRegistration>> links_from(const std::vector<CellMark>
 }
 
 /// Every cell that links reach, along the fewest of them; variances add up.
-std::vector<CellPlace> chained(const std::vector<PairwiseRegistration>& links,
-                               const CellId& origin) {
+std::vector<CellPlace> chained(const std::vector<PairwiseRegistration>& links, const CellId& origin,
+                               std::uint64_t version) {
   CellPlace first{origin};
   first.covariance.diagonal() << 1e-8, 1e-8, 1e-8, 1e-6, 1e-6, 1e-6;
-  first.version = 1;
+  first.version = version;
   std::vector<CellPlace> places{first};
   std::set<CellId> reached{origin};
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -104,7 +104,7 @@ std::vector<CellPlace> chained(const std::vector<PairwiseRegistration>& links,
       const double turn = from.covariance(1, 1) * step.translation().squaredNorm();
       next.covariance(3, 3) += turn;
       next.covariance(5, 5) += turn;
-      next.version = 1;
+      next.version = version;
       places.push_back(next);
     }
   }
@@ -132,7 +132,7 @@ Result<SitePlaces> places_from_marks(const std::vector<CellMark>& marks,
   }
   if (links->empty()) return fail(ErrorCode::Conflict, "site", places.refused.front().reason);
   places.origin = config.origin.value_or(links->front().target);
-  places.cells = chained(*links, places.origin);
+  places.cells = chained(*links, places.origin, config.version);
   for (const CellPlace& place : places.cells)
     places.radius.push_back(radius_on_floor(place.covariance));
   for (const auto& link : *links)

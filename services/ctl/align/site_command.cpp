@@ -11,6 +11,7 @@
 
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
+#include "common/time/clock.h"
 #include "fusion-server/nats/cell_records.h"
 #include "fusion-server/site/places.h"
 #include "services/ctl/align/site_walk.h"
@@ -32,6 +33,7 @@ struct SiteArguments {
 
 Result<site::PlacesConfig> places_config(const SiteArguments& arguments) {
   site::PlacesConfig config;
+  config.version = static_cast<std::uint64_t>(to_unix_ns(SystemClock().now()) / 1'000'000);
   if (arguments.origin.empty()) return config;
   const auto origin = site::CellId::parse(arguments.origin);
   if (!origin) return pass(origin);

@@ -4,6 +4,7 @@
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "common/record/fused_frames.h"
+#include "common/time/clock.h"
 #include "fusion-server/nats/cell_records.h"
 #include "tests/unit/ctl/program_run.h"
 
@@ -60,6 +61,8 @@ TEST(SiteRegister, WritesTheFileThatTheConfigurationOfASiteNames) {
   const Eigen::Isometry3d& found = (*places)[1].site_from_cell;
   EXPECT_LT((found.translation() - b_in_a().translation()).norm(), 0.01);
   EXPECT_NEAR(yaw_of(found.linear()), deg(40), deg(0.3));
+  EXPECT_GT((*places)[0].version, 1'700'000'000'000U) << "milliseconds since 1970";
+  EXPECT_EQ((*places)[1].version, (*places)[0].version);
 }
 
 TEST(SiteRegister, SaysWhatToWalkWhenNobodyWasSeenByBoth) {
@@ -83,6 +86,13 @@ TEST(SiteRegister, TakesMarksOnTheFloor) {
   ASSERT_EQ(done.code, kExitOk) << done.error;
   const auto places = nats::read_places(chorus::testing::bytes_of(out));
   ASSERT_TRUE(places);
+  // Found anew, the origin's place is told from the old one by its version only.
+  const std::uint64_t stamped =
+      static_cast<std::uint64_t>(to_unix_ns(SystemClock().now()) / 1'000'000);
+  for (const auto& place : *places) {
+    EXPECT_LE(place.version, stamped);
+    EXPECT_GT(place.version, stamped - 60'000);
+  }
   EXPECT_NEAR((*places)[1].site_from_cell.translation().x(), 4.0, 1e-9);
   EXPECT_NEAR((*places)[1].site_from_cell.translation().z(), 1.5, 1e-9);
 }

@@ -29,6 +29,14 @@ Eigen::Isometry3d new_from_old() {
   return out;
 }
 
+/// The worker writes in its own time.
+template <class Condition>
+bool comes_true(const Condition& condition) {
+  for (int i = 0; i < 5000 && !condition(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return condition();
+}
+
 TEST(OwnPlace, OfAMovedOriginLeavesEverybodyWhereTheyAre) {
   OwnPlace own("");
   EXPECT_FALSE(own.moved(new_from_old())) << "it has no place";
@@ -51,9 +59,7 @@ TEST(OwnPlace, IsKeptUntilTheFileSaysSomethingElse) {
     OwnPlace own(folder.path().string());
     ASSERT_TRUE(own.typed(typed_place(5)));
     moved = own.moved(new_from_old()).value();
-    for (int i = 0; i < 5000 && !is_there(file); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    ASSERT_TRUE(is_there(file));
+    ASSERT_TRUE(comes_true([&] { return is_there(file); }));
   }
   OwnPlace again(folder.path().string());
   const auto kept = again.typed(typed_place(5));
@@ -61,6 +67,54 @@ TEST(OwnPlace, IsKeptUntilTheFileSaysSomethingElse) {
   EXPECT_TRUE(kept->site_from_cell.isApprox(moved.site_from_cell, 1e-6));
   EXPECT_NEAR(again.typed(typed_place(6))->site_from_cell.translation().x(), 6.0, 1e-12);
   EXPECT_FALSE(again.typed(std::nullopt));
+}
+
+TEST(OwnPlace, OfANewlyFoundHallIsNotMovedAsThatOfTheOldOne) {
+  // The origin's place is the same in every file that a command writes.
+  site::CellPlace first = typed_place(5);
+  first.version = 1'795'246'200'000;
+  site::CellPlace second = first;
+  second.version = 1'795'246'260'000;
+  OwnPlace own("");
+  ASSERT_TRUE(own.typed(first));
+  const auto moved = own.moved(new_from_old());
+  ASSERT_TRUE(moved);
+  EXPECT_TRUE(own.typed(first)->site_from_cell.isApprox(moved->site_from_cell)) << "read again";
+  EXPECT_TRUE(own.typed(second)->site_from_cell.isApprox(first.site_from_cell));
+}
+
+TEST(OwnPlace, IsForgottenForGoodOnceTheFileSaidSomethingElse) {
+  const testing::TemporaryFolder folder;
+  const std::string file = (folder / "site-place.json").string();
+  site::CellPlace later = typed_place(5);
+  later.version = 2;
+  {
+    OwnPlace own(folder.path().string());
+    ASSERT_TRUE(own.typed(typed_place(5)));
+    ASSERT_TRUE(own.moved(new_from_old()));
+    ASSERT_TRUE(comes_true([&] { return is_there(file); }));
+    // Also one that is still to be written.
+    ASSERT_TRUE(own.moved(new_from_old()));
+    ASSERT_TRUE(own.typed(later));
+    ASSERT_TRUE(comes_true([&] { return !is_there(file); }));
+  }
+  EXPECT_FALSE(is_there(file));
+  OwnPlace again(folder.path().string());
+  EXPECT_NEAR(again.typed(typed_place(5))->site_from_cell.translation().x(), 5.0, 1e-12);
+}
+
+TEST(OwnPlace, OfAnotherFileAtTheStartForgetsTheMove) {
+  const testing::TemporaryFolder folder;
+  const std::string file = (folder / "site-place.json").string();
+  {
+    OwnPlace own(folder.path().string());
+    ASSERT_TRUE(own.typed(typed_place(5)));
+    ASSERT_TRUE(own.moved(new_from_old()));
+    ASSERT_TRUE(comes_true([&] { return is_there(file); }));
+  }
+  OwnPlace again(folder.path().string());
+  ASSERT_TRUE(again.typed(typed_place(6)));
+  EXPECT_TRUE(comes_true([&] { return !is_there(file); }));
 }
 
 TEST(OwnPlace, OfADamagedFileIsThatOfTheFileOfPlaces) {

@@ -35,8 +35,8 @@ TEST(PlacesOfCells, AreFoundFromAWalkTogetherWithTheirClocks) {
   std::vector<HallCell> cells = bench::two_cells(3.0, 2);
   cells[0].clock_ahead = Duration{0};
   cells[1].clock_ahead = std::chrono::milliseconds(150);
-  const auto places =
-      places_from_walks(walks_of(cells, in_the_overlap(), 40.0), {.origin = cells[0].id});
+  const auto places = places_from_walks(walks_of(cells, in_the_overlap(), 40.0),
+                                        {.origin = cells[0].id, .version = 17});
   ASSERT_TRUE(places) << to_string(places.error());
   ASSERT_EQ(places->cells.size(), 2U);
   EXPECT_EQ(places->origin, cells[0].id);
@@ -50,6 +50,8 @@ TEST(PlacesOfCells, AreFoundFromAWalkTogetherWithTheirClocks) {
   EXPECT_NEAR(seconds(right.clock_added), -0.150, 0.015);
   EXPECT_GT(right.covariance(3, 3), 0.0);
   EXPECT_LT(places->radius[1], 0.2);
+  EXPECT_EQ(places->cells[0].version, 17U);
+  EXPECT_EQ(right.version, 17U);
 }
 
 TEST(PlacesOfCells, AreNotFoundWithoutAnOverlapAndTheMessageSaysWhatToWalk) {
@@ -77,12 +79,13 @@ TEST(PlacesOfCells, AreFoundFromMarksThatBothKnow) {
   };
   share(0, 1, {mark(2, -1), mark(2.5, 1.5)});
   share(1, 2, {mark(6.8, -1), mark(6.7, 2)});
-  const auto places = places_from_marks(marks, {.origin = cells[0].id});
+  const auto places = places_from_marks(marks, {.origin = cells[0].id, .version = 17});
   ASSERT_TRUE(places) << to_string(places.error());
   ASSERT_EQ(places->cells.size(), 3U);
   const Eigen::Isometry3d truth = cells[0].site_from_cell.inverse() * cells[2].site_from_cell;
   EXPECT_LT((places->cells[2].site_from_cell.translation() - truth.translation()).norm(), 1e-6);
   EXPECT_GT(places->radius[2], places->radius[1]);
+  for (const CellPlace& each : places->cells) EXPECT_EQ(each.version, 17U);
 }
 
 TEST(PlacesOfCells, AreRefusedWhereMarksDoNotFitOrAreTooFew) {
