@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/handover.h"
+#include "common/base/json.h"
 #include "common/base/log.h"
 #include "common/base/rate_report.h"
+#include "common/base/shortened.h"
 #include "common/base/version.h"
 #include "fusion-server/nats/frame_desk.h"
 #include "fusion-server/nats/inbox.h"
@@ -37,6 +39,8 @@ constexpr std::size_t kNewsWaiting = 64;
 constexpr std::size_t kClaimsWaiting = 1024;
 constexpr std::size_t kResults = 256;
 constexpr std::size_t kEventsKept = 50;
+/// A frame of another cell: 64 people with all that fusion knows of them have not half of it.
+constexpr JsonLimits kFrameLimits{.bytes = 4U << 20U, .nesting = 16};
 /// The store forgets a record so long after its last change (site/claim.h).
 constexpr Duration kForgetPeople = std::chrono::hours(1);
 
@@ -362,18 +366,27 @@ SinkCounters CellLink::counters() const {
 
 Result<std::string> CellLink::ask_frame(const std::string& cell, const std::string& at) {
   if (!site::CellId::parse(cell)) return fail(ErrorCode::NotFound, cell, "is no name of a cell");
-  const auto answer = state_->broker->request(
+  auto answer = state_->broker->request(
       subject_of(state_->config.site, cell, kAskFrame),
       at.empty() ? std::string() : nlohmann::json{{"at", at}}.dump(-1, ' ', true, kReplace));
   if (!answer)
     return fail(ErrorCode::Unavailable, "cell " + cell,
                 "does not answer: " + answer.error().message);
-  const auto read = nlohmann::json::parse(*answer, nullptr, false);
-  if (!read.is_object()) return fail(ErrorCode::Malformed, "cell " + cell, "answers no frame");
-  const auto why = read.find("error");
-  if (why == read.end()) return answer;
-  return fail(ErrorCode::NotFound, "cell " + cell,
-              why->is_string() ? why->get<std::string>() : std::string("has no such frame"));
+  return frame_answered(cell, std::move(*answer));
+}
+
+Result<std::string> frame_answered(const std::string& cell, std::string answer) {
+  const std::string who = "cell " + cell;
+  const auto nonsense = [&who](std::string_view why) {
+    return fail(ErrorCode::Unavailable, who, "answers no frame: " + shortened(why, kMaxReason));
+  };
+  const auto read = parse_json(answer, kFrameLimits);
+  if (!read) return nonsense(to_string(read.error()));
+  if (!read->is_object()) return nonsense("it is no object");
+  const auto why = read->find("error");
+  if (why == read->end() && read->contains("sequence")) return answer;
+  if (why == read->end() || !why->is_string()) return nonsense("it has no sequence");
+  return fail(ErrorCode::NotFound, who, shortened(why->get_ref<const std::string&>(), kMaxReason));
 }
 
 void CellLink::place(const site::CellPlace& place, std::uint64_t registration) {

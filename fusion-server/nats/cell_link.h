@@ -47,12 +47,15 @@ class CellLink final : public Sink {
 
   /// The frame of a cell, of the instant `at` (nanoseconds since 1970, as text; empty: its newest
   /// one), as its /frame has it in JSON.  Waits for the answer, half a second at most. Unavailable:
-  /// the cell does not answer.  NotFound: it has no frame of that instant.
+  /// the cell does not answer, or with nonsense.  NotFound: it has no frame of that instant.
   [[nodiscard]] Result<std::string> ask_frame(const std::string& cell, const std::string& at);
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// What a cell answered to ask_frame(), unchanged, if it is a frame; errors as ask_frame()'s.
+[[nodiscard]] Result<std::string> frame_answered(const std::string& cell, std::string answer);
 
 }  // namespace chorus::nats
