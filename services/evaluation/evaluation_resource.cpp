@@ -1,5 +1,6 @@
 #include "services/evaluation/evaluation_resource.h"
 
+#include <array>
 #include <string>
 
 #include "common/base/units.h"
@@ -11,6 +12,20 @@ resource::Decimal degrees(double radians) { return {to_deg(radians), 1}; }
 
 void add_person(resource::Node& node, const std::optional<PersonId>& person) {
   if (person) node.properties.emplace_back("bodyId", static_cast<std::int64_t>(person->value));
+}
+
+constexpr int kQuaternionDigits = 4;  ///< 0.01 degrees: for drawing.
+
+void add_axes(resource::Node& node, const LimbAxes& axes) {
+  constexpr std::array kTracked{"qx", "qy", "qz", "qw"};
+  constexpr std::array kPredicted{"predictedQx", "predictedQy", "predictedQz", "predictedQw"};
+  const auto add = [&node](const auto& keys, const Eigen::Quaterniond& q) {
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      node.properties.emplace_back(
+          keys[i], resource::Decimal{q.coeffs()[static_cast<Eigen::Index>(i)], kQuaternionDigits});
+  };
+  add(kTracked, axes.tracked);
+  add(kPredicted, axes.predicted);
 }
 
 resource::Node limb_node(const LimbJudgement& limb) {
@@ -28,6 +43,7 @@ resource::Node limb_node(const LimbJudgement& limb) {
     out.emplace_back("sigmaDegrees", degrees(limb.sigma));
     out.emplace_back("thresholdDegrees", degrees(limb.tau));
   }
+  if (limb.axes) add_axes(node, *limb.axes);
   out.emplace_back("offFor", resource::Decimal{seconds(limb.off_for), 1});
   out.emplace_back("errorSegments", static_cast<std::int64_t>(limb.segments));
   out.emplace_back("comment", words_for(limb));

@@ -61,6 +61,7 @@ void LimbWatch::forget_calibration() {
   above_since_.reset();
   twist_off_at_.reset();
   told_.error.reset();
+  told_.axes.reset();
   told_.sigma = 0.0;
   told_.state = LimbState::Waiting;
   told_.reason = "calibrates anew";
@@ -74,6 +75,7 @@ void LimbWatch::unseen(std::string reason, Timestamp at, const WatchOptions& opt
   above_since_.reset();
   told_.state = LimbState::Waiting;
   told_.error.reset();
+  told_.axes.reset();
   told_.reason = std::move(reason);
 }
 
@@ -85,7 +87,10 @@ void LimbWatch::judge(const evaluation::OrientationPair& pair, Timestamp at,
   timed.time = seconds(at.time_since_epoch());
   live_->learn(timed);
   if (live_->slip()) told_.slipped = live_->slip()->angle;
-  told_.error = evaluation::limb_error(live_->at(timed.time), timed);
+  const inertial::SensorCalibration now = live_->at(timed.time);
+  told_.error = evaluation::limb_error(now, timed);
+  told_.axes = {timed.tracked.world_from_limb,
+                inertial::predicted_limb(now, timed.inertial_from_sensor)};
   detect(*told_.error, at, options);
   last_judged_ = at;
 }

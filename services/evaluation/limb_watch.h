@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "common/base/strong_id.h"
 #include "common/evaluation/calibrate.h"
 #include "common/evaluation/limb_error.h"
@@ -29,6 +31,12 @@ enum class LimbState : std::uint8_t {
 /// "waiting", "calibrating", "good", "off".
 [[nodiscard]] std::string_view name_of(LimbState state) noexcept;
 
+/// How a limb is turned at one instant, in the tracker's space (limb axes: limb_frame.h).
+struct LimbAxes {
+  Eigen::Quaterniond tracked;    ///< world_from_limb as the tracker has it.
+  Eigen::Quaterniond predicted;  ///< As the sensor on it has it, by its calibration.
+};
+
 struct LimbJudgement {
   SensorId source;
   std::string sensor;
@@ -37,6 +45,7 @@ struct LimbJudgement {
   LimbState state = LimbState::Waiting;
   std::string reason;                          ///< Why it is not judged yet; for people.
   std::optional<evaluation::LimbError> error;  ///< At the last instant that was judged.
+  std::optional<LimbAxes> axes;                ///< Of that instant.
   double off_by = 0.0;                         ///< The angle when it was above the limit last [rad]
   double sigma = 0.0;                          ///< Standard error of the calibration [rad].
   double tau = evaluation::kPaperTau;          ///< [rad]

@@ -17,9 +17,9 @@ export const BONES = [
 const UP = new THREE.Vector3(0, 1, 0);
 const HEAD_RADIUS = 0.095;
 
-const seen = (joint) =>
+export const seen = (joint) =>
   joint && joint.state !== 'NotTracked' && Number.isFinite(joint.x) && Number.isFinite(joint.y) && Number.isFinite(joint.z);
-const at = (joint) => new THREE.Vector3(joint.x, joint.y, joint.z);
+export const at = (joint) => new THREE.Vector3(joint.x, joint.y, joint.z);
 
 const MOST_RAW_ENDS = 2 * BONES.length * 16; // of one sensor: sixteen bodies
 
@@ -61,7 +61,7 @@ const GUESSED = { dark: new THREE.Color(0x4f5a68), light: new THREE.Color(0xb9c2
 const left = (name) => name.endsWith('Left');
 
 /// Instances of one geometry that are filled anew for each frame.
-class Instances {
+export class Instances {
   constructor(geometry, material, most) {
     this.mesh = new THREE.InstancedMesh(geometry, material, most);
     this.mesh.frustumCulled = false;

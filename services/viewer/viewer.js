@@ -10,7 +10,7 @@ import { watchOrigin } from './origin.js';
 import { Player } from './player.js';
 import { Resource, clock, follow as followForEver, link } from './poll.js';
 import { Readout } from './readout.js';
-import { judgedBones } from './judged.js';
+import { judgedBones, limbAxesOf } from './judged.js';
 import { askFor, requested, takeToken, tokenInUse } from './request.js';
 import { Room } from './room.js';
 import { stepOf } from './setup.js';
@@ -29,7 +29,7 @@ const resource = (path, wait, check) => new Resource(new URL(path, base).href, w
 const UNREAD_AFTER = 3; // failures in a row
 
 /// What the page has shown so far, for tests and for curious people.
-const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, rawBones: {}, sensors: 0, errors: 0, pictures: 0, paused: false };
+const shown = { fusedFrames: 0, fusedJoints: 0, ellipsoids: 0, limbAxes: 0, rawBones: {}, sensors: 0, errors: 0, pictures: 0, paused: false };
 window.chorusViewer = shown;
 
 takeToken(location, history);
@@ -42,7 +42,7 @@ const known = {
   history: new History(),
   state: { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' }, shownFrame: null, shownRate: NaN, age: NaN,
   drawer: null, dialog: null, asking: null,
-  switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false },
+  switches: { raw: true, frusta: true, fused: true, trails: true, uncertainty: false, axes: false },
 };
 
 // ---- the panels ----------------------------------------------------------------------------------------------
@@ -141,6 +141,7 @@ window.addEventListener('keydown', (event) => {
   const drawer = drawerOfKey(event.key, known, recordingOnly);
   if (drawer) openDrawer(drawer);
   else if (event.key === 'u') act.onSwitch('uncertainty', !known.switches.uncertainty);
+  else if (event.key === 'i') act.onSwitch('axes', !known.switches.axes);
   else if (event.key === 'a') act.onView('above');
   else if (event.key === 'h') act.onView('room');
   else if (event.key === 't') act.onTheme();
@@ -232,9 +233,11 @@ if (!recordingOnly) resource('configuration').next().then((told) => change({ sit
 // What worn sensors say of the tracker, where somebody judges it: of the bodies that are there now, not of recorded ones.
 function judge() { room.fused.judged = known.evaluation && !known.playback ? judgedBones(known.evaluation) : new Map(); }
 const JUDGED_EVERY_MS = 250;
+const AXES_EVERY_MS = 66; // while the axes of limbs are drawn, which turn with the limbs
+const judgedPause = () => (known.switches.axes ? AXES_EVERY_MS : JUDGED_EVERY_MS);
 if (!recordingOnly) resource('').next().then((self) => {
   if (!self?.evaluation) return;
-  follow(resource('evaluation'), JUDGED_EVERY_MS, (evaluation) => {
+  follow(resource('evaluation'), judgedPause, (evaluation) => {
     change({ evaluation });
     judge();
   }, failed);
@@ -315,6 +318,12 @@ shown.where = (name) => {
   return joint && readout.toScreen(joint);
 };
 
+/// The axes of judged limbs in both worlds, while somebody wants them; a recording has none.
+function showLimbAxes() {
+  const wanted = known.switches.axes && !known.playback && known.evaluation;
+  shown.limbAxes = room.axes.show(wanted ? known.frame?.bodies ?? [] : [], wanted ? limbAxesOf(known.evaluation) : []);
+}
+
 /// Ellipsoids and read-out of the newest frame, while somebody wants them.
 function showUncertainty() {
   const bodies = known.switches.uncertainty ? shownFrame()?.bodies ?? [] : [];
@@ -335,6 +344,7 @@ if (query.has('recording')) player.open(query.get('recording'), Number(query.get
 room.renderer.setAnimationLoop(() => {
   if (shown.paused) return;
   showUncertainty();
+  showLimbAxes();
   room.draw(known.switches);
   shown.pictures += 1;
 });

@@ -29,3 +29,15 @@ for (const name of visible) {
     assert.equal((await validator.validate(read(`golden/bad/${name}.ttl`))).conforms, false);
   });
 }
+
+// A judged limb has both its orientations or none; they are not in golden files, because they are no frames.
+const judged = (more) => new Store(new Parser().parse(`@prefix ch: <https://w3id.org/chorus-tracking/ns#> .
+  [] a ch:LimbEvaluation ; ch:inertialSensor "5" ; ch:evaluationState "good" ; ch:offFor 0.0 ; ch:errorSegments 0 ${more} .`));
+const TRACKED = '; ch:qx 0.0 ; ch:qy 0.0 ; ch:qz 0.0 ; ch:qw 1.0';
+const PREDICTED = '; ch:predictedQx 0.6 ; ch:predictedQy 0.0 ; ch:predictedQz 0.0 ; ch:predictedQw 0.8';
+for (const [more, conforms] of [['', true], [TRACKED + PREDICTED, true], [TRACKED, false], [PREDICTED, false],
+  [TRACKED + PREDICTED.replace('0.6', '6.0'), false], [TRACKED + PREDICTED.replace('; ch:predictedQw 0.8', ''), false]]) {
+  test(`a judged limb with "${more}" ${conforms ? 'conforms' : 'does not conform'}`, async () => {
+    assert.equal((await validator.validate(judged(more))).conforms, conforms);
+  });
+}

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { COLOURS, bonesOf, judgedBones, judgedLines } from '../../services/viewer/judged.js';
+import { COLOURS, bonesOf, judgedBones, judgedLines, limbAxesOf } from '../../services/viewer/judged.js';
 
 const evaluation = { limbs: [
   { bodyId: 3, limb: 'Chest', state: 'good', comment: 'chest agrees' },
@@ -38,4 +38,14 @@ test('what is off comes first, what is well in one line', () => {
   assert.deepEqual(judgedLines(evaluation).map(({ text }) => text), ['left forearm off by 70 deg for 4 s',
     'right shank: calibrates: walk', 'right hand: the tracker does not see this limb', '2 limbs agree']);
   assert.deepEqual(judgedLines({ limbs: [] }), []);
+});
+
+test('a judged limb has the axes of both worlds, whole or none', () => {
+  const both = { bodyId: 3, limb: 'ForearmLeft', state: 'off', qx: 0, qy: 0, qz: 0, qw: 1, predictedQx: 0.6, predictedQy: 0, predictedQz: 0, predictedQw: 0.8 };
+  assert.deepEqual(limbAxesOf({ limbs: [both] }), [{ bodyId: 3, bone: 'WristLeft', tracked: [0, 0, 0, 1], predicted: [0.6, 0, 0, 0.8], twistSeen: false }]);
+  assert.equal(limbAxesOf({ limbs: [{ ...both, twistDegrees: 3.1 }] })[0].twistSeen, true);
+  const { predictedQw, ...half } = both;
+  for (const none of [half, { ...both, qw: 'x' }, { ...both, qw: 7 }, { ...both, bodyId: undefined }, { ...both, limb: 'Tail' }, { ...both, limb: 7 }, evaluation.limbs[0]])
+    assert.deepEqual(limbAxesOf({ limbs: [none] }), []);
+  assert.deepEqual(limbAxesOf(null), []);
 });

@@ -119,23 +119,6 @@ test('what is amiss with the service itself is shown', async () => {
   await page.close();
 });
 
-test('limbs that worn sensors contradict are named, and only where somebody judges the tracker', async () => {
-  const world = usualWorld();
-  const limb = (name, state, comment) => ({ bodyId: 1, limb: name, state, comment });
-  world.evaluation = { sequence: 1, limbs: [limb('Chest', 'good', 'chest agrees'),
-    limb('ForearmLeft', 'off', 'left forearm off by 70 deg for 4 s')] };
-  const server = await startFusion(FILES, world);
-  const { page } = await openViewer(browser, server.url);
-  await page.waitForFunction(() => document.getElementById('judged')?.textContent.includes('off by 70 deg'), null, SOON);
-  assert.deepEqual(await page.$$eval('#judged li', (lines) => lines.map((line) => line.textContent)),
-    ['left forearm off by 70 deg for 4 s', 'one limb agrees']);
-  await page.close();
-  const { page: plain } = await openViewer(browser, (await startFusion(FILES)).url);
-  await plain.waitForFunction(() => window.chorusViewer.fusedFrames > 5, null, SOON);
-  assert.equal(await plain.$('#judged'), null);
-  await plain.close();
-});
-
 test('reasons, what is awaited, and what is not stored are shown without a registration too', async () => {
   const world = usualWorld();
   world.sensors = { s1: live(), s2: live() };

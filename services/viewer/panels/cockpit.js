@@ -41,7 +41,7 @@ function Drawer({ open, known, act }) {
   if (open === 'curves' && known.playback) return html`<p>Curves are those of the room as it is now, and a recording is shown.</p>`;
   if (open === 'curves') return html`<${Later} key="curves" load=${LATER.curves} history=${known.history} judged=${Boolean(known.evaluation)} />`;
   if (open === 'hall') return html`<${Later} key="hall" load=${LATER.hall} resource=${act.resource} />`;
-  if (open === 'view') return html`<${Later} key="view" load=${LATER.view} switches=${known.switches} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
+  if (open === 'view') return html`<${Later} key="view" load=${LATER.view} switches=${known.switches} judged=${Boolean(known.evaluation) && !known.playback} onSwitch=${act.onSwitch} onView=${act.onView} onPicture=${act.onPicture} />`;
   return null;
 }
 

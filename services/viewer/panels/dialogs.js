@@ -1,7 +1,7 @@
 // Dialogs: the token that allows changes, and what the keys do.
 import { html, useEffect, useRef, useState } from './html.js';
 
-export const KEYS = [['s', 'Sensors'], ['r', 'Register'], ['w', 'World'], ['e', 'Record'], ['l', 'Look at a recording'], ['space', 'play and pause'], ['p', 'Work'], ['c', 'Curves'], ['g', 'Hall, if this tracker is a cell of one'], ['v', 'View'], ['u', 'show the uncertainty'],
+export const KEYS = [['s', 'Sensors'], ['r', 'Register'], ['w', 'World'], ['e', 'Record'], ['l', 'Look at a recording'], ['space', 'play and pause'], ['p', 'Work'], ['c', 'Curves'], ['g', 'Hall, if this tracker is a cell of one'], ['v', 'View'], ['u', 'show the uncertainty'], ['i', 'show the axes of limbs that worn sensors judge'],
   ['a', 'from above'], ['h', 'the whole room'], ['t', 'light or dark'], ['?', 'this list'], ['Esc', 'close']];
 
 export function Dialog({ label, onClose, children }) {

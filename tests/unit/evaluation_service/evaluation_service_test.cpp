@@ -1,6 +1,8 @@
 // The evaluation as resources, and its settings.
 #include "services/evaluation/evaluation_service.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -95,6 +97,32 @@ TEST_F(ServedEvaluation, TellsOfEachLimbInEveryFormat) {
     EXPECT_THAT(get(router, "/evaluation", type).body, HasSubstr("off by 70 deg")) << type;
   EXPECT_EQ(get(router, "/evaluations/1").status, 200);
   EXPECT_THAT(get(router, "/").body, HasSubstr("evaluation/segments"));
+}
+
+Eigen::Quaterniond quaternion_in(const json& limb, const std::string& prefix,
+                                 const std::string& first) {
+  const auto part = [&](const char* axis) { return limb.at(prefix + first + axis).get<double>(); };
+  return {part("w"), part("x"), part("y"), part("z")};
+}
+
+TEST_F(ServedEvaluation, TellsHowBothHaveTheLimbTurned) {
+  const json told = json::parse(get(router, "/evaluation").body);
+  for (const json& limb : told["limbs"]) {
+    const Eigen::Quaterniond tracked = quaternion_in(limb, "", "q");
+    const Eigen::Quaterniond predicted = quaternion_in(limb, "predicted", "Q");
+    EXPECT_NEAR(tracked.norm(), 1.0, 1e-3);
+    const Eigen::Vector3d bone = tracked * Eigen::Vector3d::UnitY();
+    const Eigen::Vector3d sensed = predicted * Eigen::Vector3d::UnitY();
+    const double swing = std::atan2(bone.cross(sensed).norm(), bone.dot(sensed));
+    EXPECT_NEAR(to_deg(swing), limb["swingDegrees"].get<double>(), 0.1) << limb;
+    if (!limb.contains("twistDegrees")) continue;
+    EXPECT_NEAR(to_deg(tracked.angularDistance(predicted)), limb["angleDegrees"].get<double>(),
+                0.1);
+  }
+  service.take({frame_at(suit, 20.0), frame_at(suit, 22.0)});
+  const json later = json::parse(get(router, "/evaluation").body);
+  EXPECT_EQ(later["limbs"][0]["state"], "waiting");
+  EXPECT_FALSE(later["limbs"][0].contains("predictedQx")) << "what is not judged has no axes";
 }
 
 TEST_F(ServedEvaluation, ListsTheErrorsAndTheCalibrations) {
