@@ -33,8 +33,9 @@ struct HeadingSight {
 
 class Heading {
  public:
-  /// `walk`: how far a heading may wander in a second [rad / sqrt(s)].
-  explicit Heading(double walk = 0.0) : walk_(walk) {}
+  /// `walk`: how far a heading may wander in a second [rad / sqrt(s)]; `variance`: how far it has
+  /// since the calibration already [rad^2].
+  explicit Heading(double walk = 0.0, double variance = 0.0) : walk_(walk), variance_(variance) {}
 
   /// Takes an instant, `time` [s] of any origin; `inertial_from_sensor` tells whether the sensor
   /// has turned.  `sight` is relative to the heading corrected by correction().
@@ -48,7 +49,7 @@ class Heading {
  private:
   double walk_;
   double correction_ = 0.0;
-  double variance_ = 0.0;
+  double variance_;
   std::optional<double> begun_;  ///< Time of variance_ [s].
   std::optional<double> last_;   ///< When an instant last counted [s].
   Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();  ///< The sensor then.

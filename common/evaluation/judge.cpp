@@ -143,6 +143,35 @@ const SensorCalibration* given_for(const std::vector<SensorCalibration>& all,
   return found == all.end() ? nullptr : &*found;
 }
 
+/// Of the take; the first that calibrates a limb well enough serves.
+std::vector<double> shares_of(const JudgeOptions& options) {
+  std::vector<double> out{options.calibration_share};
+  for (const double more : {0.5, 0.7, 1.0})
+    if (options.carry_back && more > options.calibration_share) out.push_back(more);
+  return out;
+}
+
+/// Calibrates one sensor from the take's first part and judges the rest, or the whole take.
+Result<JudgedLimb> judged_by_itself(const OrientationPairs& all, const Prepared& take,
+                                    std::size_t sensor, const JudgeOptions& options) {
+  tl::unexpected<Error> refusal = fail(ErrorCode::InvalidArgument, "evaluation", "has no share");
+  for (const double share : shares_of(options)) {
+    const double to = take.begin + share * (take.end - take.begin);
+    const OrientationPairs learnt = between(all, take.begin, share < 1.0 ? to : take.end + 1.0);
+    const auto fit =
+        calibrate_sensor(learnt, take.worn[sensor].name, take.limbs[sensor], options.calibrate);
+    if (!fit) {
+      refusal = pass(fit);
+      continue;
+    }
+    JudgedLimb out = judged(learnt, options.carry_back ? all : between(all, to, take.end + 1.0),
+                            fit->calibration, options.tau);
+    out.calibrated_to = to;
+    return out;
+  }
+  return refusal;
+}
+
 }  // namespace
 
 Result<Judgement> judge_tracking(const TrackedBody& body, const std::vector<JudgeSensor>& sensors,
@@ -153,7 +182,8 @@ Result<Judgement> judge_tracking(const TrackedBody& body, const std::vector<Judg
   Judgement out;
   out.shift = take->shift;
   out.end = take->end;
-  const double share = calibrations.empty() ? options.calibration_share : 0.0;
+  const bool learns = calibrations.empty() && !options.carry_back;
+  const double share = learns ? options.calibration_share : 0.0;
   out.begin = take->begin + share * (take->end - take->begin);
   for (std::size_t i = 0; i < take->worn.size(); ++i) {
     const WornSensor& sensor = take->worn[i];
@@ -163,17 +193,17 @@ Result<Judgement> judge_tracking(const TrackedBody& body, const std::vector<Judg
       continue;
     }
     const OrientationPairs all = pairs_of(limb->second, sensor.track);
-    const OrientationPairs learnt = between(all, take->begin, out.begin);
-    const OrientationPairs rest = between(all, out.begin, take->end + 1.0);
     if (const SensorCalibration* const given = given_for(calibrations, sensor.name)) {
-      out.limbs.push_back(judged({}, rest, *given, options.tau));
+      out.limbs.push_back(
+          judged({}, between(all, out.begin, take->end + 1.0), *given, options.tau));
+      out.limbs.back().calibrated_to = take->begin;
       continue;
     }
-    const auto fit = calibrate_sensor(learnt, sensor.name, take->limbs[i], options.calibrate);
-    if (fit)
-      out.limbs.push_back(judged(learnt, rest, fit->calibration, options.tau));
+    auto limb_found = judged_by_itself(all, *take, i, options);
+    if (limb_found)
+      out.limbs.push_back(std::move(*limb_found));
     else
-      out.refused.push_back(fit.error());
+      out.refused.push_back(limb_found.error());
   }
   if (out.limbs.empty())
     return fail(ErrorCode::InvalidArgument, out.refused.front().context,

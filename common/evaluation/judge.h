@@ -17,6 +17,10 @@ struct JudgeOptions {
   double tau = kPaperTau;
   double calibration_share =
       0.35;  ///< Of the take, from its start, where no other take calibrates.
+  /// Judges the whole take: what is found in its first part serves from the beginning, and a limb
+  /// that does not move enough in that part is calibrated from as much of the take as it needs.
+  /// What a calibration was made from agrees with it a little better than what follows.
+  bool carry_back = false;
   CalibrateOptions calibrate;
   TimeShiftOptions time;
 };
@@ -32,7 +36,9 @@ struct JudgeSensor {
 struct JudgedLimb {
   inertial::Limb limb = inertial::Limb::Pelvis;
   inertial::SensorCalibration calibration;
-  ErrorTrack errors;              ///< Of the judged part.
+  double calibrated_to =
+      0.0;            ///< Up to here the take itself calibrated it [s]; else its beginning.
+  ErrorTrack errors;  ///< Of the judged part.
   double own_tau = kPaperTau;     ///< limb_tau() of the calibration's part [rad]
   std::vector<Segment> detected;  ///< With the options' tau.
   std::vector<Segment> detected_by_own;

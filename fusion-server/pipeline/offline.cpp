@@ -98,7 +98,7 @@ class Replay {
  public:
   Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
       : frames_(std::move(input.lanes), input.sensors, registration),
-        suits_(std::move(input.inertial), config.worn),
+        suits_(std::move(input.inertial), config.worn, config.beginnings),
         tell_worn_(std::move(input.tell_worn)),
         registration_(registration),
         config_(config.pipeline),
@@ -117,6 +117,7 @@ class Replay {
       if (auto ok = frames_.read_to(instant); !ok) return ok;
       if (auto ok = suits_.read_to(instant); !ok) return ok;
       if (frames_.ended() && instant > frames_.newest()) break;
+      if (until_worn_ && suits_.first_pass().enough()) break;
       auto answered = answer(instant);
       if (!answered) {
         const auto next = after_gap(*index);
@@ -129,6 +130,13 @@ class Replay {
     }
     if (tell_worn_) tell_worn_(suits_.reports(frames_.newest()));
     return smoother_ ? give(smoother_->finish(config_), take) : Result<void>{};
+  }
+
+  /// Reads only until it is known how worn sensors sit.
+  Result<std::vector<worn::Beginning>> wearings() {
+    until_worn_ = true;
+    if (auto ok = run([](const Step&) { return Result<void>{}; }); !ok) return pass(ok);
+    return suits_.first_pass().found();
   }
 
  private:
@@ -199,6 +207,7 @@ class Replay {
   Memory memory_;
   std::optional<Smoother> smoother_;
   std::uint64_t answered_ = 0;
+  bool until_worn_ = false;
 };
 
 /// Reads until the walk is long enough or needs too much memory, or the recordings end.
@@ -256,6 +265,18 @@ Result<void> fuse_recordings(OfflineInput input, const Registration& registratio
   return Replay(std::move(input), registration, config).run([&take](Step step) {
     return take(std::move(step.snapshot));
   });
+}
+
+Result<std::vector<worn::Beginning>> first_wearings(OfflineInput input,
+                                                    const Registration& registration,
+                                                    const OfflineConfig& config) {
+  if (!config.worn.enabled || input.inertial.empty()) return std::vector<worn::Beginning>{};
+  if (auto ok = check_rate(config); !ok) return pass(ok);
+  OfflineConfig first = config;
+  first.smooth = false;
+  first.beginnings.clear();
+  input.tell_worn = {};
+  return Replay(std::move(input), registration, first).wearings();
 }
 
 Result<void> visit_recordings(OfflineInput input, const Registration& registration,

@@ -17,6 +17,8 @@ struct OfflineConfig {
   PipelineConfig pipeline;
   registration::RegistrationConfig registration;
   worn::WornConfig worn;  ///< Whether recorded inertial sources are used.
+  /// What first_wearings() has found: worn sensors help from the beginning.
+  std::vector<worn::Beginning> beginnings = {};
   bool smooth = false;  ///< Every instant is fused with what later ones say about it (smoother.h).
   double rate_hz = 30.0;  ///< Output instants are multiples of 1/rate since the epoch [Hz].
 };
@@ -49,6 +51,12 @@ using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 /// memory. Corrects the capture times by the clock offsets in the registration.
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
+
+/// Reads as far as it takes to find out who wore which inertial source and how its sensors sat, for
+/// OfflineConfig::beginnings of a second pass.  Nothing where none are used.
+[[nodiscard]] Result<std::vector<worn::Beginning>> first_wearings(OfflineInput input,
+                                                                  const Registration& registration,
+                                                                  const OfflineConfig& config);
 
 /// Takes what was fused at an instant, with the views it was fused from; an error stops the fusion.
 using TakeStep = std::function<Result<void>(const Snapshot&, const std::vector<Person>&)>;

@@ -11,8 +11,10 @@ constexpr Duration kSuitsAhead = std::chrono::seconds(1);
 
 }  // namespace
 
-RecordedSuits::RecordedSuits(std::vector<InertialLane> lanes, const worn::WornConfig& config)
+RecordedSuits::RecordedSuits(std::vector<InertialLane> lanes, const worn::WornConfig& config,
+                             const std::vector<worn::Beginning>& beginnings)
     : config_(config) {
+  wear_.begin_with(beginnings);
   if (!config_.enabled) return;
   for (InertialLane& lane : lanes) lanes_.push_back({std::move(lane)});
 }

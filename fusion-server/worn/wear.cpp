@@ -8,6 +8,7 @@ namespace chorus::worn {
 namespace {
 
 constexpr double kWearerGone = 5.0;   // [s] for which nobody has seen the wearer
+constexpr double kSameSight = 0.5;    // [m] between two passes' sights of one person
 constexpr double kSlipIsNews = 60.0;  // [s] for which a slip is told
 // Sides that are less probable teach nothing (as SidesConfig::learn_from): what is learned on wrong
 // sides would go on to say that they are right.
@@ -31,6 +32,19 @@ std::optional<inertial::Limb> limb_of(const inertial::InertialReading& reading) 
 }
 
 }  // namespace
+
+std::optional<Eigen::Vector3d> middle_of(const FusedBody& body) {
+  const Joint& middle = body.skeleton[JointId::SpineBase];
+  if (middle.seen()) return middle.position;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (const Joint& joint : body.skeleton.joints) {
+    if (!joint.seen()) continue;
+    sum += joint.position;
+    count += 1.0;
+  }
+  return count > 0.0 ? std::optional<Eigen::Vector3d>(sum / count) : std::nullopt;
+}
 
 void Wear::configure(const WornConfig& config, const std::set<SensorId>& sources) {
   if (!(config == config_)) sources_.clear();
@@ -122,6 +136,7 @@ void Wear::learn(const std::vector<FusedBody>& bodies, Timestamp instant) {
   if (sources_.empty()) return;
   if (!origin_) origin_ = instant;
   const double time = time_of(instant);
+  begin(bodies, instant);
   for (auto& [id, source] : sources_) {
     std::vector<inertial::InertialReading> readings = source.history.at(instant);
     std::erase_if(readings, [](const auto& each) { return !each.inertial_from_sensor; });
@@ -142,7 +157,39 @@ void Wear::learn(const std::vector<FusedBody>& bodies, Timestamp instant) {
   (void)calibrate_one(time);
 }
 
+std::vector<Wear::Worn> Wear::worn() const {
+  std::vector<Worn> all;
+  for (const auto& [id, source] : sources_) {
+    Worn& worn = all.emplace_back(Worn{id, source.wearer, {}});
+    for (const auto& [name, sensor] : source.sensors) {
+      if (auto first = sensor.first_calibration()) worn.sensors.emplace(name, std::move(*first));
+    }
+  }
+  return all;
+}
+
+void Wear::begin_with(const std::vector<Beginning>& beginnings) {
+  for (const Beginning& each : beginnings) beginnings_.insert_or_assign(each.source, each);
+}
+
+/// A wearer who is not where the first pass saw them is looked for as usual.
+void Wear::begin(const std::vector<FusedBody>& bodies, Timestamp instant) {
+  for (auto& [id, source] : sources_) {
+    const auto known = beginnings_.find(id);
+    if (known == beginnings_.end() || instant < known->second.seen.instant) continue;
+    const Beginning beginning = std::move(beginnings_.extract(known).mapped());
+    const auto body = std::ranges::find(bodies, beginning.wearer, &FusedBody::id);
+    if (source.wearer || body == bodies.end()) continue;
+    const auto place = middle_of(*body);
+    if (!place || (*place - beginning.seen.place).norm() > kSameSight) continue;
+    source.wearer = beginning.wearer;
+    for (const auto& [name, first] : beginning.sensors)
+      source.sensors.insert_or_assign(name, WornSensor(first, time_of(instant), config_));
+  }
+}
+
 void Wear::leave_world() {
+  beginnings_.clear();
   for (auto& [id, source] : sources_) {
     source.wearer.reset();
     source.sensors.clear();

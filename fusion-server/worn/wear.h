@@ -16,10 +16,14 @@
 #include "fusion-server/flow/fused_body.h"
 #include "fusion-server/flow/worn_people.h"
 #include "fusion-server/flow/worn_report.h"
+#include "fusion-server/worn/beginning.h"
 #include "fusion-server/worn/wearer.h"
 #include "fusion-server/worn/worn_sensor.h"
 
 namespace chorus::worn {
+
+/// Where a body is: its middle, or the mean of what is seen of it [m]; none where nothing is.
+[[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const FusedBody& body);
 
 class Wear {
  public:
@@ -37,6 +41,17 @@ class Wear {
 
   [[nodiscard]] std::vector<WornReport> reports(Timestamp now) const;
 
+  /// Who wears a source, and the sensors that are calibrated and have never slipped.
+  struct Worn {
+    SensorId source;
+    std::optional<PersonId> wearer;
+    std::map<std::string, FirstCalibration> sensors;
+  };
+  [[nodiscard]] std::vector<Worn> worn() const;
+  /// Begins with what a first pass has found: its wearer wears a source from the instant at which
+  /// they are first seen, where and when they were.
+  void begin_with(const std::vector<Beginning>& beginnings);
+
  private:
   struct Source {
     inertial::OrientationHistory history;
@@ -53,10 +68,12 @@ class Wear {
   void learn_limbs(Source& source, const std::vector<inertial::InertialReading>& readings,
                    const FusedBody& body, double time);
   [[nodiscard]] bool calibrate_one(double time);
+  void begin(const std::vector<FusedBody>& bodies, Timestamp instant);
 
   WornConfig config_;
   std::map<SensorId, Source> sources_;
-  std::optional<Timestamp> origin_;  ///< Of the times in seconds.
+  std::map<SensorId, Beginning> beginnings_;  ///< Those whose wearer has not been seen yet.
+  std::optional<Timestamp> origin_;           ///< Of the times in seconds.
 };
 
 }  // namespace chorus::worn

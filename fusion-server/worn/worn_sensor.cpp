@@ -63,6 +63,24 @@ std::string refusal_of(const evaluation::CalibrationFit& fit, double sigma, iner
 
 }  // namespace
 
+WornSensor::WornSensor(const FirstCalibration& known, double time, const WornConfig& config)
+    : WornSensor(known.fit.calibration.sensor, known.fit.calibration.limb) {
+  const double ago = std::max(0.0, known.known - time);
+  fit_ = known.fit;
+  fitted_ = time - kImproveFor - 1.0;  // all has been tried that was worth it
+  direction_sigma_ = known.direction_sigma;
+  heading_ =
+      evaluation::Heading(config.heading_walk, config.heading_walk * config.heading_walk * ago);
+  watch_ = evaluation::SlipWatch(fit_->sigma, config.slip);
+}
+
+std::optional<FirstCalibration> WornSensor::first_calibration() const {
+  if (!fit_ || slip_) return std::nullopt;
+  FirstCalibration first{*fit_, direction_sigma_, fitted_};
+  first.fit.calibration.heading = wrap_angle(first.fit.calibration.heading - wandered_);
+  return first;
+}
+
 void WornSensor::keep_pair(double time, const evaluation::TrackedOrientation& tracked,
                            const Eigen::Quaterniond& inertial_from_sensor) {
   if (!pairs_.empty() && time - pairs_.back().time < kPairEvery) return;
@@ -136,10 +154,11 @@ void WornSensor::calibrate(double time, const WornConfig& config) {
   direction_sigma_ = sigma;
   found->calibration.sensor = name_;
   found->calibration.limb = limb_;
-  if (!fit_) fitted_ = time;
   // The pairs hold the heading as followed so far, so the fit's is relative to that.
   const double followed = heading_.correction();
   found->calibration.heading = wrap_angle(found->calibration.heading + followed);
+  wandered_ = fit_ ? wrap_angle(wandered_ + followed) : 0.0;
+  if (!fit_) fitted_ = time;
   begin_ = found->calibration;
   heading_ = evaluation::Heading(config.heading_walk);
   for (auto& pair : pairs_)

@@ -11,6 +11,7 @@
 #include "common/evaluation/slip.h"
 #include "common/inertial/inertial_frame.h"
 #include "fusion-server/flow/worn_limb.h"
+#include "fusion-server/worn/beginning.h"
 #include "fusion-server/worn/worn_config.h"
 
 namespace chorus::worn {
@@ -18,6 +19,9 @@ namespace chorus::worn {
 class WornSensor {
  public:
   WornSensor(std::string name, inertial::Limb limb) : name_(std::move(name)), limb_(limb) {}
+  /// One whose calibration is known before it is found, at `time` [s]: its heading may have
+  /// wandered since then.  It is not improved; once it slips, it is calibrated as any other.
+  WornSensor(const FirstCalibration& known, double time, const WornConfig& config);
 
   /// Takes what is tracked of the limb and what the sensor says, at `time` [s].
   void learn(double time, const evaluation::TrackedOrientation& tracked,
@@ -40,6 +44,9 @@ class WornSensor {
   [[nodiscard]] double direction_sigma() const { return direction_sigma_; }
   /// Why it is not calibrated, and what to do; empty if it is.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  /// What another pass over the same recording may begin with; none if it is not calibrated, or has
+  /// slipped.
+  [[nodiscard]] std::optional<FirstCalibration> first_calibration() const;
   /// The last slip: when [s], and by how much [rad].
   struct Slip {
     double time = 0.0;
@@ -64,6 +71,7 @@ class WornSensor {
   double tried_ = -1e9;
   std::string refusal_;
   evaluation::Heading heading_;
+  double wandered_ = 0.0;  ///< Of the heading, from the first calibration to that of fit_ [rad].
   evaluation::SlipWatch watch_;
   std::optional<Slip> slip_;
   double direction_sigma_ = 0.0;  ///< What direction_sigma() returns [rad].

@@ -152,6 +152,9 @@ class InertialGuide(unittest.TestCase):
             self.judge(json.loads((folder / "judged/evaluation.json").read_text(encoding="utf-8")))
             page = (folder / "scored/evaluation.html").read_text(encoding="utf-8")
             self.assertIn("kappa of both", page)
+            whole = json.loads((folder / "whole/evaluation.json").read_text(encoding="utf-8"))
+            self.assertTrue(whole["subject"]["judged"].startswith("0.0 s"), whole["subject"])
+            self.assertIn("made from the take up to", json.dumps(whole))
 
     def judge(self, report):
         figures = {f["key"]: f for section in report["sections"] for f in section["figures"]}

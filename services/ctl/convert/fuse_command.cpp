@@ -35,6 +35,7 @@ struct FuseArguments {
   OfflineOptions options;
   std::vector<std::string> inertial;  ///< Recordings of worn sensors.
   double inertial_later = 0.0;        ///< Added to their times [s].
+  bool as_live = false;               ///< No first pass that finds how worn sensors sit.
   bool smooth = false;
   bool json = false;
 };
@@ -101,11 +102,13 @@ struct Fused {
   std::size_t frames = 0;
   std::size_t with_bodies = 0;
   RecordedCell::Told told;
+  std::size_t carried_back = 0;  ///< Calibrations of worn sensors that served from the beginning.
 };
 
 Result<Fused> fuse_into(const std::string& out, RecordedCell& cell, Registration registration,
                         const pipeline::OfflineConfig& config) {
   Fused fused;
+  for (const worn::Beginning& each : config.beginnings) fused.carried_back += each.sensors.size();
   fused.registration = std::move(registration);
   fused.method = fusion::name_of(config.pipeline.fusion.method);
   fused.rate_hz = config.rate_hz;
@@ -140,6 +143,10 @@ nlohmann::json worn_summary(const std::vector<WornReport>& reports) {
   return all;
 }
 
+std::string counted(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 /// "suit: worn by person 1, 12 of 13 limbs known; left forearm: bend and stretch it"
 std::string worn_line(const WornReport& report) {
   if (!report.wearer) return fmt::format("{}: {}", report.source.str(), report.reason);
@@ -154,7 +161,13 @@ std::string worn_line(const WornReport& report) {
 }
 
 /// Says what became of worn sensors, or that there are some.
-void note_worn(const RecordedCell& cell, bool enabled, RecordedCell::Told& told) {
+void note_worn(const RecordedCell& cell, bool enabled, Fused& fused) {
+  RecordedCell::Told& told = fused.told;
+  if (fused.carried_back > 0)
+    told.notes.push_back(fmt::format(
+        "{} of worn sensors found in a first pass serve{} from the beginning (--as-live: as a live "
+        "server would have them)",
+        counted(fused.carried_back, "calibration"), fused.carried_back == 1 ? "s" : ""));
   for (const WornReport& report : told.worn) told.notes.push_back(worn_line(report));
   if (!enabled && cell.holds_suits())
     told.notes.emplace_back(
@@ -180,6 +193,7 @@ nlohmann::json summary_of(const Fused& fused) {
           {"smoothed", fused.smoothed},
           {"notes", fused.told.notes},
           {"inertial", worn_summary(fused.told.worn)},
+          {"calibrationsCarriedBack", fused.carried_back},
           {"registration", std::move(registration)}};
 }
 
@@ -190,6 +204,16 @@ Result<void> wear(const FuseArguments& arguments, RecordedCell& cell) {
       record::find_recordings({arguments.inertial.begin(), arguments.inertial.end()});
   if (!files) return pass(files);
   return cell.wear(*files, from_seconds(arguments.inertial_later));
+}
+
+/// Reads once to find how worn sensors sit, unless a live server is to be followed.
+Result<void> look_at_wearings(const FuseArguments& arguments, RecordedCell& cell,
+                              const Registration& places, pipeline::OfflineConfig& config) {
+  if (arguments.as_live) return {};
+  auto found = pipeline::first_wearings(cell.input(), places, config);
+  if (!found) return pass(found);
+  config.beginnings = std::move(*found);
+  return {};
 }
 
 /// The options; naming worn sensors switches them on.
@@ -207,10 +231,6 @@ const char* smoothing_shown(const nlohmann::json& summary) {
   if (!summary["smoothed"].get<bool>()) return "";
   const bool whole = summary["method"] == fusion::name_of(fusion::Method::BodyFilter);
   return whole ? ", smoothed" : ", left and right smoothed, places as without --smooth";
-}
-
-std::string counted(std::size_t count, std::string_view what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 void print_summary(const nlohmann::json& summary, const FuseArguments& arguments) {
@@ -242,10 +262,12 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   auto places = places_of(arguments.places, *files, *cell, *config);
   if (!places) return pass(places);
   if (auto ok = check_distances(config->registration, *places); !ok) return pass(ok);
+  if (auto ok = look_at_wearings(arguments, *cell, *places->registration, *config); !ok)
+    return pass(ok);
   auto fused = fuse_into(arguments.out, *cell, std::move(*places->registration), *config);
   if (!fused) return pass(fused);
   note_unused(arguments, *places);
-  note_worn(*cell, config->worn.enabled, fused->told);
+  note_worn(*cell, config->worn.enabled, *fused);
   auto& notes = fused->told.notes;
   if (!places->note.empty()) notes.insert(notes.begin(), places->note);
   if (!arguments.save_registration.empty()) {
@@ -278,6 +300,9 @@ Run add_fuse(CLI::App& options) {
                      "repeated");
   options.add_option("--inertial-later", arguments->inertial_later,
                      "Seconds to add to its times, if its clock was another");
+  options.add_flag("--as-live", arguments->as_live,
+                   "Worn sensors help from when a live server would have calibrated them, not from "
+                   "the beginning");
   options.add_flag("--smooth", arguments->smooth,
                    "Fuse each instant knowing the seconds after it (fusion.smoothing)");
   options.add_flag("--json", arguments->json, "Summary as JSON");

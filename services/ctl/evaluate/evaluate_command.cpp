@@ -33,6 +33,7 @@ struct EvaluateArguments {
   double most_percent = 5.0;
   bool stated = false;  ///< Orientations that the tracker states, instead of those of its joints.
   bool same_clock = false;
+  bool from_start = false;
   bool json = false;
 };
 
@@ -145,6 +146,7 @@ Result<int> run_evaluate(const EvaluateArguments& arguments) {
   if (!inputs) return pass(inputs);
   evaluation::JudgeOptions options;
   options.tau = deg(arguments.tau_deg);
+  options.carry_back = arguments.from_start;
   if (arguments.same_clock) options.time.largest = 0.0;
   std::vector<inertial::SensorCalibration> calibrations;
   if (!arguments.calibration.empty()) {
@@ -211,6 +213,10 @@ Run add_evaluate(CLI::App& options) {
   options.add_flag("--same-clock", arguments->same_clock,
                    "Tracker and sensors were recorded by one clock: no shift is looked for, which "
                    "needs less movement");
+  options.add_flag(
+      "--from-start", arguments->from_start,
+      "Judge the part that calibrates, too; limbs that hardly move in it are calibrated "
+      "from more of the take");
   options.add_option("--out", arguments->out, "Folder of the report")->capture_default_str();
   options.add_flag("--json", arguments->json, "Print the report as JSON");
   return [arguments] { return run_evaluate(*arguments); };

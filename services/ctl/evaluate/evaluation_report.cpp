@@ -83,6 +83,13 @@ std::string listed(const std::vector<Segment>& segments) {
   return out.empty() ? "none" : out;
 }
 
+/// Said where a limb is judged in the seconds that calibrated it, too.
+std::string calibrated_by(const JudgedLimb& limb) {
+  if (limb.errors.empty() || limb.errors.front().time >= limb.calibrated_to) return {};
+  return fmt::format("; made from the take up to {:.1f} s, in which it agrees a little better",
+                     limb.calibrated_to);
+}
+
 std::vector<Figure> figures_of(const JudgedLimb& limb, const EvaluationInputs& inputs) {
   const std::string key = key_of(limb.limb);
   const std::string name(words_for(limb.limb));
@@ -100,9 +107,9 @@ std::vector<Figure> figures_of(const JudgedLimb& limb, const EvaluationInputs& i
           "mean distance where it is below tau: sensors, skin and calibration together"},
       Figure{key + ".calibration", name + " calibration", to_deg(limb.calibration.prediction_sigma),
              "deg",
-             fmt::format("residual {:.1f} deg; sensor {}; heading {:.0f} deg",
+             fmt::format("residual {:.1f} deg; sensor {}; heading {:.0f} deg{}",
                          to_deg(limb.calibration.residual), limb.calibration.sensor,
-                         to_deg(limb.calibration.heading)),
+                         to_deg(limb.calibration.heading), calibrated_by(limb)),
              "standard error of what the sensor predicts, by heading and mount", "at most 10 deg"},
       Figure{key + ".own_tau", name + " own tau", to_deg(limb.own_tau), "deg",
              listed(limb.detected_by_own),

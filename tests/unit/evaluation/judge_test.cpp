@@ -118,6 +118,55 @@ TEST(Judge, FindsTheErrorAndNoOther) {
   EXPECT_LT(rows.back().counts.true_positives, 1);  // at 120: the error has 80
 }
 
+/// Sensors that know their limbs.
+std::vector<JudgeSensor> placed_sensors(double phase) {
+  auto sensors = sensors_of(phase);
+  sensors[0].limb = Limb::ThighLeft;
+  sensors[1].limb = Limb::ShankLeft;
+  sensors[2].limb = Limb::ThighRight;
+  return sensors;
+}
+
+TEST(Judge, CarriesCalibrationsBackToTheBeginning) {
+  TrackedBody body = body_of(0.4);
+  for (auto& each : body[Limb::ShankLeft])
+    if (each.time >= 1.0 && each.time <= 2.0)
+      each.value.world_from_limb = each.value.world_from_limb * exp_map({1.4, 0, 0});
+  auto sensors = placed_sensors(0.4);
+  // The right thigh rests until 45 % of the take.
+  for (auto& each : body[Limb::ThighRight])
+    if (each.time < 9.0) each.value.world_from_limb = moved(9.0, 3.0);
+  for (auto& each : sensors[2].track)
+    if (each.time + kShift < 9.0)
+      each.value = about_y(3.0) * moved(9.0, 3.0) * exp_map({3.0, 1, 0});
+  EXPECT_EQ(judge_tracking(body, sensors)->refused.size(), 1u);
+  JudgeOptions options;
+  options.carry_back = true;
+  const auto found = judge_tracking(body, sensors, options);
+  ASSERT_TRUE(found) << to_string(found.error());
+  EXPECT_DOUBLE_EQ(found->begin, 0.0);
+  ASSERT_EQ(found->limbs.size(), 3u) << to_string(found->refused.front());
+  ASSERT_EQ(found->limbs[1].detected.size(), 1u);
+  EXPECT_NEAR(found->limbs[1].detected[0].begin, 1.0, 0.05);
+  EXPECT_NEAR(found->limbs[1].detected[0].end, 2.0, 0.05);
+  EXPECT_NEAR(found->limbs[1].calibrated_to, 7.0, 0.1);
+  EXPECT_GT(found->limbs[2].calibrated_to, 9.0);
+  EXPECT_TRUE(found->limbs[2].detected.empty());
+}
+
+TEST(Judge, ASensorThatSlipsIsWrongFromThenOnOnly) {
+  auto sensors = placed_sensors(0.4);
+  for (auto& each : sensors[1].track)
+    if (each.time + kShift >= 12.0) each.value = each.value * exp_map({1.5, 0, 0});
+  JudgeOptions options;
+  options.carry_back = true;
+  const auto found = judge_tracking(body_of(0.4), sensors, options);
+  ASSERT_TRUE(found) << to_string(found.error());
+  ASSERT_EQ(found->limbs[1].detected.size(), 1u);
+  EXPECT_NEAR(found->limbs[1].detected[0].begin, 12.0, 0.05);
+  EXPECT_GT(found->limbs[1].detected[0].end, 19.8);
+}
+
 TEST(Judge, TakesCalibrationsOfAnotherTakeAndRefusesAStillLimb) {
   auto sensors = sensors_of(0.4);
   sensors[0].limb = Limb::ThighLeft;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "fusion-server/worn/first_pass.h"
 #include "tests/unit/worn/walker.h"
 
 namespace chorus::worn {
@@ -32,6 +33,7 @@ struct WornWorld {
         for (const JointId id : hidden) body.contributors[index_of(id)] = 0;
       for (FusedBody& body : bodies) body.sides_confidence = sides;
       wear.learn(bodies, walker::at(time));
+      pass.note(wear, bodies, walker::at(time));
       if (until()) return;
     }
   }
@@ -73,6 +75,7 @@ struct WornWorld {
   std::vector<JointId> hidden;
   std::optional<double> sides = {};  ///< Of everybody.
   Wear wear;
+  FirstPass pass;
   double time = 0.0;
   std::mt19937_64 random{7};
 };
@@ -144,6 +147,72 @@ TEST(Wear, ASensorThatSlipsIsToldLeftOutAndCalibratedAgain) {
   world.run(world.time + 12.0);
   EXPECT_TRUE(shank().calibrated);
   EXPECT_LT(world.worst(), deg(6));
+}
+
+/// The same recording again, which begins with what was found.
+WornWorld again(const WornWorld& first) {
+  WornWorld second(first.people);
+  second.suit.drift = first.suit.drift;
+  second.wear.begin_with(first.pass.found());
+  return second;
+}
+
+TEST(FirstPass, WhatItFoundServesFromTheBeginning) {
+  WornWorld world({kWearer, kOther});
+  world.suit.drift = deg(0.3);
+  world.run(30.0);
+  ASSERT_TRUE(world.all_calibrated());
+  WornWorld second = again(world);
+  second.run(0.2);
+  EXPECT_EQ(second.says().size(), walker::kLimbs.size());
+  EXPECT_LT(second.worst(), deg(10)) << "headings as they were later, and have wandered since";
+  second.run(8.0);
+  EXPECT_EQ(second.says().size(), walker::kLimbs.size()) << "nothing is told as slipped";
+  EXPECT_LT(second.worst(), deg(8));
+}
+
+TEST(FirstPass, ASlipEndsWhatIsCarriedBackAndTheSecondPassTellsIt) {
+  WornWorld world({kWearer});
+  world.run(20.0);
+  ASSERT_TRUE(world.all_calibrated());
+  world.suit.slip[inertial::Limb::ShankLeft] = deg(60);
+  world.run(45.0);
+  WornWorld second = again(world);
+  second.run(5.0);
+  EXPECT_EQ(second.says().size(), walker::kLimbs.size());
+  EXPECT_LT(second.worst(), deg(8)) << "as it sat before it slipped";
+  second.run(20.0);
+  second.suit.slip = world.suit.slip;
+  second.run(25.0, [&] { return second.says().size() < walker::kLimbs.size(); });
+  EXPECT_LT(second.time, 24.9) << "told";
+  second.run(37.0);
+  EXPECT_EQ(second.says().size(), walker::kLimbs.size()) << "calibrated again, as live";
+  EXPECT_LT(second.worst(), deg(8));
+}
+
+TEST(FirstPass, SomebodyElsewhereIsNotTheWearer) {
+  WornWorld world({kWearer});
+  world.run(15.0);
+  auto found = world.pass.found();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found.front().wearer, PersonId{1});
+  found.front().seen.place.x() += 2.0;
+  WornWorld second({kWearer});
+  second.wear.begin_with(found);
+  second.run(0.3);
+  EXPECT_TRUE(second.says().empty());
+  EXPECT_FALSE(second.report().wearer);
+}
+
+TEST(FirstPass, LooksForAsLongAsCalibrationsImprove) {
+  WornWorld world({kWearer});
+  EXPECT_FALSE(world.pass.enough());
+  world.run(20.0);
+  EXPECT_FALSE(world.pass.enough());
+  world.people.front().id = 9;  // somebody else
+  world.run(35.0);
+  EXPECT_TRUE(world.pass.enough()) << "the first wearing is over";
+  EXPECT_EQ(world.pass.found().front().wearer, PersonId{1});
 }
 
 TEST(Wear, NothingIsLearnedOfLimbsWhileItIsInDoubtWhichSideIsWhich) {
