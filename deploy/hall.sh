@@ -105,8 +105,9 @@ start_server() {
   local cell rest wishes=''
   for entry in "${cells[@]}"; do read -r cell rest <<<"$entry"; wishes+=" --cell $cell"; done
   step "server on $server_host"
-  # Debian starts its own nats-server.service on the port that the cells' server needs.
-  on "$server_host" "command -v nats-server >/dev/null || test -x /usr/sbin/nats-server || { DEBIAN_FRONTEND=noninteractive apt-get -q -y install nats-server && systemctl disable --now nats-server.service; }" </dev/null
+  on "$server_host" "command -v nats-server >/dev/null || test -x /usr/sbin/nats-server || DEBIAN_FRONTEND=noninteractive apt-get -q -y install nats-server" </dev/null
+  # Debian starts its own nats-server.service on the port that the cells' server needs.  Whoever has changed its configuration uses it.
+  on "$server_host" "dpkg --verify nats-server 2>/dev/null | grep -q /etc/nats-server.conf || ! systemctl cat nats-server.service >/dev/null 2>&1 || systemctl disable --now nats-server.service" </dev/null
   on "$server_host" "test -e /etc/chorus/site/nats-server.conf || { chorus init site --name $name$wishes --address $server_address >/dev/null && systemctl restart chorus-site; }" </dev/null
   on "$server_host" "systemctl enable --now chorus-site" </dev/null
   # One that ends at once is started again and again, so it is looked at more than once.

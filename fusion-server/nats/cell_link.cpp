@@ -2,24 +2,21 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
 #include <mutex>
 #include <thread>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "common/base/handover.h"
-#include "common/base/json.h"
 #include "common/base/log.h"
 #include "common/base/rate_report.h"
-#include "common/base/shortened.h"
 #include "common/base/version.h"
+#include "fusion-server/nats/cell_cards.h"
+#include "fusion-server/nats/doorbell.h"
 #include "fusion-server/nats/frame_desk.h"
 #include "fusion-server/nats/inbox.h"
 #include "fusion-server/nats/ledger.h"
 #include "fusion-server/nats/people_message.h"
-#include "fusion-server/nats/site_snapshot.h"
+#include "fusion-server/nats/site_look.h"
 #include "fusion-server/nats/subjects.h"
 #include "fusion-server/site/teller.h"
 
@@ -28,9 +25,11 @@ namespace {
 
 /// At most so often are neighbours told: 30 Hz, with room for a tick that comes early.
 constexpr Duration kBetweenMessages = std::chrono::milliseconds(30);
-constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
 constexpr Duration kBetweenCards = std::chrono::seconds(1);
 constexpr std::chrono::milliseconds kLinkPatience{100};
+/// What neighbours tell is shown at once, but no sooner after another frame of the site: 63 cells
+/// tell 1900 times a second.
+constexpr std::chrono::milliseconds kBetweenLooks{10};
 constexpr std::size_t kSnapshots = 2;
 /// Of each cell: its people, a second's worth of its cards and events, and records that bear its
 /// name, which all come at once after each new connection; what the ledger has to say.
@@ -39,8 +38,6 @@ constexpr std::size_t kNewsWaiting = 64;
 constexpr std::size_t kClaimsWaiting = 1024;
 constexpr std::size_t kResults = 256;
 constexpr std::size_t kEventsKept = 50;
-/// A frame of another cell: 64 people with all that fusion knows of them have not half of it.
-constexpr JsonLimits kFrameLimits{.bytes = 4U << 20U, .nesting = 16};
 /// The store forgets a record so long after its last change (site/claim.h).
 constexpr Duration kForgetPeople = std::chrono::hours(1);
 
@@ -54,12 +51,6 @@ struct HeardPeople {
   site::CellPeople people;
   Timestamp came;  ///< By our clock.
 };
-
-/// Of one cell.
-bool older(const CellCard& one, const CellCard& other) {
-  const auto version = [](const CellCard& card) { return card.place ? card.place->version : 0; };
-  return one.boot != other.boot ? one.boot < other.boot : version(one) < version(other);
-}
 
 void append_newest(std::vector<site::SiteEvent>& all, const std::vector<site::SiteEvent>& more) {
   all.insert(all.end(), more.begin(), more.end());
@@ -95,10 +86,11 @@ struct CellLink::State {
   void run();
   void take_news();
   void take_people();
+  [[nodiscard]] std::chrono::nanoseconds patience() const;
   void step(const std::shared_ptr<const Snapshot>& snapshot);
+  void look_again();
   void carry_out(const site::Decision& decision);
-  void look(const site::Decision& decision, const std::shared_ptr<const Snapshot>& snapshot,
-            Timestamp now);
+  std::shared_ptr<site::SiteView> look(SteadyTime now);
   [[nodiscard]] site::SiteConnection connection() const;
   void tell_card();
   void take_place();
@@ -112,6 +104,7 @@ struct CellLink::State {
   const std::uint64_t boot;
 
   // Filled by other threads.
+  Doorbell bell;  ///< Rings when snapshots, people or the end came.
   Handover<std::shared_ptr<const Snapshot>> snapshots{kSnapshots};
   Inbox<HeardPeople> inbox{kPeopleWaiting};
   Inbox<std::function<void(Timestamp)>> news{kNewsWaiting};  ///< What the core is told next.
@@ -126,10 +119,15 @@ struct CellLink::State {
   // Only of the link's thread.
   site::Site site;
   site::Teller teller;
-  SiteSeats seats;
+  SiteLook window;
   std::optional<site::CellPlace> own_place;
-  std::map<site::CellId, CellCard> cards;
+  CellCards cards;
   std::vector<site::SiteEvent> events;
+  std::shared_ptr<const Snapshot> newest;  ///< Of our own cell; null: none yet.
+  std::vector<site::Named> ours;           ///< Its people, as they were decided.
+  SteadyTime stepped{};                    ///< When `newest` came.
+  SteadyTime looked{};
+  bool others_told = false;  ///< Of people, since the last look.
   Timestamp told{};
   std::uint64_t registration = 0;  ///< Of the snapshot that is told next.
   SteadyTime card_told{};
@@ -146,7 +144,8 @@ CellLink::State::State(LinkConfig c, std::shared_ptr<const Clock> k, OnView view
       on_view(std::move(view)),
       boot(static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000)),
       site(config.cell, boot, config.decisions),
-      teller(config.cell, boot) {
+      teller(config.cell, boot),
+      window(config.cell, config.decisions) {
   broker = std::make_unique<Broker>(config.broker, listening());
   frames.open(*broker, subject(kFrame));
   ledger = std::make_unique<Ledger>(
@@ -156,6 +155,7 @@ CellLink::State::State(LinkConfig c, std::shared_ptr<const Clock> k, OnView view
 
 CellLink::State::~State() {
   snapshots.close();
+  bell.ring();
   if (thread.joinable()) thread.join();
   ledger.reset();
   broker.reset();
@@ -194,6 +194,7 @@ void CellLink::State::hear_people(const Message& message) {
     return refuse(std::string(message.subject) + ": is by another cell, " + people->cell.str());
   if (people->cell == config.cell && people->boot == boot) return;  // our own words
   inbox.give(*from, {std::move(*people), clock->now()});
+  bell.ring();
 }
 
 void CellLink::State::hear_card(std::string_view bytes, std::optional<site::CellId> from) {
@@ -202,15 +203,10 @@ void CellLink::State::hear_card(std::string_view bytes, std::optional<site::Cell
   if (!from || read->cell != *from) return refuse("card: is by another cell, " + read->cell.str());
   if (read->cell == config.cell) return;
   news.give(*from, [this, heard = std::move(*read)](Timestamp now) {
-    if (cards.size() == Inbox<CellCard>::kCells && !cards.contains(heard.cell))
-      return refuse("card: there are too many cells");
-    // The store may tell an older card than the cell itself.
-    const auto known = cards.find(heard.cell);
-    if (known != cards.end() && older(heard, known->second)) return;
-    if (heard.place) {
-      if (auto ok = site.take(*heard.place, now); !ok) refuse("card: " + to_string(ok.error()));
-    }
-    cards[heard.cell] = heard;
+    const auto newer = cards.hear(heard);
+    if (!newer) return refuse(to_string(newer.error()));
+    if (!*newer || !heard.place) return;
+    if (auto ok = site.take(*heard.place, now); !ok) refuse("card: " + to_string(ok.error()));
   });
 }
 
@@ -238,8 +234,12 @@ void CellLink::State::take_news() {
 }
 
 void CellLink::State::take_people() {
-  for (const HeardPeople& heard : inbox.take())
-    if (auto ok = site.take(heard.people, heard.came); !ok) refuse(to_string(ok.error()));
+  for (const HeardPeople& heard : inbox.take()) {
+    if (auto ok = site.take(heard.people, heard.came); !ok)
+      refuse(to_string(ok.error()));
+    else
+      others_told |= !heard.people.people.empty();
+  }
 }
 
 void CellLink::State::carry_out(const site::Decision& decision) {
@@ -265,28 +265,29 @@ site::SiteConnection CellLink::State::connection() const {
           refusals.last()};
 }
 
-void CellLink::State::look(const site::Decision& decision,
-                           const std::shared_ptr<const Snapshot>& snapshot, Timestamp now) {
-  const auto made = std::make_shared<site::SiteView>();
+std::shared_ptr<site::SiteView> CellLink::State::look(SteadyTime now) {
+  looked = now;
+  others_told = false;
+  auto made = std::make_shared<site::SiteView>();
   site::SiteView& view = *made;
   view.site = config.site;
   view.own = config.cell;
-  view.at = now;
-  view.people = site.everybody(now);
-  view.ours = decision.people;
-  for (const site::CellState& state : site.cells(now)) {
-    const auto known = cards.find(state.cell);
-    const CellCard told_of = state.cell == config.cell ? card()
-                             : known == cards.end()    ? CellCard{}
-                                                       : known->second;
-    view.cells.push_back({state, told_of.url, told_of.software, told_of.place});
-  }
+  view.at = clock->now();
+  view.people = site.everybody(view.at);
+  view.ours = ours;
+  view.cells = cards.known(site.cells(view.at), card());
   view.events = events;
-  view.snapshot = std::make_shared<const Snapshot>(
-      site_snapshot({view.people, config.cell, own_place}, *snapshot, seats));
-  view.shown = own_place ? view.snapshot : snapshot;
+  view.snapshot = window.show(view.people, {newest, now - stepped, own_place});
   view.connection = connection();
-  on_view(made);
+  return made;
+}
+
+/// Neighbours have told of their people, and our own cell has nothing new yet.
+void CellLink::State::look_again() {
+  const SteadyTime now = std::chrono::steady_clock::now();
+  // Of a cell that has stopped nothing is shown as if it went on.
+  others_told &= newest && now - stepped <= config.decisions.lease;
+  if (others_told && now - looked >= kBetweenLooks) on_view(look(now));
 }
 
 void CellLink::State::step(const std::shared_ptr<const Snapshot>& snapshot) {
@@ -302,7 +303,12 @@ void CellLink::State::step(const std::shared_ptr<const Snapshot>& snapshot) {
   broker->publish(subject(kPeople), write_people(people));
   frames.show(snapshot, now);
   carry_out(decision);
-  look(decision, snapshot, now);
+  newest = snapshot;
+  ours = decision.people;
+  stepped = std::chrono::steady_clock::now();
+  const std::shared_ptr<site::SiteView> view = look(stepped);
+  view->shown = own_place ? view->snapshot : snapshot;
+  on_view(view);
 }
 
 void CellLink::State::tell_card() {
@@ -330,14 +336,23 @@ void CellLink::State::take_place() {
   card_told = {};
 }
 
+/// How long nothing needs to be done unless something comes.
+std::chrono::nanoseconds CellLink::State::patience() const {
+  if (!others_told) return kLinkPatience;
+  return std::min<std::chrono::nanoseconds>(
+      kLinkPatience, kBetweenLooks - (std::chrono::steady_clock::now() - looked));
+}
+
 void CellLink::State::run() {
   while (!snapshots.closed()) {
-    const auto waiting = snapshots.take(kLinkPatience);
+    bell.wait(patience());
+    const auto waiting = snapshots.take(Duration{0});
     if (!waiting.empty()) registration = waiting.back()->registration_version;
     take_place();
     take_people();  // What cells told before they moved is of where they stood.
     take_news();
     if (!waiting.empty()) step(waiting.back());
+    look_again();
     tell_card();
   }
 }
@@ -350,6 +365,7 @@ CellLink::~CellLink() = default;
 
 void CellLink::publish(std::shared_ptr<const Snapshot> snapshot) {
   state_->snapshots.give(std::move(snapshot));
+  state_->bell.ring();
 }
 
 SinkCounters CellLink::counters() const {
@@ -366,27 +382,12 @@ SinkCounters CellLink::counters() const {
 
 Result<std::string> CellLink::ask_frame(const std::string& cell, const std::string& at) {
   if (!site::CellId::parse(cell)) return fail(ErrorCode::NotFound, cell, "is no name of a cell");
-  auto answer = state_->broker->request(
-      subject_of(state_->config.site, cell, kAskFrame),
-      at.empty() ? std::string() : nlohmann::json{{"at", at}}.dump(-1, ' ', true, kReplace));
+  auto answer =
+      state_->broker->request(subject_of(state_->config.site, cell, kAskFrame), frame_question(at));
   if (!answer)
     return fail(ErrorCode::Unavailable, "cell " + cell,
                 "does not answer: " + answer.error().message);
   return frame_answered(cell, std::move(*answer));
-}
-
-Result<std::string> frame_answered(const std::string& cell, std::string answer) {
-  const std::string who = "cell " + cell;
-  const auto nonsense = [&who](std::string_view why) {
-    return fail(ErrorCode::Unavailable, who, "answers no frame: " + shortened(why, kMaxReason));
-  };
-  const auto read = parse_json(answer, kFrameLimits);
-  if (!read) return nonsense(to_string(read.error()));
-  if (!read->is_object()) return nonsense("it is no object");
-  const auto why = read->find("error");
-  if (why == read->end() && read->contains("sequence")) return answer;
-  if (why == read->end() || !why->is_string()) return nonsense("it has no sequence");
-  return fail(ErrorCode::NotFound, who, shortened(why->get_ref<const std::string&>(), kMaxReason));
 }
 
 void CellLink::place(const site::CellPlace& place, std::uint64_t registration) {

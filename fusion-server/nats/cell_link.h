@@ -32,7 +32,8 @@ struct LinkConfig {
 class CellLink final : public Sink {
  public:
   /// `on_view` runs on the link's thread after each of our messages, of which there are at most 33
-  /// a second, whatever the pipeline's rate; must not wait.
+  /// a second, whatever the pipeline's rate, and, without SiteView::shown, when neighbours have
+  /// told of people in between, at most every 10 ms; must not wait.
   CellLink(LinkConfig config, std::shared_ptr<const Clock> clock,
            std::function<void(std::shared_ptr<const site::SiteView>)> on_view);
   ~CellLink() override;
@@ -54,8 +55,5 @@ class CellLink final : public Sink {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// What a cell answered to ask_frame(), unchanged, if it is a frame; errors as ask_frame()'s.
-[[nodiscard]] Result<std::string> frame_answered(const std::string& cell, std::string answer);
 
 }  // namespace chorus::nats

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/json.h"
+#include "common/base/shortened.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/nats/json_fields.h"
 #include "fusion-server/wire/snapshot_resource.h"
@@ -14,15 +15,18 @@ namespace chorus::nats {
 namespace {
 
 constexpr std::size_t kMostAsked = 256;
+/// A frame of another cell: 64 people with all that fusion knows of them have not half of it.
+constexpr JsonLimits kFrameLimits{.bytes = 4U << 20U, .nesting = 16};
 
 std::string frame_text(const Snapshot& snapshot) {
   return resource::write(wire::to_resource(snapshot), resource::Format::Json);
 }
 
-std::string refusal(const std::string& why) {
-  return nlohmann::json{{"error", why}}.dump(-1, ' ', false,
-                                             nlohmann::json::error_handler_t::replace);
+std::string written(const nlohmann::json& object) {
+  return object.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
+
+std::string refusal(const std::string& why) { return written({{"error", why}}); }
 
 }  // namespace
 
@@ -92,6 +96,24 @@ void FrameDesk::answer(const Message& message) {
     broker = broker_;
   }
   if (broker != nullptr) broker->publish(std::string(message.reply), text);
+}
+
+std::string frame_question(const std::string& at) {
+  return at.empty() ? std::string() : written({{"at", at}});
+}
+
+Result<std::string> frame_answered(const std::string& cell, std::string answer) {
+  const std::string who = "cell " + cell;
+  const auto nonsense = [&who](std::string_view why) {
+    return fail(ErrorCode::Unavailable, who, "answers no frame: " + shortened(why, kMaxReason));
+  };
+  const auto read = parse_json(answer, kFrameLimits);
+  if (!read) return nonsense(to_string(read.error()));
+  if (!read->is_object()) return nonsense("it is no object");
+  const auto why = read->find("error");
+  if (why == read->end() && read->contains("sequence")) return answer;
+  if (why == read->end() || !why->is_string()) return nonsense("it has no sequence");
+  return fail(ErrorCode::NotFound, who, shortened(why->get_ref<const std::string&>(), kMaxReason));
 }
 
 }  // namespace chorus::nats

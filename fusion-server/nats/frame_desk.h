@@ -48,4 +48,10 @@ class FrameDesk {
   bool ever_wanted_ = false;
 };
 
+/// What frame_at() is asked for an instant (empty: the newest).
+[[nodiscard]] std::string frame_question(const std::string& at);
+/// What a cell answered to CellLink::ask_frame(), unchanged, if it is a frame; errors as
+/// ask_frame()'s.
+[[nodiscard]] Result<std::string> frame_answered(const std::string& cell, std::string answer);
+
 }  // namespace chorus::nats

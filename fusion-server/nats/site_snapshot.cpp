@@ -64,9 +64,21 @@ FusedBody body_of(const SiteScene& scene, const site::SitePerson& person, const 
   return body;
 }
 
-std::vector<SensorId> cells_of(std::span<const site::SitePerson> people) {
+/// From what its cell told to what is shown.
+void move_on(const site::ShownPerson& shown, FusedBody& body) {
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    Joint& joint = body.skeleton.joints[i];
+    if (joint.state == JointState::NotTracked) continue;
+    joint.position += shown.moved[i];
+    if (joint.covariance.known())
+      joint.covariance = Covariance(Eigen::Matrix3d(joint.covariance.matrix() + shown.doubt));
+    body.variance[i] += shown.doubt.trace() / 3.0;
+  }
+}
+
+std::vector<SensorId> cells_of(std::span<const site::ShownPerson> people) {
   std::set<SensorId> cells;
-  for (const site::SitePerson& person : people) cells.insert(person.cell);
+  for (const site::ShownPerson& person : people) cells.insert(person.told.cell);
   std::vector<SensorId> all(cells.begin(), cells.end());
   if (all.size() > kMaxSensors) all.resize(kMaxSensors);
   return all;
@@ -96,12 +108,13 @@ std::size_t SiteSeats::seat(const site::SiteId& id, Timestamp now) {
 
 Snapshot site_snapshot(const SiteScene& scene, const Snapshot& cell, SiteSeats& seats) {
   Snapshot site;
-  site.sequence = cell.sequence;
-  site.instant = cell.instant;
-  if (scene.place) site.instant += scene.place->clock_added;
+  site.sequence = scene.sequence;
+  site.instant = scene.at;
   site.sensors = cells_of(scene.people);
-  for (const site::SitePerson& person : scene.people) {
+  for (const site::ShownPerson& shown : scene.people) {
+    const site::SitePerson& person = shown.told;
     FusedBody body = body_of(scene, person, cell);
+    move_on(shown, body);
     body.id = number_of(person.id);
     const std::size_t seat = seats.seat(person.id, site.instant);
     body.slot = seat < kMaxBodies ? std::optional(seat) : std::nullopt;

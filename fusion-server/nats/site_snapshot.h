@@ -1,8 +1,8 @@
 // Everybody in the site as one snapshot, for /site/frame and for outputs that show the site.
 //
-// The site's space and time.  Snapshot::sensors are the cells, and a joint's contributor is the
-// cell that it comes from.  People of our own cell are complete; of others we know the joints that
-// their cells tell, without orientations.
+// The site's space and time, at one instant (site/shown.h).  Snapshot::sensors are the cells, and a
+// joint's contributor is the cell that it comes from.  People of our own cell are complete; of
+// others we know the joints that their cells tell, without orientations.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 #include <span>
 
 #include "fusion-server/flow/snapshot.h"
-#include "fusion-server/site/site.h"
+#include "fusion-server/site/shown.h"
 
 namespace chorus::nats {
 
@@ -34,12 +34,14 @@ class SiteSeats {
 
 /// What a site's snapshot is made of.
 struct SiteScene {
-  std::span<const site::SitePerson> people;
+  std::span<const site::ShownPerson> people;
   site::CellId own;
   std::optional<site::CellPlace> place;  ///< Of our own cell; none: nobody of it is in `people`.
+  std::uint64_t sequence = 0;
+  Timestamp at;  ///< The instant of all of them, by the site's clock.
 };
 
-/// `cell`: the newest snapshot of our own cell, whose sequence and stamp the result has.
+/// `cell`: the newest snapshot of our own cell.
 [[nodiscard]] Snapshot site_snapshot(const SiteScene& scene, const Snapshot& cell,
                                      SiteSeats& seats);
 

@@ -64,6 +64,19 @@ Trail smoothed(const Trail& trail, Duration max_gap) {
   return out;
 }
 
+/// The frames that some offset up to `range` puts beside one of the other trail: two sensors that
+/// share a passage only have few of these among all that each of them saw.
+Trail shared_part(const Trail& trail, const Trail& other, Duration range) {
+  Trail out{trail.sensor, {}};
+  auto near = other.frames.begin();
+  for (const TrailFrame& frame : trail.frames) {
+    while (near != other.frames.end() && near->captured < frame.captured - range) ++near;
+    if (near == other.frames.end()) break;
+    if (near->captured <= frame.captured + range) out.frames.push_back(frame);
+  }
+  return out;
+}
+
 Trail thinned(const Trail& trail) {
   const std::size_t count = trail.frames.size();
   const std::size_t step = std::max<std::size_t>(1, (count + kMostFrames - 1) / kMostFrames);
@@ -159,7 +172,7 @@ OffsetProfile::OffsetProfile(const Walker& target, const Walker& source,
     : range_(range),
       max_gap_(config.max_gap),
       target_(target.trail),
-      source_(thinned(source.trail)),
+      source_(thinned(shared_part(source.trail, target.trail, from_seconds(range)))),
       inner_(inner_part(source_, target_, from_seconds(range))),
       levelled_(config.use_floor && target.floor.floor && source.floor.floor) {
   if (!levelled_) return;

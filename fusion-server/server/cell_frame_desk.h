@@ -1,5 +1,6 @@
 // /site/cells/{cell}/frame: the newest frame of another cell, or that of an instant (?at=), asked
-// of it by the site's server when somebody asks us.
+// of it by the site's server when somebody asks us.  The answer is that to the last question: the
+// newest frame is as old as that, two seconds at most, and its `captured` says so.
 #pragma once
 
 #include <chrono>

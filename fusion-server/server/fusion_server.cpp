@@ -112,7 +112,7 @@ void FusionServer::Impl::meet_the_site(const std::string& folder) {
   SiteMemberOptions options{config.at_start.site, store_trouble.empty() ? folder : "", clock, {}};
   if (options.settings.link.site.empty()) return;
   options.on_view = [this, feed = options.settings.outputs_show](auto view) {
-    if (feed) outputs->publish(view->shown);
+    if (feed && view->shown) outputs->publish(view->shown);
     site->show(std::move(view));
   };
   member = std::make_unique<SiteMember>(std::move(options), config.live.site_places);

@@ -51,6 +51,21 @@ Innovation innovation_of(const CommonError& error, const CommonTerm& term) {
 
 }  // namespace
 
+Eigen::Matrix3d covariance_at(const CellPlace& place, const Eigen::Vector3d& x,
+                              const SiteConfig& config) {
+  Eigen::Matrix<double, 6, 6> known = place.covariance;
+  if (known.isZero()) {
+    // On the floor, as at_pivot(): it is level, and its height is that of the floor.
+    known(1, 1) = square(config.unknown_yaw_sigma);
+    known(3, 3) = known(5, 5) = square(config.unknown_place_sigma);
+  }
+  const Eigen::Vector3d arm = x - place.site_from_cell.translation();
+  Eigen::Matrix<double, 3, 6> to_x = Eigen::Matrix<double, 3, 6>::Zero();
+  to_x.leftCols<3>() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+  to_x.rightCols<3>().setIdentity();
+  return to_x * known * to_x.transpose();
+}
+
 CommonError stated_error(const CellPlace& ours, const CellPlace& theirs, const SiteConfig& config) {
   CommonError error;
   const Eigen::Vector3d middle =

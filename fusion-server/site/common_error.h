@@ -33,6 +33,11 @@ struct CommonTerm {
 [[nodiscard]] CommonError stated_error(const CellPlace& ours, const CellPlace& theirs,
                                        const SiteConfig& config);
 
+/// Of where the cell's place shows a point of it, `x` in the site [m^2]: from the stated
+/// covariance, or, where none is stated, as SiteConfig assumes.
+[[nodiscard]] Eigen::Matrix3d covariance_at(const CellPlace& place, const Eigen::Vector3d& x,
+                                            const SiteConfig& config);
+
 /// d r / d e for a person at `x` [m] with `velocity` [m/s], both (x, z).
 [[nodiscard]] Eigen::Matrix<double, 2, 4> lever_at(const CommonError& error,
                                                    const Eigen::Vector2d& x,

@@ -46,7 +46,8 @@ const Word& counting(const std::vector<Word>& words, const std::optional<CellId>
   return *std::ranges::min_element(words, {}, rank);
 }
 
-SitePerson person_of(const SiteId& id, const Word& word, const HeardCell& ours) {
+SitePerson person_of(const SiteId& id, const Word& word, const HeardCell& ours,
+                     const SiteConfig& config) {
   const Eigen::Isometry3d& place = word.cell->place->site_from_cell;
   const Person& told = word.body->last;
   SitePerson person;
@@ -59,6 +60,7 @@ SitePerson person_of(const SiteId& id, const Word& word, const HeardCell& ours) 
   person.place = where.place;
   person.velocity = where.velocity;
   person.covariance = where.covariance;
+  person.cell_covariance = covariance_at(*word.cell->place, where.place, config);
   for (std::size_t i = 0; i < kJointCount; ++i) {
     if (told.joints[i]) person.joints[i] = place * *told.joints[i];
   }
@@ -80,7 +82,7 @@ std::vector<SitePerson> everybody_of(const Hearing& hearing, const Names& names,
   std::vector<SitePerson> all;
   for (const auto& [id, told] : words) {
     const Word& word = counting(told, hearing.ownership->holder(id), config);
-    SitePerson person = person_of(id, word, *hearing.ours);
+    SitePerson person = person_of(id, word, *hearing.ours, config);
     for (const Word& each : told) person.seen_by.push_back(each.cell->id);
     all.push_back(std::move(person));
   }

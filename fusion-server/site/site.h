@@ -72,7 +72,10 @@ struct SitePerson {
   Timestamp at;   ///< By the site's clock.
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< As the cell states it.
+  /// What `place` is not known to because the cell's place in the site is not; 0.2 m and 2 degrees
+  /// where none is stated (SiteConfig).
+  Eigen::Matrix3d cell_covariance = Eigen::Matrix3d::Zero();
   Located joints;
   std::vector<CellId> seen_by;  ///< All cells that tell of them now.
 };

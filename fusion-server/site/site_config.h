@@ -29,6 +29,9 @@ struct SiteConfig {
   /// The least standard deviation of a person's place in one cell, whatever it states [m]: sensors
   /// that see a body from different sides place its joints differently.
   double person_sigma = 0.04;
+  /// How long the difference between two cells' bodies of a person fades when another cell answers
+  /// for them.  As long as `evidence`: the next hand-over is not sooner.
+  Duration blend = std::chrono::milliseconds(500);
   /// Below this certainty a name is stated to be doubtful.
   double doubt = 0.9;
   std::size_t max_people = 64;  ///< A message with more people is refused.

@@ -31,7 +31,7 @@ struct SiteConnection {
   std::string last_refusal;
 };
 
-/// After a message of our own cell.
+/// After a message of our own cell, or of others.
 struct SiteView {
   std::string site;
   CellId own;
@@ -42,7 +42,8 @@ struct SiteView {
   std::vector<SiteEvent> events;             ///< The newest fifty.
   std::shared_ptr<const Snapshot> snapshot;  ///< Everybody: nats/site_snapshot.h.
   /// What outputs show of the site: `snapshot`; while our cell has no place in the site, so that
-  /// nobody of it is in there, its own newest snapshot.
+  /// nobody of it is in there, its own newest snapshot.  Null: not made for a message of our own,
+  /// and outputs keep to the pace of our cell.
   std::shared_ptr<const Snapshot> shown;
   SiteConnection connection;
 };

@@ -66,7 +66,7 @@ class ManyCells(unittest.TestCase):
         self.assertLess(commands.index(made[0]), commands.index("admin@fusion-b | systemctl enable --now chorus-site"))
         installed = [line for line in commands if "apt-get" in line]
         self.assertEqual(len(installed), 1)
-        self.assertIn("|| { DEBIAN_FRONTEND=noninteractive apt-get -q -y install nats-server && systemctl disable --now nats-server.service; }", installed[0])
+        self.assertTrue(installed[0].endswith("|| DEBIAN_FRONTEND=noninteractive apt-get -q -y install nats-server"), installed[0])
         for host in ("root@10.0.0.1", "admin@fusion-b"):
             section = json.loads(self.noted(f"joined.{host}"))["site"]
             self.assertEqual(section, {"name": "hall", "password": PASSWORD, "ca": "/etc/chorus/site-ca.crt", "places": "/etc/chorus/places.json"})
@@ -76,6 +76,15 @@ class ManyCells(unittest.TestCase):
             self.assertTrue(joined[0].endswith(">/dev/null && systemctl restart chorus-fusion"), "a break leaves no cell that has joined and does not know it")
         self.assertNotIn(PASSWORD, self.noted("commands") + done.stdout + done.stderr)
         self.assertIn("chorus site register", done.stdout)
+
+    def test_stops_debians_own_server_unless_somebody_has_set_it_up(self):
+        self.run_it("join")
+        command = next(line for line in self.noted("commands").splitlines() if "dpkg --verify" in line).split(" | ", 1)[1]
+        for verify, unit, stopped in (("", True, True), ("??5?????? c /etc/nats-server.conf", True, False), ("", False, False)):
+            fakes = (f"dpkg() {{ echo '{verify}'; }}; systemctl() {{ [[ $1 != cat ]] && {{ echo stopped; return; }}; {'true' if unit else 'false'}; }}; ")
+            done = subprocess.run(["bash", "-c", fakes + command], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("stopped" in done.stdout, stopped, (verify, unit))
 
     def test_keeps_a_cell_that_has_joined(self):
         self.cell("a", {"address": "10.0.0.1", "ssh": "root@joined"})

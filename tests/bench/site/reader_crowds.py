@@ -1,4 +1,7 @@
-"""What one delivery to one of many readers costs a server: our event stream, nats-server, mosquitto, and nginx with nchan where it is."""
+"""What one delivery to one of many readers costs a server: our event stream, nats-server, mosquitto, and nginx with nchan where they are installed.
+
+All deliver as many bytes: those of a frame of ours.
+"""
 import math
 import pathlib
 import selectors
@@ -14,8 +17,9 @@ from ports import free_port
 
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 MOSQUITTO = shutil.which("mosquitto", path=PATH)
+NGINX = shutil.which("nginx", path=PATH)
+NCHAN = pathlib.Path("/usr/lib/nginx/modules/ngx_nchan_module.so")  # libnginx-mod-nchan
 HZ = 30
-BYTES = 9500  # one person by six sensors, as JSON
 MARK = b"@one@"
 
 
@@ -29,7 +33,7 @@ class Crowd:
     """Reads what comes on all its sockets and counts a mark in it."""
 
     def __init__(self, mark):
-        self.mark, self.chooser, self.counts = mark, selectors.DefaultSelector(), {}
+        self.mark, self.chooser, self.counts, self.bytes = mark, selectors.DefaultSelector(), {}, 0
 
     def add(self, made):
         made.setblocking(False)
@@ -40,6 +44,7 @@ class Crowd:
         for key, _ in self.chooser.select(seconds):
             piece = key.fileobj.recv(1 << 18)
             self.counts[key.fileobj] += piece.count(self.mark)
+            self.bytes += len(piece)
 
     def close(self):
         for made in self.counts:
@@ -48,7 +53,7 @@ class Crowd:
 
     def run(self, seconds, publish=None):
         """(deliveries, fewest of one reader) in this time; publish() is called at 30 Hz."""
-        self.counts = dict.fromkeys(self.counts, 0)
+        self.counts, self.bytes = dict.fromkeys(self.counts, 0), 0
         begin = due = time.monotonic()
         while (now := time.monotonic()) < begin + seconds:
             if publish and now >= due:
@@ -80,7 +85,8 @@ def our_streams(bin_folder, count, seconds):
             made.sendall(b"GET /frame HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: text/event-stream\r\n\r\n")
             crowd.add(made)
         try:
-            return cost(pid, crowd, seconds, idle=idle)
+            found = cost(pid, crowd, seconds, idle=idle)
+            return found, crowd.bytes // max(1, sum(crowd.counts.values()))
         finally:
             crowd.close()
 
@@ -97,8 +103,8 @@ class Broker:
         self.child.wait()
 
 
-def nats(count, seconds):
-    port, payload = free_port(), MARK + b"x" * (BYTES - len(MARK))
+def nats(count, seconds, size):
+    port, payload = free_port(), MARK + b"x" * (size - len(MARK))
     with Broker(SERVER, "-a", "127.0.0.1", "-p", str(port)) as broker:
         wait_for("nats-server answers", lambda: connected(port).close() or True)
         crowd, hello = Crowd(MARK), b'CONNECT {"verbose":false}\r\n'
@@ -132,7 +138,7 @@ def mqtt_hello(name):
     return mqtt_packet(0x10, mqtt_text(b"MQTT") + b"\x04\x02" + struct.pack("!H", 0) + mqtt_text(name))
 
 
-def mosquitto(count, seconds):
+def mosquitto(count, seconds, size):
     port = free_port()
     with tempfile.TemporaryDirectory() as folder:
         config = pathlib.Path(folder) / "mosquitto.conf"
@@ -146,7 +152,7 @@ def mosquitto(count, seconds):
                 crowd.add(made)
             publisher = connected(port)
             publisher.sendall(mqtt_hello(b"p"))
-            message = mqtt_packet(0x30, mqtt_text(b"people") + MARK + b"x" * (BYTES - len(MARK)))
+            message = mqtt_packet(0x30, mqtt_text(b"people") + MARK + b"x" * (size - len(MARK)))
             try:
                 return cost(broker.child.pid, crowd, seconds, lambda: publisher.sendall(message))
             finally:
@@ -154,13 +160,61 @@ def mosquitto(count, seconds):
                 publisher.close()
 
 
+NGINX_CONF = """load_module {module};
+pid {folder}/nginx.pid;
+daemon off;
+master_process off;
+error_log {folder}/error.log;
+events {{ worker_connections 2000; }}
+http {{
+  access_log off;
+  client_body_temp_path {folder}/body;
+  client_max_body_size 1m;
+  client_body_buffer_size 64k;
+  server {{
+    listen 127.0.0.1:{port};
+    keepalive_requests 1000000;
+    location /pub {{ nchan_publisher; nchan_channel_id people; nchan_message_buffer_length 2; }}
+    location /sub {{ nchan_subscriber eventsource; nchan_channel_id people; nchan_subscriber_first_message newest; }}
+  }}
+}}
+"""
+
+
+def nchan(count, seconds, size):
+    port, body = free_port(), MARK + b"x" * (size - len(MARK))
+    with tempfile.TemporaryDirectory() as folder:
+        config = pathlib.Path(folder) / "nginx.conf"
+        config.write_text(NGINX_CONF.format(module=NCHAN, folder=folder, port=port))
+        with Broker(NGINX, "-p", folder, "-c", str(config), "-e", f"{folder}/error.log") as broker:
+            wait_for("nginx answers", lambda: connected(port).close() or True)
+            crowd = Crowd(MARK)
+            for _ in range(count):
+                made = connected(port)
+                made.sendall(b"GET /sub HTTP/1.1\r\nHost: x\r\nAccept: text/event-stream\r\n\r\n")
+                crowd.add(made)
+            publisher = connected(port)
+            head = b"POST /pub HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body)
+
+            def publish():
+                publisher.sendall(head + body)
+                publisher.recv(1 << 16)  # its answer
+
+            try:
+                return cost(broker.child.pid, crowd, seconds, publish)
+            finally:
+                crowd.close()
+                publisher.close()
+
+
 def readers(bin_folder, quick):
     count, seconds = (50, 5) if quick else (200, 15)
-    found = {"ours": our_streams(bin_folder, count, seconds)}
-    notes = [f"{count} readers at {HZ} Hz; the readers are one process beside the server; nchan was not measured (libnginx-mod-nchan)"]
-    for name, there, measure in (("nats", SERVER, nats), ("mosquitto", MOSQUITTO, mosquitto)):
+    ours, size = our_streams(bin_folder, count, seconds)
+    found = {"ours": ours}
+    notes = [f"{count} readers of {size} bytes at {HZ} Hz; the readers are one process beside the server"]
+    for name, there, measure in (("nats", SERVER, nats), ("mosquitto", MOSQUITTO, mosquitto), ("nchan", NGINX and NCHAN.exists(), nchan)):
         if there:
-            found[name] = measure(count, seconds)
+            found[name] = measure(count, seconds, size)
         else:
             notes.append(f"{name} is not installed")
     best = min((cost_us for name, (cost_us, _) in found.items() if name != "ours"), default=math.nan)

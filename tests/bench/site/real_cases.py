@@ -1,4 +1,4 @@
-"""The cases of chorus-bench site that need real processes: line-4x4, lost, readers.  Usage: real_cases.py CASE BIN full|quick
+"""The cases of chorus-bench site that need real processes: line-4x4, lost, faults, readers.  Usage: real_cases.py CASE BIN full|quick
 
 Prints one line of JSON: {"rows": [[metric, value, unit], ...], "notes": [...]}.
 """
@@ -10,8 +10,9 @@ import selectors
 import sys
 import time
 
-from real_hall import LAP_S, NatsReader, RealHall, Stream, cpu_seconds, get, percentile, wait_for
+from fault_cases import faults, watch_ids, whole_again
 from reader_crowds import readers
+from real_hall import LAP_S, NatsReader, RealHall, Stream, cpu_seconds, get, percentile, wait_for
 
 
 def listen(sources, seconds, handle):
@@ -53,10 +54,16 @@ def unix_ms(text):
 
 
 class Steps:
-    """By how much the published body is elsewhere than it was going when another cell answers for it, and how much later it comes."""
+    """By how much the published body is elsewhere than it was going when another cell answers for it, and how much later it comes.
+
+    Also from frame to frame while the difference between the cells fades, and where nothing fades, because noise moves it, too.
+    """
+
+    FADES_S = 0.6
 
     def __init__(self):
         self.last, self.moved_mm, self.late_ms, self.period = [], [], [], []
+        self.fading_mm, self.usual_mm, self.stated_mm, self.changed = [], [], [], -math.inf
 
     def take(self, frame):
         if len(frame["bodies"]) != 1 or len(frame["sensors"]) != 1:
@@ -67,12 +74,16 @@ class Steps:
         if len(self.last) == 8:
             first, before = self.last[0], self.last[-1]
             gap = now[0] - before[0]
+            rate = [(b - a) / (before[0] - first[0]) for a, b in zip(first[1], before[1])]
+            moved = 1e3 * math.dist(now[1], [b + v * gap for b, v in zip(before[1], rate)])
             if now[2] != before[2]:
-                rate = [(b - a) / (before[0] - first[0]) for a, b in zip(first[1], before[1])]
-                self.moved_mm.append(1e3 * math.dist(now[1], [b + v * gap for b, v in zip(before[1], rate)]))
+                self.changed = now[0]
+                self.moved_mm.append(moved)
                 self.late_ms.append(1e3 * gap)
+                self.stated_mm.append(1e3 * math.sqrt(sum(pelvis[key] for key in ("cxx", "cyy", "czz"))) if "cxx" in pelvis else math.nan)
             else:
                 self.period.append(1e3 * gap)
+                (self.fading_mm if now[0] - self.changed < self.FADES_S else self.usual_mm).append(moved)
         self.last = [*self.last[-7:], now]
 
 
@@ -105,35 +116,10 @@ def line(bin_folder, quick):
             ["age_ratio_p99", percentile(ages.site, 0.99) / percentile(ages.nats, 0.99), ""],
             ["own_frame_p99", percentile(ages.own, 0.99), "ms"], ["own_frame_p99_without_site", percentile(alone, 0.99), "ms"],
             ["handovers", len(steps.moved_mm), ""], ["handover_moved_max", max(steps.moved_mm, default=math.nan), "mm"],
-            ["handover_gap_max", max(steps.late_ms, default=math.nan), "ms"], ["frame_gap_p99", percentile(steps.period, 0.99), "ms"],
+            ["handover_fading_max", max(steps.fading_mm, default=math.nan), "mm"], ["elsewhere_moved_p99", percentile(steps.usual_mm, 0.99), "mm"],
+            ["handover_stated_min", min(steps.stated_mm, default=math.nan), "mm"], ["handover_gap_max", max(steps.late_ms, default=math.nan), "ms"], ["frame_gap_p99", percentile(steps.period, 0.99), "ms"],
             ["core_with_site_and_readers", 100 * cpu, "%"], ["core_without_site", 100 * cpu_alone, "%"]]
     return rows, [f"{cells} cells of {sensors} simulated sensors round one person, all on this machine"]
-
-
-def watch_ids(hall, seconds):
-    """Ids that any cell shows, and body ids of each cell, over some time."""
-    ids, bodies, end = set(), {name: set() for name in hall.names}, time.monotonic() + seconds
-    while time.monotonic() < end:
-        for name in hall.names:
-            for site_id, person in hall.people(name).items():
-                ids.add(site_id)
-                if person["cell"] == name:
-                    bodies[name].add(person["cellBodyId"])
-        time.sleep(0.2)
-    return ids, bodies
-
-
-def whole_again(hall, ids):
-    """How long until every cell hears the others and all show one known id [s]."""
-    began = time.monotonic()
-
-    def whole():
-        shown = [set(hall.people(name)) for name in hall.names]
-        heard = all(hall.states(name).count("heard") == hall.cells - 1 for name in hall.names)
-        return heard and all(each and each <= ids for each in shown) and all(each == shown[0] for each in shown)
-
-    wait_for("ids are whole again", whole)
-    return time.monotonic() - began
 
 
 def lost(bin_folder, quick):
@@ -172,7 +158,7 @@ def killed_cell(hall, ports):
     return kept
 
 
-CASES = {"line-4x4": line, "lost": lost, "readers": readers}
+CASES = {"line-4x4": line, "lost": lost, "faults": faults, "readers": readers}
 
 
 def main():

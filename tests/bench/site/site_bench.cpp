@@ -1,4 +1,4 @@
-// People who walk from cell to cell.  But for three cases with real processes, the cells are
+// People who walk from cell to cell.  But for four cases with real processes, the cells are
 // simulated at the level of what they publish: sixty-four simulated sensors are more than one
 // machine can fuse.
 #include <array>
@@ -26,6 +26,7 @@ Result<void> real(Report& report) {
 }
 constexpr const char* kLine = "line-4x4";
 constexpr const char* kLost = "lost";
+constexpr const char* kFaults = "faults";
 constexpr const char* kReaders = "readers";
 
 constexpr std::array kSiteCases{SiteCase{"hall-8x8", always<run_hall_case>},
@@ -33,6 +34,7 @@ constexpr std::array kSiteCases{SiteCase{"hall-8x8", always<run_hall_case>},
                                 SiteCase{"site-places", run_places_case},
                                 SiteCase{kLine, real<&kLine>},
                                 SiteCase{kLost, real<&kLost>},
+                                SiteCase{kFaults, real<&kFaults>},
                                 SiteCase{kReaders, real<&kReaders>}};
 
 }  // namespace
@@ -47,7 +49,8 @@ Result<void> run_site(Report& report) {
     if (const Result<void> done = each.run(report); !done) return done;
   }
   report.note(
-      "But for line-4x4, lost and readers, simulated at the level of what cells publish: a cell "
+      "But for line-4x4, lost, faults and readers, simulated at the level of what cells publish: a "
+      "cell "
       "never confuses two of its own people, "
       "and loses nobody within its area.");
   return {};

@@ -1,52 +1,24 @@
 """A hall for tests: Debian's nats-server, cells of simulated sensors, and a raw NATS connection of a stranger."""
 import json
 import pathlib
-import shutil
 import socket
-import subprocess
 import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "deploy"), str(ROOT / "tests/system/fusion")]
-import demo_hall  # noqa: E402
-from rig import BIN, Process, Rig, free_port, get_json, send, wait_for  # noqa: E402
-
-SERVER = shutil.which("nats-server", path="/usr/sbin:/usr/bin:/usr/local/bin:/sbin")
+sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "tests/system/fusion")]
+from nats_hall import NatsHall, cells_of, demo_hall, people_of, states_of  # noqa: E402
+from rig import BIN, Process, Rig, free_port, get_json, send, wait_for  # noqa: E402, F401
 
 
-class Hall(Rig):
-    """Without TLS, so that the stranger can speak plainly; deploy/demo.sh --site is the test of TLS."""
+class Hall(NatsHall, Rig):
+    bin = BIN
 
     def setUp(self):
         super().setUp()
         self.place = pathlib.Path(self.folder.name)
         demo_hall.write(self.place)
-        self.server_port = free_port()
-        self.server = None
         self.addCleanup(self.stop_server)
-
-    def init(self, *words):
-        done = subprocess.run([BIN / "chorus", "init", "site", *map(str, words)], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-
-    def write_site(self, *cells):
-        self.init("--name", demo_hall.SITE, *[word for cell in cells for word in ("--cell", cell)], "--address", "127.0.0.1",
-                  "--listen", "127.0.0.1", "--port", self.server_port, "--no-tls", "--store", self.place / "store",
-                  "--out", self.place / "site")
-
-    def start_server(self):
-        log = open(self.place / "nats.log", "a")
-        self.addCleanup(log.close)
-        self.server = subprocess.Popen([SERVER, "-c", self.place / "site/nats-server.conf"], stdout=log, stderr=log)
-        wait_for("the server answers", lambda: socket.create_connection(("127.0.0.1", self.server_port), 1).close() or True)
-
-    def stop_server(self):
-        if self.server is None:
-            return
-        self.server.kill()
-        self.server.wait()
-        self.server = None
 
     def start_sensors(self, cell):
         ports = {}
@@ -58,26 +30,22 @@ class Hall(Rig):
         return ports
 
     def start_cell(self, cell, sensors, **more):
-        config = self.place / f"{cell}.fusion.json"
-        if not config.exists():
-            config.write_text("{}\n")
-            self.init("--join", self.place / f"site/{cell}.json", "--out", config)
         port = free_port()
         arguments = demo_hall.fusion_arguments(cell, port, sensors, self.place)
         extra = [word for key, value in more.items() for word in ("--set", f"{key}={value}")]
-        process = Process("chorus-fusion", "--config", str(config), *arguments, *extra)
+        process = Process("chorus-fusion", "--config", str(self.joined(cell)), *arguments, *extra)
         process.url = f"http://127.0.0.1:{port}/"
         self.processes.append(process)
         return process
 
     def cells(self, of):
-        return get_json(of.url + "site/cells/")
+        return cells_of(of.url)
 
     def states(self, of):
-        return {name: cell["state"] for name, cell in self.cells(of)["siteCells"].items()}
+        return states_of(of.url)
 
     def people(self, of):
-        return get_json(of.url + "site/people/")["sitePeople"]
+        return people_of(of.url)
 
     def frames_in(self, of, seconds):
         """How many frames the cell makes in a second."""

@@ -12,6 +12,9 @@ NODE = shutil.which("node")
 SENSOR_HZ = 30
 ENOUGH = 0.5  # of the frames before; a busy machine
 SOON = 20  # seconds
+LAPS = 4
+FADES_S = 1.0
+LONGEST_HOLE_S = 0.5
 
 
 class Site(Hall):
@@ -48,19 +51,36 @@ class Site(Hall):
             wait_for("its place is known", lambda cell=cell, other=other: self.cells(cell)["siteCells"][other]["placed"])
         # Whom each named alone is one person: the ids are joined the first time that both see them.
         wait_for("both see one person under one id", lambda: self.one_id(a, b) and self.seen_by(a) == set(demo_hall.CELLS))
-        ids, owners = set(), set()
-        deadline = time.monotonic() + 18  # one lap takes 15.7 s
-        while time.monotonic() < deadline:
-            for cell in (a, b):
-                for name, person in self.people(cell).items():
-                    ids.add(name)
-                    owners.add(person["cell"])
-            time.sleep(0.1)
+        ids, owners = self.a_lap(a, b)
         self.assertEqual(len(ids), 1, "a whole lap through both cells, and one id")
         self.assertEqual(owners, {"a", "b"}, "each cell has answered for the person")
         self.frames_agree(a)
         self.a_moved_origin(a, b, ids)
         return ids
+
+    def a_lap(self, a, b):
+        """(ids, cells that answered) of a whole lap in which both cells had their frames.
+
+        A cell without a frame for a second has lost whom it sees, and rightly doubts that it is they who come: on a machine that is taken
+        by others for so long a lap says nothing.
+        """
+        for _ in range(LAPS):
+            ids, owners, last, longest = set(), set(), {}, 0.0
+            deadline = time.monotonic() + 18  # one lap takes 15.7 s
+            while time.monotonic() < deadline:
+                for cell in (a, b):
+                    number, now = get_json(cell.url + "frame")["sequence"], time.monotonic()
+                    if last.get(cell, (None,))[0] == number:
+                        longest = max(longest, now - last[cell][1])
+                    else:
+                        last[cell] = number, now
+                    for name, person in self.people(cell).items():
+                        ids.add(name)
+                        owners.add(person["cell"])
+                time.sleep(0.1)
+            if longest < LONGEST_HOLE_S:
+                return ids, owners
+        self.fail(f"in {LAPS} laps a cell was without frames for {LONGEST_HOLE_S} s: this machine is too busy")
 
     def a_moved_origin(self, a, b, ids):
         """Cell b's world is moved and turned; in the hall nobody moves by it."""
@@ -98,9 +118,6 @@ class Site(Hall):
         self.assertEqual([p["bodyId"] for p in people.values()], [frame["bodies"][0]["bodyId"]])
         self.assertIn(frame["sensors"][0], demo_hall.CELLS)
 
-    def password(self, cell):
-        return json.loads((self.place / f"site/{cell}.json").read_text())["site"]["password"]
-
     def strangers(self, a, b):
         nobody = Stranger(self.server_port, "a", "wrong")
         self.assertIn("Authorization Violation", nobody.answer)
@@ -110,7 +127,7 @@ class Site(Hall):
         self.assertEqual(as_b.answer, "PONG")
         self.assertIn("Permissions Violation", as_b.publish("chorus.hall.a.people", b"{}"), "b may not speak as a")
         self.assertEqual(as_b.line(), "PONG")
-        reader = Stranger(self.server_port, "reader", json.loads((self.place / "site/reader.json").read_text())["password"])
+        reader = Stranger(self.server_port, "reader", self.password("reader"))
         self.addCleanup(reader.close)
         self.assertIn("Permissions Violation", reader.publish("chorus.hall.b.people", b"{}"), "who reads may not speak")
         self.assertEqual(reader.line(), "PONG")
@@ -124,13 +141,13 @@ class Site(Hall):
         if NODE is None or not (ROOT / "tests/node_modules/nats").exists():
             print("not compared with the client of the NATS project: needs node and npm ci in tests/")
             return
-        password = json.loads((self.place / "site/reader.json").read_text())["password"]
+        password = self.password("reader")
         reader = subprocess.Popen([NODE, ROOT / "tests/system/site/reader.mjs", str(self.server_port), password,
                                    "chorus.hall.a.people", "600"], stdout=subprocess.PIPE, text=True)
         self.addCleanup(reader.stdout.close)
         self.addCleanup(reader.wait)
         self.addCleanup(reader.kill)
-        told, compared = {}, 0
+        told, compared, since_a = {}, 0, time.monotonic()
         while compared < 10:
             line = reader.stdout.readline()
             self.assertTrue(line, f"600 messages, and only {compared} frames of the same instants")
@@ -139,7 +156,10 @@ class Site(Hall):
             if len(told) % 10:
                 continue
             frame = get_json(a.url + "site/frame")
+            now = time.monotonic()
             if frame["sensors"] != ["a"]:
+                since_a = now
+            if now - since_a < FADES_S:  # after a hand-over the body is on its way from where b had it
                 continue
             while frame["capturedNanoseconds"] not in told and int(message["at"]) <= int(frame["capturedNanoseconds"]):
                 message = json.loads(reader.stdout.readline())["message"]
