@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/site/places.h"
@@ -32,6 +34,7 @@ struct PlaceFigures {
   std::size_t placed = 0;
   std::size_t refused = 0;
   std::size_t far_off = 0;
+  std::vector<std::string> reasons;  ///< Why cells were refused.
   bool failed = false;
 };
 
@@ -93,6 +96,9 @@ PlaceFigures place_draw(std::uint64_t seed) {
     figures.failed = true;
     return figures;
   }
+  for (const site::CellRefusal& each : places->refused)
+    figures.reasons.push_back(
+        fmt::format("seed {}, cell {}: {}", seed, each.cell.str(), each.reason));
   for (const HallCell& cell : cells) judge_cell(*places, cells, cell, figures);
   for (std::size_t a = 0; a < cells.size(); ++a) {
     for (std::size_t b = a + 1; b < cells.size(); ++b) {
@@ -123,6 +129,7 @@ Result<void> run_places_case(Report& report) {
     add(all.loop_mm, each.loop_mm);
     add(all.origin_mm, each.origin_mm);
     add(all.clock_ms, each.clock_ms);
+    for (const std::string& reason : each.reasons) report.note(reason);
     all.covered += each.covered;
     all.placed += each.placed;
     all.refused += each.refused;
