@@ -13,7 +13,10 @@ READERS = {
                     "common/client", "common/workplace/prop.cpp"],
     "sensor.json": ["services/sensor", "common/service"],
     "evaluation.json": ["services/evaluation", "common/service/http_config.cpp", "common/service/log_config.cpp", "common/client"],
+    "ergonomics.json": ["services/ergonomics", "common/service/http_config.cpp", "common/service/log_config.cpp", "common/client"],
 }
+# Read by a function of those folders that this program does not call: read_followed(), since its tracker needs no id.
+UNASKED = {"ergonomics.json": {"id"}}
 READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\(|\bDeviceKind\{|\bread_mb\(|\bread_count\()\s*"([A-Za-z0-9_]+)\"""")
 KEY_LINE = re.compile(r'^\s*"([A-Za-z0-9_]+)"\s*:')
 UNITS = {"read_ms": "_ms", "read_s": "_s", "read_deg": "_deg"}
@@ -74,7 +77,7 @@ class ConfigFiles(unittest.TestCase):
     def test_name_every_key_that_is_read_and_no_other(self):
         for name, text, source in self.each():
             with self.subTest(name):
-                read = set(READ.findall(source))
+                read = set(READ.findall(source)) - UNASKED.get(name, set())
                 self.assertGreater(len(read), 10)
                 written = set(keys_in(json.loads(without_comments(text))))
                 self.assertEqual(read - written - keys_shown_in_comments(text), set(), "read by the program, not in the file")
