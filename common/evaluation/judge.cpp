@@ -8,6 +8,7 @@ namespace {
 using inertial::Limb;
 using inertial::SensorCalibration;
 
+constexpr double kSeenLongEnough = 0.2;   // of the time for which the one seen longest is
 constexpr double kRateHalfWindow = 0.03;  // [s]: a tracker's frame or two
 
 OrientationTrack orientations_of(const TrackedLimb& limb) {
@@ -143,6 +144,13 @@ const SensorCalibration* given_for(const std::vector<SensorCalibration>& all,
   return found == all.end() ? nullptr : &*found;
 }
 
+/// Of the limb that is seen most often.
+std::size_t instants_of(const TrackedBody& body) {
+  std::size_t most = 0;
+  for (const auto& [limb, track] : body) most = std::max(most, track.size());
+  return most;
+}
+
 /// Of the take; the first that calibrates a limb well enough serves.
 std::vector<double> shares_of(const JudgeOptions& options) {
   std::vector<double> out{options.calibration_share};
@@ -221,6 +229,32 @@ Result<std::vector<SensorCalibration>> calibrate_take(const TrackedBody& body,
   std::vector<SensorCalibration> out;
   for (const JudgedLimb& limb : found->limbs) out.push_back(limb.calibration);
   return out;
+}
+
+Result<std::size_t> wearer_among(const std::vector<TrackedBody>& people,
+                                 const std::vector<JudgeSensor>& sensors,
+                                 const JudgeOptions& options) {
+  std::vector<std::size_t> seen;
+  for (const TrackedBody& body : people) seen.push_back(instants_of(body));
+  const std::size_t most = seen.empty() ? 0 : *std::ranges::max_element(seen);
+  std::vector<TrackedBody> candidates;
+  std::vector<std::size_t> index;
+  std::optional<Prepared> best;
+  tl::unexpected<Error> refusal = fail(ErrorCode::InvalidArgument, "people", "nobody is tracked");
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    if (static_cast<double>(seen[i]) < kSeenLongEnough * static_cast<double>(most)) continue;
+    candidates.push_back(people[i]);
+    index.push_back(i);
+    auto take = prepared(people[i], sensors, options);
+    if (!take)
+      refusal = pass(take);
+    else if (!best || take->shift.correlation > best->shift.correlation)
+      best = std::move(*take);
+  }
+  if (!best) return refusal;
+  const auto found = worn_by(best->worn, best->limbs, candidates);
+  if (!found) return pass(found);
+  return index[*found];
 }
 
 std::vector<TauRow> over_tau(const std::vector<JudgedLimb>& limbs,

@@ -66,6 +66,12 @@ struct Judgement {
     const TrackedBody& body, const std::vector<JudgeSensor>& sensors,
     const JudgeOptions& options = {});
 
+/// Index of the person who wears the sensors.  They are aligned with everybody who is seen long
+/// enough; the best correlation says when, worn_by() says who.  Refused if two fit alike.
+[[nodiscard]] Result<std::size_t> wearer_among(const std::vector<TrackedBody>& people,
+                                               const std::vector<JudgeSensor>& sensors,
+                                               const JudgeOptions& options = {});
+
 /// Precision, recall and F of one group of limbs over tau (Fig. 8), frame by frame.
 struct TauRow {
   double tau = 0.0;  ///< [rad]

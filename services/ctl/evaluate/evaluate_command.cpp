@@ -80,12 +80,24 @@ std::vector<evaluation::JudgeSensor> sensors_of(const std::vector<inertial::Sens
   return out;
 }
 
+evaluation::JudgeOptions options_of(const EvaluateArguments& arguments) {
+  evaluation::JudgeOptions options;
+  options.tau = deg(arguments.tau_deg);
+  options.carry_back = arguments.from_start;
+  if (arguments.same_clock) options.time.largest = 0.0;
+  return options;
+}
+
 struct Loaded {
   evaluation::TrackedBody body;
   std::vector<evaluation::JudgeSensor> sensors;
 };
 
-Result<evaluation::TrackedBody> chosen(std::map<std::uint64_t, evaluation::TrackedBody> people,
+using People = std::map<std::uint64_t, evaluation::TrackedBody>;
+
+/// The person named, the only one, or the one whom the sensors fit.
+Result<evaluation::TrackedBody> chosen(People people,
+                                       const std::vector<evaluation::JudgeSensor>& sensors,
                                        const EvaluateArguments& arguments) {
   if (arguments.person) {
     const auto found = people.find(*arguments.person);
@@ -93,9 +105,21 @@ Result<evaluation::TrackedBody> chosen(std::map<std::uint64_t, evaluation::Track
     return fail(ErrorCode::NotFound, "--person", "is not in the recording");
   }
   if (people.size() == 1) return std::move(people.begin()->second);
-  return fail(
-      ErrorCode::InvalidArgument, arguments.tracking,
-      fmt::format("shows {} people; say with --person which one wears the sensors", people.size()));
+  std::vector<std::uint64_t> ids;
+  std::vector<evaluation::TrackedBody> bodies;
+  for (auto& [id, body] : people) {
+    ids.push_back(id);
+    bodies.push_back(std::move(body));
+  }
+  const auto wearer = evaluation::wearer_among(bodies, sensors, options_of(arguments));
+  if (!wearer)
+    return fail(ErrorCode::InvalidArgument, arguments.tracking,
+                fmt::format("shows {} people, and who wears the sensors is not clear ({}); say it "
+                            "with --person",
+                            ids.size(), wearer.error().message));
+  std::cerr << fmt::format("note: of {} people, person {} wears the sensors\n", ids.size(),
+                           ids[*wearer]);
+  return std::move(bodies[*wearer]);
 }
 
 Result<Loaded> load(const std::string& tracking, const std::vector<std::string>& files,
@@ -104,8 +128,6 @@ Result<Loaded> load(const std::string& tracking, const std::vector<std::string>&
   if (!frames) return pass(frames);
   for (const std::string& note : frames->notes) std::cerr << "note: " << note << '\n';
   if (frames->samples.empty()) return fail(ErrorCode::NotFound, tracking, "shows nobody");
-  auto body = chosen(people_of(frames->samples, arguments.stated), arguments);
-  if (!body) return pass(body);
   const auto logs = read_inertial_files(files, arguments.limbs);
   if (!logs) return pass(logs);
   for (const auto& log : *logs)
@@ -113,7 +135,10 @@ Result<Loaded> load(const std::string& tracking, const std::vector<std::string>&
       std::cerr << "note: sensor " << log.sensor << ": " << note << '\n';
   for (const std::string& note : inertial::heading_notes(*logs))
     std::cerr << "note: " << note << '\n';
-  return Loaded{std::move(*body), sensors_of(*logs, origin_of(*logs, frames->samples))};
+  auto sensors = sensors_of(*logs, origin_of(*logs, frames->samples));
+  auto body = chosen(people_of(frames->samples, arguments.stated), sensors, arguments);
+  if (!body) return pass(body);
+  return Loaded{std::move(*body), std::move(sensors)};
 }
 
 Result<EvaluationInputs> inputs_of(const EvaluateArguments& arguments) {
@@ -144,10 +169,7 @@ void print_limbs(const evaluation::Judgement& found) {
 Result<int> run_evaluate(const EvaluateArguments& arguments) {
   const auto inputs = inputs_of(arguments);
   if (!inputs) return pass(inputs);
-  evaluation::JudgeOptions options;
-  options.tau = deg(arguments.tau_deg);
-  options.carry_back = arguments.from_start;
-  if (arguments.same_clock) options.time.largest = 0.0;
+  const evaluation::JudgeOptions options = options_of(arguments);
   std::vector<inertial::SensorCalibration> calibrations;
   if (!arguments.calibration.empty()) {
     const auto take = load(arguments.calibration, arguments.calibration_inertial, arguments);
@@ -199,8 +221,9 @@ Run add_evaluate(CLI::App& options) {
       .add_option("--annotations", arguments->annotations,
                   "Files of annotators: limb,begin_s,end_s")
       ->expected(1, 2);
-  options.add_option("--person", arguments->person,
-                     "Who wears the sensors, if several people are tracked");
+  options.add_option(
+      "--person", arguments->person,
+      "Who wears the sensors, of several people; else it is found from the movement");
   options.add_option("--tau", arguments->tau_deg, "Threshold [deg]")
       ->check(number_range(1.0, 180.0))
       ->capture_default_str();

@@ -127,6 +127,16 @@ std::vector<JudgeSensor> placed_sensors(double phase) {
   return sensors;
 }
 
+TEST(Judge, FindsWhoWearsTheSensors) {
+  const auto sensors = placed_sensors(0.4);
+  TrackedBody passer = body_of(0.4, 2.0);  // moves alike, but is seen for two seconds only
+  const auto wearer = wearer_among({passer, body_of(2.0), body_of(0.4), body_of(3.1)}, sensors);
+  ASSERT_TRUE(wearer) << to_string(wearer.error());
+  EXPECT_EQ(*wearer, 2u);
+  EXPECT_FALSE(wearer_among({body_of(0.4), body_of(0.4)}, sensors)) << "two who move alike";
+  EXPECT_FALSE(wearer_among({}, sensors));
+}
+
 TEST(Judge, CarriesCalibrationsBackToTheBeginning) {
   TrackedBody body = body_of(0.4);
   for (auto& each : body[Limb::ShankLeft])
