@@ -41,7 +41,7 @@ TEST_F(WatchedLimb, IsOffAfterTheLeastLengthAndComesBackBelowTheLowerThreshold) 
   EXPECT_EQ(state(), LimbState::Good);
   see(1000, 60);
   EXPECT_EQ(state(), LimbState::Good) << "a single instant is no error";
-  see(1120, 70);
+  see(1240, 70);
   EXPECT_EQ(state(), LimbState::Off);
   see(5000, 70.4);
   EXPECT_EQ(words_for(watch.told()), "left shank off by 70 deg for 4 s");
