@@ -279,8 +279,8 @@ Result<void> Sorting::take_orientations(const MessageView& message, const Sensor
     return fail(ErrorCode::Malformed, where(),
                 std::string(message.topic) + ": " + to_string(read.error()));
   const auto shift = inertial_shifts_.find(source);
-  const std::optional by =
-      shift == inertial_shifts_.end() ? std::nullopt : std::optional(shift->second);
+  std::optional<Duration> by;
+  if (shift != inertial_shifts_.end()) by = shift->second;
   for (inertial::InertialFrame& instant : read->instants) {
     instant.source = source;
     instant.received = message.log_time;
