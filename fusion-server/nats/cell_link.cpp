@@ -29,7 +29,7 @@ constexpr Duration kBetweenCards = std::chrono::seconds(1);
 constexpr std::chrono::milliseconds kLinkPatience{100};
 /// What neighbours tell is shown at once, but no sooner after another frame of the site: 63 cells
 /// tell 1900 times a second.
-constexpr std::chrono::milliseconds kBetweenLooks{10};
+constexpr std::chrono::milliseconds kBetweenLooks{15};
 constexpr std::size_t kSnapshots = 2;
 /// Of each cell: its people, a second's worth of its cards and events, and records that bear its
 /// name, which all come at once after each new connection; what the ledger has to say.

@@ -33,7 +33,7 @@ class CellLink final : public Sink {
  public:
   /// `on_view` runs on the link's thread after each of our messages, of which there are at most 33
   /// a second, whatever the pipeline's rate, and, without SiteView::shown, when neighbours have
-  /// told of people in between, at most every 10 ms; must not wait.
+  /// told of people in between, at most every 15 ms; must not wait.
   CellLink(LinkConfig config, std::shared_ptr<const Clock> clock,
            std::function<void(std::shared_ptr<const site::SiteView>)> on_view);
   ~CellLink() override;

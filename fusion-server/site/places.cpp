@@ -11,6 +11,7 @@
 #include "common/geometry/error_radius.h"
 #include "common/time/clock_estimate.h"
 #include "fusion-server/registration/adjoint.h"
+#include "fusion-server/site/joint_places.h"
 #include "fusion-server/site/loops.h"
 
 namespace chorus::site {
@@ -24,6 +25,8 @@ constexpr double kEye = 2.0;  // [m] by which the space of a cell is taken to be
 constexpr double kExactPlace = 1e-3;  // [m]
 constexpr double kExactYaw = deg(0.01);
 constexpr double kAnywhere = 1e6;  // [m]
+/// How well the solver's clocks are known where joint_places() begins: hardly [s].
+constexpr double kWalkClock = 0.3;
 
 SensorFrame frame_of(const CellPeople& people) {
   SensorFrame frame;
@@ -50,9 +53,8 @@ registration::RegistrationConfig solver_config(const PlacesConfig& config) {
   solver.along_ratio = 1.0;  // a cell has no line of sight
   solver.min_distance = 0.0;
   solver.max_distance = kAnywhere;
-  solver.max_position = config.max_radius;
-  // By as much may a place vary with the clocks, too.
-  solver.good_position = config.max_radius;
+  // What is found is where joint_places() begins, which says how well it is known.
+  solver.max_position = solver.good_position = kAnywhere;
   solver.find_large_bias = false;
   solver.latency_sigma = Duration{0};
   solver.master = config.origin;
@@ -118,9 +120,7 @@ SitePlaces places_of(const Registration& found, std::uint64_t version) {
   places.origin = found.master;
   for (const auto& [cell, place] : found.sensors) {
     places.cells.push_back(place_of(found, cell, version));
-    places.radius.push_back(radius_on_floor(places.cells.back().covariance));
   }
-  places.links = links_of(found.edges);
   for (const auto& [cell, verdict] : found.verdicts) {
     if (found.sensors.contains(cell)) continue;
     std::string reason = verdict.reasons.empty()
@@ -130,6 +130,68 @@ SitePlaces places_of(const Registration& found, std::uint64_t version) {
     places.refused.push_back({cell, std::move(reason)});
   }
   return places;
+}
+
+struct Walked {
+  std::vector<WalkTrack> tracks;
+  std::vector<CellPath> paths;
+  Timestamp last;
+};
+
+Walked walked_by(const std::vector<CellWalk>& walks) {
+  Walked all;
+  for (const CellWalk& walk : walks) {
+    WalkTrack track{walk.cell, {}};
+    for (const CellPeople& each : walk.seen) track.frames.push_back(frame_of(each));
+    if (!walk.seen.empty()) all.last = std::max(all.last, walk.seen.back().at);
+    all.tracks.push_back(std::move(track));
+    all.paths.push_back(path_of(walk));
+  }
+  return all;
+}
+
+struct Found {
+  SitePlaces places;
+  std::vector<PairwiseRegistration> pairs;
+};
+
+/// Takes out the cells whose place is known too badly.
+void refuse_wide(SitePlaces& places, const PlacesConfig& config) {
+  std::vector<CellPlace> kept;
+  for (CellPlace& cell : places.cells) {
+    const double radius = radius_on_floor(cell.covariance);
+    if (radius <= config.max_radius) {
+      kept.push_back(std::move(cell));
+      places.radius.push_back(radius);
+      continue;
+    }
+    places.refused.push_back(
+        {cell.cell, fmt::format("it would be placed only to within {:.2f} m, of {:.2f} m allowed: "
+                                "walk to and fro where it and a neighbour both see you",
+                                radius, config.max_radius)});
+  }
+  places.cells = std::move(kept);
+}
+
+/// The places that the solver found, made better with all cells and clocks at once.
+Found all_together(const Registration& found, std::span<const CellPath> paths,
+                   const PlacesConfig& config) {
+  Found out{places_of(found, config.version), {}};
+  std::ranges::partition(out.places.cells,
+                         [&](const CellPlace& each) { return each.cell == out.places.origin; });
+  if (auto joint = joint_places(paths, out.places.cells, kWalkClock)) {
+    out.pairs = pairs_of(paths, *joint);
+    out.places.cells = std::move(joint->cells);
+  }
+  refuse_wide(out.places, config);
+  std::erase_if(out.pairs, [&](const PairwiseRegistration& pair) {
+    const auto placed = [&](const CellId& cell) {
+      return std::ranges::count(out.places.cells, cell, &CellPlace::cell) > 0;
+    };
+    return !placed(pair.target) || !placed(pair.source);
+  });
+  out.places.links = links_of(out.pairs);
+  return out;
 }
 
 CellRefusal refusal(const Misfit& misfit) {
@@ -147,14 +209,7 @@ CellRefusal refusal(const Misfit& misfit) {
 
 Result<SitePlaces> places_from_walks(const std::vector<CellWalk>& walks,
                                      const PlacesConfig& config) {
-  std::vector<WalkTrack> tracks;
-  Timestamp last;
-  for (const CellWalk& walk : walks) {
-    WalkTrack track{walk.cell, {}};
-    for (const CellPeople& each : walk.seen) track.frames.push_back(frame_of(each));
-    if (!walk.seen.empty()) last = std::max(last, walk.seen.back().at);
-    tracks.push_back(std::move(track));
-  }
+  auto [tracks, paths, last] = walked_by(walks);
   std::vector<CellRefusal> misfits;
   while (tracks.size() > 1) {
     const Registration found = registration::solve(tracks, last, solver_config(config));
@@ -165,11 +220,12 @@ Result<SitePlaces> places_from_walks(const std::vector<CellWalk>& walks,
                       "each two neighbours, to and fro",
                       fmt::join(found.reasons, "; ")));
     }
-    const auto misfit = misfit_of(found.edges, {config.loop_sigmas, config.least_loop});
+    Found together = all_together(found, paths, config);
+    const auto misfit = misfit_of(together.pairs, {config.loop_sigmas, config.least_loop});
     if (!misfit) {
-      SitePlaces places = places_of(found, config.version);
+      SitePlaces& places = together.places;
       places.refused.insert(places.refused.end(), misfits.begin(), misfits.end());
-      return places;
+      return std::move(places);
     }
     misfits.push_back(refusal(*misfit));
     std::erase_if(tracks, [&](const WalkTrack& each) { return each.sensor == misfit->cell; });

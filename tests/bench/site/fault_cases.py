@@ -58,6 +58,7 @@ def partition(hall, path, seconds):
     """Cell b and the store cannot be reached from one another; what was sent comes afterwards, all at once."""
     path.cut()
     seen = watch_ids(hall, seconds)
+    assert hall.states("a").count("silent") == 1, "a hears b though nothing passes"
     path.heal()
     return seen
 

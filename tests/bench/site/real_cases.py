@@ -87,15 +87,22 @@ class Steps:
         self.last = [*self.last[-7:], now]
 
 
+def share_of_core(pid, seconds):
+    begin = cpu_seconds(pid)
+    time.sleep(seconds)
+    return (cpu_seconds(pid) - begin) / seconds
+
+
 def own_ages_alone(bin_folder, sensors, seconds):
-    """Of one cell's own frame without a site [ms], and its share of a core."""
+    """Of one cell's own frame without a site [ms], and its share of a core with one reader and with none."""
     with RealHall(bin_folder, 1, sensors) as hall:
         hall.start_cell(0, hall.start_sensors(0), in_site=False)
         wait_for("the cell answers", lambda: get(hall.urls["a"] + "frame")["capturedNanoseconds"])
         time.sleep(5)
+        unread = share_of_core(hall.fusion_pid("a"), seconds)
         ages, begin = Ages(), cpu_seconds(hall.fusion_pid("a"))
         listen({"frame-a": Stream(hall.urls["a"], "frame")}, seconds, ages.take)
-        return ages.own, (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds
+        return ages.own, (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds, unread
 
 
 def line(bin_folder, quick):
@@ -103,13 +110,14 @@ def line(bin_folder, quick):
     with RealHall(bin_folder, cells, sensors) as hall:
         hall.start_all()
         time.sleep(5)
+        cpu_alone_in_site = share_of_core(hall.fusion_pid("a"), seconds / 3)  # nobody reads
         ages, steps, nats = Ages(), Steps(), NatsReader(hall.server_port, "reader", hall.password("reader"), "chorus.hall.*.people")
         sources = {name: Stream(hall.urls[name], "site/people/") for name in hall.names}
         sources |= {"nats": nats, "frame-a": Stream(hall.urls["a"], "frame"), "site": Stream(hall.urls["a"], "site/frame")}
         begin = cpu_seconds(hall.fusion_pid("a"))
         listen(sources, seconds, lambda name, *said: steps.take(said[1]) if name == "site" else ages.take(name, *said))
         cpu = (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds
-    alone, cpu_alone = own_ages_alone(bin_folder, sensors, seconds / 2)
+    alone, cpu_alone, cpu_unread = own_ages_alone(bin_folder, sensors, seconds / 2)
     rows = [["age_neighbour_p50", percentile(ages.site, 0.5), "ms"], ["age_neighbour_p99", percentile(ages.site, 0.99), "ms"],
             ["age_nats_p50", percentile(ages.nats, 0.5), "ms"], ["age_nats_p99", percentile(ages.nats, 0.99), "ms"],
             ["age_ratio_p50", percentile(ages.site, 0.5) / percentile(ages.nats, 0.5), ""],
@@ -118,7 +126,8 @@ def line(bin_folder, quick):
             ["handovers", len(steps.moved_mm), ""], ["handover_moved_max", max(steps.moved_mm, default=math.nan), "mm"],
             ["handover_fading_max", max(steps.fading_mm, default=math.nan), "mm"], ["elsewhere_moved_p99", percentile(steps.usual_mm, 0.99), "mm"],
             ["handover_stated_min", min(steps.stated_mm, default=math.nan), "mm"], ["handover_gap_max", max(steps.late_ms, default=math.nan), "ms"], ["frame_gap_p99", percentile(steps.period, 0.99), "ms"],
-            ["core_with_site_and_readers", 100 * cpu, "%"], ["core_without_site", 100 * cpu_alone, "%"]]
+            ["core_with_site_and_readers", 100 * cpu, "%"], ["core_without_site", 100 * cpu_alone, "%"],
+            ["core_with_site_unread", 100 * cpu_alone_in_site, "%"], ["core_without_site_unread", 100 * cpu_unread, "%"]]
     return rows, [f"{cells} cells of {sensors} simulated sensors round one person, all on this machine"]
 
 

@@ -33,6 +33,9 @@ class SlowPath:
 
         self.loop.run_until_complete(listen())
         self.loop.run_forever()
+        for task in asyncio.all_tasks(self.loop):
+            task.cancel()
+        self.loop.run_until_complete(asyncio.sleep(0.1))
 
     async def _relay(self, reader, writer):
         try:
@@ -40,7 +43,10 @@ class SlowPath:
         except OSError:
             writer.close()
             return
-        await asyncio.gather(self._pump(reader, there[1]), self._pump(there[0], writer))
+        try:
+            await asyncio.gather(self._pump(reader, there[1]), self._pump(there[0], writer))
+        except asyncio.CancelledError:  # close()
+            pass
 
     async def _pump(self, reader, writer):
         waiting = asyncio.Queue()
