@@ -1,4 +1,4 @@
-"""Every file and folder that a recipe in CONTRIBUTING names exists, and every page of docs/how is listed in its index."""
+"""Every file, folder and table that a recipe in CONTRIBUTING names exists, and every page of docs/how is listed in its index."""
 
 import re
 import unittest
@@ -28,6 +28,14 @@ class Recipes(unittest.TestCase):
                 # A test of ctest is named like a path: docs/config_keys_test, golden/openapi_test.
                 exists = (ROOT / path).exists() or (ROOT / "tests" / f"{path}.py").exists()
                 self.assertTrue(exists, f"{name}: {path} does not exist")
+
+    def test_tables_that_it_names_are_in_the_files_that_it_names(self):
+        for name, text in recipes().items():
+            files = [ROOT / path for path in PATH.findall(text) if (ROOT / path).is_file()]
+            files += [ROOT / path.replace(".h", ".cpp") for path in PATH.findall(text) if path.endswith(".h") and (ROOT / path.replace(".h", ".cpp")).is_file()]
+            source = "\n".join(file.read_text() for file in files)
+            for table in re.findall(r"`(k[A-Z][A-Za-z]*|for_each_output|OutputsConfig|READERS)`", text):
+                self.assertTrue(re.search(rf"\b{table}\b", source), f"{name}: {table} is in none of its files")
 
     def test_pages_of_how_are_listed(self):
         index = (ROOT / "docs/how/README.md").read_text()
