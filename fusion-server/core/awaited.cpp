@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "fusion-server/core/coverage.h"
-#include "fusion-server/registration/guessed_depth.h"
 
 namespace chorus::core {
 
@@ -53,24 +52,22 @@ bool say_silent(const Situation& s, std::vector<std::string>& out) {
 
 enum class Walker { TooFew, Crowd, Alone };
 
-/// A camera without depth and without a place: no walk will give it one.
-bool hopeless(const Situation& s, const SensorId& sensor) {
-  return s.last_seen.sends_rays_alone(sensor) && !s.registration.sensors.contains(sensor);
-}
-
-/// Reports the cameras that no walk can place; true when too few other sensors remain for a walk.
-bool say_hopeless(const Situation& s, std::vector<std::string>& out) {
-  const auto cameras = those(s, [&](const SensorId& sensor) { return hopeless(s, sensor); });
-  if (cameras.empty()) return false;
-  out.push_back(registration::advice_on_rays_alone(named(cameras), cameras.size() > 1));
-  return cameras.size() + 2 > s.sensors.size();
+/// Reports a camera without depth that stands alone: no walk places it.
+bool say_lone_camera(const Situation& s, std::vector<std::string>& out) {
+  if (s.sensors.size() != 1) return false;
+  const SensorId& only = *s.sensors.begin();
+  if (!s.last_seen.sends_rays_alone(only) || s.registration.sensors.contains(only)) return false;
+  out.push_back(fmt::format(
+      "sensor {} sends directions without depth, which one camera alone cannot place: add a second "
+      "one, or switch device.camera.depth_from_size on there",
+      only.str()));
+  return true;
 }
 
 /// Reports what is missing for a walk: too few sensors see somebody, or all of them several people.
 Walker say_walker(const Situation& s, std::vector<std::string>& out) {
-  const auto seeing = those(s, [&](const SensorId& sensor) {
-    return s.last_seen.bodies(sensor, s.now) > 0 && !hopeless(s, sensor);
-  });
+  const auto seeing =
+      those(s, [&](const SensorId& sensor) { return s.last_seen.bodies(sensor, s.now) > 0; });
   const auto crowded =
       those(s, [&](const SensorId& sensor) { return s.last_seen.bodies(sensor, s.now) > 1; });
   const std::size_t enough = std::min<std::size_t>(2, s.sensors.size());
@@ -98,7 +95,6 @@ void say_uncovered(const Situation& s, std::vector<std::string>& out) {
   if (s.session->elapsed < kAWhile) return;
   std::set<SensorId> seeing = s.last_seen.seeing(s.now);
   for (const PairCoverage& pair : s.session->pairs) seeing.insert({pair.first, pair.second});
-  std::erase_if(seeing, [&](const SensorId& sensor) { return hopeless(s, sensor); });
   auto more = needs(s.session->pairs, seeing, s.wanted);
   more.resize(std::min(more.size(), kAtOnce));
   std::ranges::move(more, std::back_inserter(out));
@@ -199,7 +195,7 @@ std::vector<std::string> awaited(const Situation& s) {
   if (!missing.empty() && !s.registration.sensors.empty()) {
     out.push_back(named(missing) + (missing.size() == 1 ? " has" : " have") + " no place yet");
   }
-  if (say_silent(s, out) || say_hopeless(s, out)) return out;
+  if (say_silent(s, out) || say_lone_camera(s, out)) return out;
   const Walker walker = say_walker(s, out);
   if (s.session != nullptr) {
     say_session(s, walker, out);

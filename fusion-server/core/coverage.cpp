@@ -14,17 +14,19 @@ using std::chrono::milliseconds;
 
 // Two sensors saw somebody together if their frames were received within this time.
 constexpr Duration kTogether = milliseconds(40);
-constexpr double kCell = 0.5;            // [m]
-constexpr std::size_t kMostCells = 400;  // per sensor, 10 x 10 m
+constexpr double kCell = 0.5;             // [m]
+constexpr double kNominalDistance = 3.0;  // [m]
+constexpr std::size_t kMostCells = 400;   // per sensor, 10 x 10 m
 // Common views per second, at the frame rate of most sensors.
 constexpr double kRate = 30.0;
 
-/// The neck of the only body; none if there are several, or if it is not seen.
+/// The neck of the only body; none if there are several, or if it is not seen.  On a ray it counts
+/// as three metres away: enough to tell whether somebody walked.
 std::optional<Eigen::Vector3d> neck_of(const SensorFrame& frame) {
   if (frame.bodies.size() != 1) return std::nullopt;
   const Joint& neck = frame.bodies.front().skeleton[JointId::Neck];
-  if (!neck.seen()) return std::nullopt;
-  return neck.position;
+  if (!neck.given()) return std::nullopt;
+  return neck.seen() ? neck.position : Eigen::Vector3d(kNominalDistance * neck.position);
 }
 
 int cell_of(double coordinate) { return static_cast<int>(std::floor(coordinate / kCell)); }

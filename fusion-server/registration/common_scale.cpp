@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -125,10 +126,11 @@ Result<Scale> scale_of(double stature, const std::vector<Body>& bodies) {
 }
 
 /// Positions and lengths times the factor; the covariance also takes the factor's own error.
-void enlarge(Extrinsics& place, const Scale& scale) {
+/// Rays stay as they are.
+void enlarge(Extrinsics& place, const Scale& scale, bool rays) {
   const Eigen::Vector3d t = scale.factor * place.world_from_sensor.translation();
   place.world_from_sensor.translation() = t;
-  place.scale *= scale.factor;
+  if (!rays) place.scale *= scale.factor;
   place.error *= scale.factor;
   place.next_error *= scale.factor;
   place.covariance.bottomRows<3>() *= scale.factor;
@@ -204,12 +206,14 @@ Registration with_scale(Registration found, const std::vector<WalkTrack>& walk,
                         const RegistrationConfig& config) {
   const bool usable = found.verdict == Verdict::Good || found.verdict == Verdict::Provisional;
   if (!usable || found.sensors.size() < 2) return found;
+  std::set<SensorId> rays;
   for (const WalkTrack& track : walk) {
     if (found.sensors.contains(track.sensor) && !guesses_depth(track)) return found;
+    if (track.directions) rays.insert(track.sensor);
   }
   const auto known = known_scale(found, walk, config);
   const Scale scale = known.value_or(Scale{});
-  for (auto& [sensor, place] : found.sensors) enlarge(place, scale);
+  for (auto& [sensor, place] : found.sensors) enlarge(place, scale, rays.contains(sensor));
   for (PairwiseRegistration& edge : found.edges) enlarge(edge, scale.factor);
   if (!known) {
     doubt(found,

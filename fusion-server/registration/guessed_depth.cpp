@@ -6,6 +6,7 @@
 
 #include "common/base/units.h"
 #include "common/body/guessed_depth.h"
+#include "fusion-server/registration/ray_points.h"
 
 namespace chorus::registration {
 namespace {
@@ -23,17 +24,15 @@ constexpr double kCameraDistance = 12.0;  // [m] pictures show people as far as 
 // [m] 95 %.  With a larger radius two cameras would show one person at two places, and a place
 // would be called provisional that is only a direction.
 constexpr double kCameraPosition = 0.5;
+// Networks on small computers find people 8 to 30 times a second.
+constexpr Duration kCameraGap = std::chrono::milliseconds(200);
+constexpr const char* kWithoutDepth =
+    " sends directions without depth, which this method does not place: state where it stands in "
+    "registration.file";
 
 bool saw_somebody(const WalkTrack& track) {
   return std::ranges::any_of(track.frames,
                              [](const SensorFrame& frame) { return !frame.bodies.empty(); });
-}
-
-bool sends_rays_alone(const WalkTrack& track) {
-  const auto bears = [](const BodyFrame& body) { return has_rays_alone(body.skeleton.joints); };
-  return saw_somebody(track) && std::ranges::all_of(track.frames, [&](const SensorFrame& frame) {
-           return std::ranges::all_of(frame.bodies, bears);
-         });
 }
 
 }  // namespace
@@ -74,14 +73,8 @@ RegistrationConfig suited_to(const std::vector<WalkTrack>& walk, const Registrat
   suited.max_speed = std::max(config.max_speed, kCameraSpeed);
   suited.max_distance = std::max(config.max_distance, kCameraDistance);
   suited.max_position = std::max(config.max_position, kCameraPosition);
+  suited.max_gap = std::max(config.max_gap, kCameraGap);
   return suited;
-}
-
-std::string advice_on_rays_alone(std::string_view who, bool several) {
-  return fmt::format(
-      "{} {} directions without depth, which no walk can place: switch "
-      "device.camera.depth_from_size on there, or state where cameras stand in registration.file",
-      who, several ? "send" : "sends");
 }
 
 bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result) {
@@ -96,9 +89,11 @@ bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result) 
       others = others || saw_somebody(track);
       continue;
     }
-    const std::string reason = advice_on_rays_alone("sensor " + track.sensor.str(), false);
+    const std::string reason =
+        track.objection.empty() ? "sensor " + track.sensor.str() + kWithoutDepth : track.objection;
     result.verdicts[track.sensor] = {Verdict::Refused, {reason}};
-    result.reasons.push_back(reason);
+    if (std::ranges::find(result.reasons, reason) == result.reasons.end())
+      result.reasons.push_back(reason);
   }
   const bool in_vain = !others && !result.reasons.empty();
   if (in_vain) result.verdict = Verdict::Refused;

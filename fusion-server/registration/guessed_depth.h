@@ -3,11 +3,8 @@
 // They know a joint's place to centimetres across the line of sight and to decimetres along it.
 // Their frames say so: the stated error along the line of sight is a fraction of the distance.  A
 // walk that only such cameras saw is registered by directions, almost as by rays.  Cameras that
-// send nothing but rays are not registered at all: this room says so.
+// send nothing but rays are given depths first (ray_depths.h).
 #pragma once
-
-#include <string>
-#include <string_view>
 
 #include "fusion-server/registration/registration.h"
 
@@ -22,12 +19,8 @@ namespace chorus::registration {
                                            const RegistrationConfig& config);
 
 /// True if no place can come of this walk: no frame came, or all sensors that saw somebody are
-/// cameras that send rays alone.  Each such camera, also one beside other sensors, is `Refused` in
-/// `result` with what to do about it.
+/// cameras that send rays to which no depth could be given.  Each such camera, also one beside
+/// other sensors, is `Refused` in `result` with its objection.
 [[nodiscard]] bool nothing_to_solve(const std::vector<WalkTrack>& walk, Registration& result);
-
-/// What to do about sensors that send rays alone: a sentence about `who`, "sensor s1" (not several)
-/// or "sensors s1 and s2".
-[[nodiscard]] std::string advice_on_rays_alone(std::string_view who, bool several);
 
 }  // namespace chorus::registration

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/base/units.h"
@@ -19,6 +20,9 @@ namespace chorus::registration {
 struct WalkTrack {
   SensorId sensor;
   std::vector<SensorFrame> frames;
+  /// True if the joints were directions without depth, which the walk gave (ray_depths.h).
+  bool directions = false;
+  std::string objection = {};  ///< Why directions could not be given a depth; a sentence.
 };
 
 enum class PairMethod {

@@ -4,6 +4,7 @@
 #include "fusion-server/registration/latency.h"
 #include "fusion-server/registration/overruled_clocks.h"
 #include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/ray_depths.h"
 #include "fusion-server/registration/registration.h"
 #include "fusion-server/registration/time_offset.h"
 
@@ -27,8 +28,9 @@ Registration solve_as_stated(const std::vector<WalkTrack>& walk, Timestamp now,
 
 }  // namespace
 
-Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
+Registration solve(const std::vector<WalkTrack>& seen, Timestamp now,
                    const RegistrationConfig& wanted) {
+  const std::vector<WalkTrack> walk = with_ray_depths(seen, wanted);
   const RegistrationConfig config = suited_to(walk, wanted);
   const auto solved = [&](const std::vector<WalkTrack>& tracks) {
     return solve_as_stated(tracks, now, config);

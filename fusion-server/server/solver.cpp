@@ -19,6 +19,7 @@
 #include "fusion-server/registration/latency.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
+#include "fusion-server/registration/ray_depths.h"
 #include "fusion-server/registration/time_offset.h"
 
 namespace chorus::server {
@@ -114,7 +115,8 @@ Registration solve_pairs_first(const std::vector<WalkTrack>& walk, const Moment&
 }
 
 Registration solve_walk(const core::SolveJob& job, Timestamp now) {
-  std::vector<WalkTrack> walk = core::assembled(job.walk);
+  std::vector<WalkTrack> walk =
+      registration::with_ray_depths(core::assembled(job.walk), job.config);
   const registration::RegistrationConfig config = registration::suited_to(walk, job.config);
   const registration::PairSearch search{
       [&] { return job.stop.stop_requested(); },

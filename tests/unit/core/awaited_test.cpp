@@ -54,18 +54,12 @@ TEST_F(Awaited, NoSensorsAndDeadSensors) {
   EXPECT_THAT(said(), ElementsAre(HasSubstr("no sensors are configured")));
 }
 
-TEST_F(Awaited, NobodyIsSentWalkingForCamerasWithoutDepth) {
+TEST_F(Awaited, CamerasWithoutDepthAreWalkedForLikeOthersUnlessThereIsOnlyOne) {
   for (const char* camera : {"s1", "s2", "s3"}) see_rays(camera);
-  session_.emplace();
-  session_->elapsed = 20.0;
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("sensors s1, s2 and s3 send directions without depth, "
-                                            "which no walk can place")));
-  see("s1", 1);
-  see("s2", 1);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("sensor s3 sends directions without depth"),
-                                  HasSubstr("keep walking"), HasSubstr("sensor see you")))
-      << "the camera is not among those to walk before";
-  for (const char* sensor : {"s1", "s2", "s3"}) place(sensor);
+  EXPECT_THAT(said(), ElementsAre("a session starts by itself"));
+  sensors_ = {sensor_id("s1")};
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("one camera alone cannot place")));
+  place("s1");
   EXPECT_THAT(said(), Not(Contains(HasSubstr("without depth"))));
 }
 

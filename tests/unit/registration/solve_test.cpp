@@ -55,35 +55,6 @@ TEST(Solve, AWalkOfTwentySecondsIsOne) {
               ::testing::Not(Contains(HasSubstr("lasted only"))));
 }
 
-/// The same walk as a camera without depth sees it.
-WalkTrack as_rays(WalkTrack track) {
-  for (SensorFrame& frame : track.frames) {
-    for (Joint& joint : frame.bodies[0].skeleton.joints) {
-      joint.position.normalize();
-      joint.measurement = Measurement::Ray;
-    }
-  }
-  return track;
-}
-
-TEST(Solve, CamerasWithoutDepthAreNamedAsWhatNoWalkCanPlace) {
-  std::vector<WalkTrack> walk = ring(2, {.length = 2});
-  for (WalkTrack& track : walk) track = as_rays(std::move(track));
-  const Registration cameras = solve(walk, kWalkStart, {});
-  EXPECT_EQ(cameras.verdict, Verdict::Refused);
-  EXPECT_THAT(cameras.reasons,
-              testing::ElementsAre(HasSubstr("s0 sends directions without depth"),
-                                   HasSubstr("s1 sends directions without depth")));
-  EXPECT_EQ(cameras.verdicts.at(sensor(1)).verdict, Verdict::Refused);
-
-  std::vector<WalkTrack> mixed = ring(3, {.length = 6});
-  mixed[2] = as_rays(std::move(mixed[2]));
-  const Registration beside = solve(mixed, kWalkStart, {});
-  EXPECT_EQ(beside.sensors.size(), 2u);
-  EXPECT_THAT(beside.verdicts.at(sensor(2)).reasons,
-              testing::ElementsAre(HasSubstr("no walk can place")));
-}
-
 TEST(Solve, AnotherEstimatorOfPairsTakesThePlaceOfOurs) {
   std::size_t asked = 0;
   const PairEstimator never = [&](const Walker& target, const Walker& source) {

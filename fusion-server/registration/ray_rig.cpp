@@ -1,0 +1,198 @@
+#include "fusion-server/registration/ray_rig.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "common/base/units.h"
+#include "fusion-server/registration/ray_views.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr std::size_t kMostPairs = 40;  // of the view graph, those with most in common
+constexpr std::size_t kStarts = 4;      // pairs to begin with, if the first leaves cameras out
+constexpr double kAgreement = 0.5;      // least share of rays that agree
+constexpr double kLeastParallax = deg(2);
+constexpr int kRough = 6;  // iterations after each camera
+constexpr int kFine = 25;
+
+/// A pair of cameras of the view graph.
+struct View {
+  std::size_t first = 0;
+  std::size_t second = 0;
+  TwoViews seen;
+  /// Rays that agree, times how well they cross.
+  [[nodiscard]] double worth() const {
+    return static_cast<double>(seen.agreeing) * std::sin(std::min(seen.parallax, deg(90)));
+  }
+};
+
+const RaySight* sight_of(const RayPoint& point, std::size_t camera) {
+  const auto found = std::ranges::find(point.seen, camera, &RaySight::camera);
+  return found == point.seen.end() ? nullptr : &*found;
+}
+
+CommonRays common_of(const std::vector<RayPoint>& points, std::size_t first, std::size_t second) {
+  CommonRays rays;
+  for (const RayPoint& point : points) {
+    const RaySight* a = sight_of(point, first);
+    const RaySight* b = sight_of(point, second);
+    if (a == nullptr || b == nullptr) continue;
+    rays.first.push_back(a->ray);
+    rays.second.push_back(b->ray);
+  }
+  return rays;
+}
+
+/// All pairs with enough in common, those with the most first.
+std::vector<std::pair<View, CommonRays>> graph_of(const std::vector<RayPoint>& points,
+                                                  std::size_t cameras) {
+  std::vector<std::pair<View, CommonRays>> graph;
+  for (std::size_t a = 0; a < cameras; ++a) {
+    for (std::size_t b = a + 1; b < cameras; ++b) {
+      CommonRays rays = common_of(points, a, b);
+      if (rays.first.size() >= kLeastCommon) graph.push_back({{a, b, {}}, std::move(rays)});
+    }
+  }
+  std::ranges::stable_sort(graph, [](const auto& x, const auto& y) {
+    return x.second.first.size() > y.second.first.size();
+  });
+  if (graph.size() > kMostPairs) graph.resize(kMostPairs);
+  return graph;
+}
+
+/// The pairs to begin with, best first; an Error if there is none.
+Result<std::vector<View>> starts_of(const std::vector<RayPoint>& points,
+                                    const std::vector<std::string>& names) {
+  const auto graph = graph_of(points, names.size());
+  if (graph.empty())
+    return fail(ErrorCode::NotFound, "rays",
+                fmt::format("no two of the cameras that send directions alone ({}) saw the person "
+                            "together for long enough: walk where two of them see you",
+                            fmt::join(names, ", ")));
+  std::vector<View> starts;
+  double widest = 0.0;
+  for (const auto& [pair, rays] : graph) {
+    const auto seen = two_views(rays);
+    if (!seen) continue;
+    widest = std::max(widest, seen->parallax);
+    if (seen->parallax < kLeastParallax) continue;
+    starts.push_back({pair.first, pair.second, *seen});
+  }
+  if (starts.empty() && widest > 0.0)
+    return fail(ErrorCode::Unavailable, "rays",
+                fmt::format("the cameras that send directions alone ({}) look from one place, or "
+                            "are only turned: directions without depth need cameras that stand "
+                            "apart",
+                            fmt::join(names, ", ")));
+  if (starts.empty())
+    return fail(ErrorCode::Conflict, "rays",
+                fmt::format("no two of the cameras that send directions alone ({}) agree about "
+                            "the walk: check their lenses and clocks, and walk alone",
+                            fmt::join(names, ", ")));
+  std::ranges::stable_sort(starts, std::greater{}, &View::worth);
+  return starts;
+}
+
+KnownPoints known_to(const std::vector<RayPoint>& points, std::size_t camera) {
+  KnownPoints known;
+  for (const RayPoint& point : points) {
+    const RaySight* own = sight_of(point, camera);
+    if (own == nullptr || !point.x) continue;
+    known.points.push_back(*point.x);
+    known.rays.push_back(own->ray);
+  }
+  return known;
+}
+
+/// The camera without a place that has the most rays to known joints.
+std::optional<std::pair<std::size_t, KnownPoints>> next_of(const RayRig& rig, std::size_t cameras) {
+  std::optional<std::pair<std::size_t, KnownPoints>> next;
+  for (std::size_t camera = 0; camera < cameras; ++camera) {
+    if (rig.places.contains(camera) || rig.refused.contains(camera)) continue;
+    KnownPoints known = known_to(rig.points, camera);
+    if (!next || known.points.size() > next->second.points.size())
+      next = {camera, std::move(known)};
+  }
+  return next;
+}
+
+/// Share of the camera's rays to known joints that count.
+double share_counted(const RayRig& rig, std::size_t camera) {
+  double counted = 0.0;
+  double all = 0.0;
+  for (const RayPoint& point : rig.points) {
+    const RaySight* own = sight_of(point, camera);
+    if (own == nullptr || !point.x) continue;
+    all += 1.0;
+    counted += own->counted ? 1.0 : 0.0;
+  }
+  return all > 0.0 ? counted / all : 0.0;
+}
+
+/// Places the camera among the joints that are known, or says why not.
+void attach(RayRig& rig, std::size_t camera, const KnownPoints& known, const std::string& name) {
+  const auto found = place_among(known);
+  if (!found && found.error().code == ErrorCode::NotFound) {
+    rig.refused[camera] = fmt::format(
+        "sensor {} saw the person together with the other cameras only briefly ({}): walk where it "
+        "and two others see you",
+        name, found.error().message);
+    return;
+  }
+  const RayPlaces before = rig.places;
+  if (found && found->agreeing >= kAgreement) {
+    rig.places[camera] = found->points_from_camera;
+    rig.misfit = adjust_rays(rig.points, rig.places, kRough);
+    if (share_counted(rig, camera) >= kAgreement) return;
+  }
+  rig.places = before;
+  rig.misfit = adjust_rays(rig.points, rig.places, 1);
+  rig.refused[camera] = fmt::format(
+      "sensor {} contradicts the other cameras: it followed somebody else, or its lens or its "
+      "clock is wrong; walk alone",
+      name);
+}
+
+RayRig grown_from(const View& start, const std::vector<RayPoint>& points,
+                  const std::vector<std::string>& names) {
+  RayRig rig;
+  rig.points = points;
+  rig.places[start.first] = Eigen::Isometry3d::Identity();
+  rig.places[start.second] = start.seen.first_from_second;
+  rig.misfit = adjust_rays(rig.points, rig.places, kFine);
+  while (const auto next = next_of(rig, names.size()))
+    attach(rig, next->first, next->second, names[next->first]);
+  rig.misfit = adjust_rays(rig.points, rig.places, kFine);
+  return rig;
+}
+
+std::size_t counted_rays(const RayRig& rig) {
+  std::size_t counted = 0;
+  for (const RayPoint& point : rig.points) {
+    if (!point.x) continue;
+    counted += static_cast<std::size_t>(std::ranges::count(point.seen, true, &RaySight::counted));
+  }
+  return counted;
+}
+
+}  // namespace
+
+Result<RayRig> rig_of(std::vector<RayPoint> points, const std::vector<std::string>& names) {
+  const auto starts = starts_of(points, names);
+  if (!starts) return pass(starts);
+  std::optional<RayRig> best;
+  for (std::size_t i = 0; i < std::min(kStarts, starts->size()); ++i) {
+    RayRig rig = grown_from((*starts)[i], points, names);
+    const bool better =
+        !best || rig.places.size() > best->places.size() ||
+        (rig.places.size() == best->places.size() && counted_rays(rig) > counted_rays(*best));
+    if (better) best = std::move(rig);
+    if (best->places.size() == names.size()) break;
+  }
+  return std::move(*best);
+}
+
+}  // namespace chorus::registration
