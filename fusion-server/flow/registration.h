@@ -34,6 +34,13 @@ struct Extrinsics {
   double scale = 1.0;
 };
 
+/// Covariances of the places of several sensors with each other: six rows for each, as
+/// Extrinsics::covariance.
+struct JointCovariance {
+  std::vector<SensorId> sensors;
+  Eigen::MatrixXd matrix;
+};
+
 enum class Verdict { None, Provisional, Good, Refused };
 
 /// How far one sensor's place can be trusted.
@@ -74,6 +81,8 @@ struct Registration {
   /// Only when the walk was asked for it (registration.depth_bias_sigma_m), or shows a large one;
   /// not stored.
   std::optional<WalkedDepthBias> depth_bias = {};
+  /// Only while cameras are being registered, until their scale is known (common_scale.h).
+  std::optional<JointCovariance> together = {};
 };
 
 /// What is added to the capture times of this sensor, whose frames state this clock_sigma, because

@@ -31,7 +31,6 @@ constexpr double kNearly = 1e-4;
 constexpr std::size_t kBiasTerms = 1'000'000;
 constexpr double kRidge = 1e-6;    // keeps the equations solvable where nothing is measured
 constexpr double kFarthest = 0.5;  // [m] times along_ratio: limit for moving a sensor, see near()
-constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
 constexpr double kIndependentAsSeen = 1.2;  // [1/s] independent instants per second, as seen
 constexpr double kIndependent = 6.0;        // [1/s] the same for points that are whitened fully
 // whiten() takes out at most the walk's length / this; with more, what is new is mostly noise.
@@ -57,7 +56,7 @@ std::vector<Station> stations_of(const Places& places, const Walkers& walkers, b
       station.floor = kOneFloor;
     } else if (station.master && walkers.guessed) {
       station.level_from_sensor = level(*walkers.guessed);
-      station.floor = kGuessedFloor;
+      station.level_held = true;
     }
     station.world_from_level = world_from_sensor * station.level_from_sensor.inverse();
     stations.push_back(station);
@@ -282,6 +281,7 @@ Adjusted adjusted(Adjustment& adjustment) {
     result.covariances[station.id] = covariance.block<6, 6>(at, at);
   }
   const Eigen::Index last = covariance.rows() - 1;
+  result.together = covariance.topLeftCorner(last, last);
   result.depth_bias = {adjustment.bias.present, std::sqrt(covariance(last, last))};
   return result;
 }

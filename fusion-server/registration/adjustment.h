@@ -26,7 +26,7 @@ using Places = std::map<SensorId, Eigen::Isometry3d>;
 struct Walkers {
   const std::map<SensorId, Walker>& all;
   SensorId master;
-  /// The master's floor where no sensor reports one: a guess, good to 2 deg and 50 mm.
+  /// The master's floor where no sensor reports one: a guess, to which the master is held.
   std::optional<FloorPlane> guessed = {};
   Stopped stopped = {};  ///< Asked before each iteration.
 };
@@ -35,6 +35,7 @@ struct Adjusted {
   Places places;  ///< The world is level, with its origin on the floor.
   /// Covariances of (omega, tau), applied on the world's side; only for sensors that took part.
   std::map<SensorId, Matrix6> covariances;
+  Eigen::MatrixXd together;  ///< The same of all places with each other, in their order.
   /// The configured depth bias, as corrected by the walk; or a large one that the walk shows, see
   /// found_bias.
   WalkedDepthBias depth_bias;

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "common/base/median.h"
 #include "common/body/stature.h"
+#include "common/geometry/error_radius.h"
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/walk_points.h"
 
@@ -125,17 +127,79 @@ Result<Scale> scale_of(double stature, const std::vector<Body>& bodies) {
                           stature, seen));
 }
 
-/// Positions and lengths times the factor; the covariance also takes the factor's own error.
-/// Rays stay as they are.
-void enlarge(Extrinsics& place, const Scale& scale, bool rays) {
-  const Eigen::Vector3d t = scale.factor * place.world_from_sensor.translation();
-  place.world_from_sensor.translation() = t;
-  if (!rays) place.scale *= scale.factor;
-  place.error *= scale.factor;
-  place.next_error *= scale.factor;
-  place.covariance.bottomRows<3>() *= scale.factor;
-  place.covariance.rightCols<3>() *= scale.factor;
-  place.covariance.bottomRightCorner<3, 3>() += scale.sigma * scale.sigma * t * t.transpose();
+/// Positions and lengths times the factor.  Rays stay as they are.
+void enlarge(Extrinsics& place, double factor, bool rays) {
+  place.world_from_sensor.translation() *= factor;
+  if (!rays) place.scale *= factor;
+  place.error *= factor;
+  place.next_error *= factor;
+  place.covariance.bottomRows<3>() *= factor;
+  place.covariance.rightCols<3>() *= factor;
+}
+
+/// The factor's own error, in each place by itself.
+void add_scale_error(Registration& found, double sigma) {
+  for (auto& [sensor, place] : found.sensors) {
+    const Eigen::Vector3d& t = place.world_from_sensor.translation();
+    place.covariance.bottomRightCorner<3, 3>() += sigma * sigma * t * t.transpose();
+  }
+}
+
+/// How all places change with the logarithm of the factor, seen from the master.
+Eigen::VectorXd growth_of(const Registration& found, const JointCovariance& together) {
+  Eigen::VectorXd growth = Eigen::VectorXd::Zero(together.matrix.rows());
+  const Eigen::Vector3d& master = found.sensors.at(found.master).world_from_sensor.translation();
+  for (std::size_t i = 0; i < together.sensors.size(); ++i) {
+    const auto place = found.sensors.find(together.sensors[i]);
+    if (place == found.sensors.end()) continue;
+    growth.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) =
+        place->second.world_from_sensor.translation() - master;
+  }
+  return growth;
+}
+
+/// The derivative of a distance by all places; zero if one of the two has none.
+Eigen::VectorXd slope_of(const KnownDistance& known, const Registration& found,
+                         const JointCovariance& together) {
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(together.matrix.rows());
+  const auto first = std::ranges::find(together.sensors, known.first);
+  const auto second = std::ranges::find(together.sensors, known.second);
+  if (first == together.sensors.end() || second == together.sensors.end()) return slope;
+  if (!found.sensors.contains(known.first) || !found.sensors.contains(known.second)) return slope;
+  const Eigen::Vector3d apart = found.sensors.at(known.second).world_from_sensor.translation() -
+                                found.sensors.at(known.first).world_from_sensor.translation();
+  if (!(apart.norm() > 0.0)) return slope;
+  slope.segment<3>(6 * (first - together.sensors.begin()) + 3) = -apart.normalized();
+  slope.segment<3>(6 * (second - together.sensors.begin()) + 3) = apart.normalized();
+  return slope;
+}
+
+/// The covariances of all places once the distances are known: the factor is open at first, and
+/// each distance closes it, P - P h (h^T P h + r)^-1 h^T P.
+void know_distances(Registration& found, JointCovariance together,
+                    const RegistrationConfig& config) {
+  const Eigen::VectorXd growth = growth_of(found, together);
+  Eigen::MatrixXd& all = together.matrix;
+  all += kUnknownScale * kUnknownScale * growth * growth.transpose();
+  for (const KnownDistance& known : config.known_distances) {
+    const Eigen::VectorXd slope = slope_of(known, found, together);
+    const Eigen::VectorXd pull = all * slope;
+    const double error = kMeasured * known.length;
+    const double variance = slope.dot(pull) + error * error;
+    if (variance > 0.0) all -= pull * pull.transpose() / variance;
+  }
+  for (std::size_t i = 0; i < together.sensors.size(); ++i) {
+    const auto place = found.sensors.find(together.sensors[i]);
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    if (place != found.sensors.end()) place->second.covariance = all.block<6, 6>(at, at);
+  }
+}
+
+void enlarge(JointCovariance& together, double factor) {
+  for (Eigen::Index row = 3; row < together.matrix.rows(); row += 6) {
+    together.matrix.middleRows<3>(row) *= factor;
+    together.matrix.middleCols<3>(row) *= factor;
+  }
 }
 
 void enlarge(PairwiseRegistration& edge, double factor) {
@@ -154,6 +218,21 @@ void doubt(Registration& found, std::string reason) {
   for (const auto& [sensor, place] : found.sensors) {
     Verdict& own = found.verdicts[sensor].verdict;
     if (own == Verdict::Good) own = Verdict::Provisional;
+  }
+}
+
+/// The places of cameras are judged here, where the common factor is no longer part of their error.
+void judge_places_of_cameras(Registration& found, const RegistrationConfig& config) {
+  for (const auto& [sensor, place] : found.sensors) {
+    const double radius = radius_on_floor(place.covariance);
+    if (radius <= config.good_position || sensor == found.master) continue;
+    std::string reason =
+        fmt::format("sensor {} is placed only to within {:.2f} m; walk longer or further out",
+                    sensor.str(), radius);
+    found.verdicts[sensor].verdict = Verdict::Provisional;
+    found.verdicts[sensor].reasons.push_back(reason);
+    found.verdict = Verdict::Provisional;
+    found.reasons.push_back(std::move(reason));
   }
 }
 
@@ -188,15 +267,13 @@ std::optional<Scale> measured_scale(Registration& found, const RegistrationConfi
   return Scale{sum / weights, 1.0 / std::sqrt(weights)};
 }
 
-/// The best length that is known; none: `found` says why.
-std::optional<Scale> known_scale(Registration& found, const std::vector<WalkTrack>& walk,
-                                 const RegistrationConfig& config) {
-  if (const auto measured = measured_scale(found, config)) return measured;
-  if (config.stature) {
-    auto scale = scale_of(*config.stature, bodies_of(found, walk, config));
-    if (scale) return *scale;
-    doubt(found, scale.error().message);
-  }
+/// By the stature; none: it is not known, or `found` says why it is of no use.
+std::optional<Scale> scale_by_stature(Registration& found, const std::vector<WalkTrack>& walk,
+                                      const RegistrationConfig& config) {
+  if (!config.stature) return std::nullopt;
+  auto scale = scale_of(*config.stature, bodies_of(found, walk, config));
+  if (scale) return *scale;
+  doubt(found, scale.error().message);
   return std::nullopt;
 }
 
@@ -204,6 +281,7 @@ std::optional<Scale> known_scale(Registration& found, const std::vector<WalkTrac
 
 Registration with_scale(Registration found, const std::vector<WalkTrack>& walk,
                         const RegistrationConfig& config) {
+  auto together = std::exchange(found.together, std::nullopt);
   const bool usable = found.verdict == Verdict::Good || found.verdict == Verdict::Provisional;
   if (!usable || found.sensors.size() < 2) return found;
   std::set<SensorId> rays;
@@ -211,9 +289,16 @@ Registration with_scale(Registration found, const std::vector<WalkTrack>& walk,
     if (found.sensors.contains(track.sensor) && !guesses_depth(track)) return found;
     if (track.directions) rays.insert(track.sensor);
   }
-  const auto known = known_scale(found, walk, config);
+  const auto measured = measured_scale(found, config);
+  const auto known = measured ? measured : scale_by_stature(found, walk, config);
   const Scale scale = known.value_or(Scale{});
-  for (auto& [sensor, place] : found.sensors) enlarge(place, scale, rays.contains(sensor));
+  for (auto& [sensor, place] : found.sensors) enlarge(place, scale.factor, rays.contains(sensor));
+  if (measured && together && found.sensors.contains(found.master)) {
+    enlarge(*together, scale.factor);
+    know_distances(found, std::move(*together), config);
+  } else {
+    add_scale_error(found, scale.sigma);
+  }
   for (PairwiseRegistration& edge : found.edges) enlarge(edge, scale.factor);
   if (!known) {
     doubt(found,
@@ -226,6 +311,7 @@ Registration with_scale(Registration found, const std::vector<WalkTrack>& walk,
                              "sensors would be better",
                              kSigmas95Percent * scale.sigma));
   }
+  if (config.cameras_alone) judge_places_of_cameras(found, config);
   return found;
 }
 

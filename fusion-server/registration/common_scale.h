@@ -5,7 +5,9 @@
 // distance m between two of them gives s = m / |t_a - t_b|; the stature of the person, less well,
 // by the lengths of leg and trunk.  Then every position t becomes s t, about the origin of the
 // world, and every point x of such a sensor s x, about the sensor's origin.  The variance of s is
-// added to each covariance: sigma^2 t t^T, rank one.  docs/decisions/0082-the-scale-of-cameras.md.
+// added to each covariance: sigma^2 t t^T, rank one; with measured distances the covariances of all
+// places with each other are conditioned on these instead, which leaves no common factor in them.
+// docs/decisions/0082-the-scale-of-cameras.md.
 #pragma once
 
 #include "fusion-server/registration/registration.h"

@@ -29,6 +29,10 @@ struct FloorPrior {
 
 inline constexpr FloorPrior kOneFloor{deg(0.4), mm(10)};
 
+/// A floor that was guessed from bodies.  What is wrong with it is common to all places, which are
+/// known relative to each other: it is told once, and in no sensor's covariance.
+inline constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
+
 /// The difference of two floors is less certain by sqrt(2).
 inline constexpr FloorPrior kTwoFloors{kOneFloor.tilt * std::numbers::sqrt2,
                                        kOneFloor.height* std::numbers::sqrt2};

@@ -24,6 +24,9 @@ constexpr double kCameraDistance = 12.0;  // [m] pictures show people as far as 
 // [m] 95 %.  With a larger radius two cameras would show one person at two places, and a place
 // would be called provisional that is only a direction.
 constexpr double kCameraPosition = 0.5;
+// [m] 95 %: a typical error of 60 mm, no more than joints of real cameras err by where places are
+// known (docs/benchmarks/camera.md).
+constexpr double kCameraGood = 0.15;
 // Networks on small computers find people 8 to 30 times a second.
 constexpr Duration kCameraGap = std::chrono::milliseconds(200);
 constexpr const char* kWithoutDepth =
@@ -55,7 +58,7 @@ bool guesses_depth(const WalkTrack& track) {
 
 RegistrationConfig suited_to(const std::vector<WalkTrack>& walk, const RegistrationConfig& config) {
   const auto measures = [](const WalkTrack& track) {
-    return saw_somebody(track) && !guesses_depth(track);
+    return saw_somebody(track) && !sends_rays_alone(track) && !guesses_depth(track);
   };
   const bool nobody = std::ranges::none_of(walk, saw_somebody);
   if (nobody || config.method != PairMethod::TimedRobust || std::ranges::any_of(walk, measures))
@@ -73,6 +76,8 @@ RegistrationConfig suited_to(const std::vector<WalkTrack>& walk, const Registrat
   suited.max_speed = std::max(config.max_speed, kCameraSpeed);
   suited.max_distance = std::max(config.max_distance, kCameraDistance);
   suited.max_position = std::max(config.max_position, kCameraPosition);
+  suited.good_position = std::max(config.good_position, kCameraGood);
+  suited.cameras_alone = true;
   suited.max_gap = std::max(config.max_gap, kCameraGap);
   return suited;
 }

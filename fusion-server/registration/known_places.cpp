@@ -64,6 +64,10 @@ void hold_gauge(PlaceEquations& equations, const std::vector<Station>& stations)
     const Eigen::Vector3d view = place.linear().col(2);
     const Matrix6 eye = at_point(place.translation());
     Normal normal;
+    if (stations[i].level_held) {
+      for (Eigen::Index row = 0; row < 6; ++row)
+        normal.add(eye.row(row), 0.0, 1.0 / (kGauge * kGauge));
+    }
     normal.add(eye.row(3), 0.0, 1.0 / (kGauge * kGauge));
     normal.add(eye.row(5), 0.0, 1.0 / (kGauge * kGauge));
     Row6 turn = Row6::Zero();

@@ -34,7 +34,7 @@ struct DepthBias {
 /// Adds each sensor's own floor.
 void add_floors(PlaceEquations& equations, const std::vector<Station>& stations);
 
-/// Holds the master's position on the floor, and its yaw.
+/// Holds the master's position on the floor, and its yaw; with `level_held` all of its place.
 void hold_gauge(PlaceEquations& equations, const std::vector<Station>& stations);
 
 /// Sensors with too few points must not move: their rows become the identity.

@@ -88,6 +88,9 @@ struct RegistrationConfig {
   std::optional<double> stature = {};  ///< Of the person who walks [m].
   /// Standard deviation of the latencies of sensors whose clocks are known; 0: not estimated.
   Duration latency_sigma = std::chrono::milliseconds(30);
+  /// Set by suited_to(): all sensors guess depth, so that none measures the floor, and what pairs
+  /// of them differ by says nothing about their places.
+  bool cameras_alone = false;
   std::optional<SensorId> master;  ///< Default: the sensor with the best connection to all others.
 
   bool operator==(const RegistrationConfig&) const = default;

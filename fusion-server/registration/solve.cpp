@@ -1,13 +1,11 @@
-#include "fusion-server/registration/registration.h"
+#include "fusion-server/registration/solve_work.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 
-#include "common/geometry/error_radius.h"
+#include "common/base/units.h"
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
 #include "fusion-server/registration/consensus.h"
@@ -20,43 +18,6 @@
 
 namespace chorus::registration {
 namespace {
-
-/// Why two sensors have no edge.
-struct Refusal {
-  SensorId target;
-  SensorId source;
-  Error error;
-};
-
-/// All intermediate results between the walk and the verdict.
-struct Work {
-  const std::vector<WalkTrack>& walk;
-  const RegistrationConfig& config;
-  const Stopped& stopped;
-  std::map<SensorId, Walker> walkers;
-  std::map<SensorId, const WalkTrack*> tracks;
-  std::vector<Refusal> refusals;
-  std::set<SensorId> outcasts;  ///< They contradict the others; the reason is noted.
-  Registration result;
-  bool doubtful = false;  ///< True if there is a doubt that concerns all places.
-  bool floor_guessed = false;
-
-  void doubt(std::string reason) {
-    doubtful = true;
-    note(std::move(reason));
-  }
-  /// Adds a doubt about the place of one sensor, or why it has none; the others stay good.
-  void doubt(const SensorId& sensor, std::string reason) {
-    result.verdicts[sensor].reasons.push_back(reason);
-    note(std::move(reason));
-  }
-
- private:
-  void note(std::string reason) {
-    if (std::ranges::find(result.reasons, reason) == result.reasons.end())
-      result.reasons.push_back(std::move(reason));
-  }
-};
 
 void reduce_tracks(Work& work) {
   for (const WalkTrack& track : work.walk) {
@@ -158,9 +119,22 @@ struct Placed {
   Matrix6 covariance = Matrix6::Zero();
 };
 
+/// Each sensor's rows and columns times its own matrix.
+template <class Of>
+void transform(JointCovariance& together, const Of& of) {
+  for (std::size_t i = 0; i < together.sensors.size(); ++i) {
+    const Matrix6 own = of(together.sensors[i]);
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    together.matrix.middleRows<6>(at) = (own * together.matrix.middleRows<6>(at)).eval();
+    together.matrix.middleCols<6>(at) =
+        (together.matrix.middleCols<6>(at) * own.transpose()).eval();
+  }
+}
+
 /// Levels the world again.  Where no floor was measured, the world may have tilted while sensors
 /// were adjusted.
-void level_by_bodies(const Work& work, const Places& places, std::map<SensorId, Placed>& all) {
+void level_by_bodies(Work& work, const Places& places, std::map<SensorId, Placed>& all) {
+  auto& together = work.result.together;
   const auto floor = floor_by_bodies(work, places);
   if (!floor) return;
   const Eigen::Isometry3d levelled = level(*floor);
@@ -169,6 +143,20 @@ void level_by_bodies(const Work& work, const Places& places, std::map<SensorId, 
     place.world_from_sensor = levelled * place.world_from_sensor;
     place.covariance = (turn * place.covariance * turn.transpose()).eval();
   }
+  if (together) transform(*together, [&](const SensorId&) { return turn; });
+}
+
+/// That no floor was measured is no doubt where no sensor could: then it is told once.
+void note_guessed_floor(Work& work) {
+  constexpr double kSigmas95 = 1.96;
+  if (!work.config.cameras_alone)
+    return work.doubt(
+        "no usable floor plane: the floor was guessed from the upright body and its feet");
+  work.tell(fmt::format(
+      "no sensor measures the floor: it was guessed from the upright body and its feet, so that "
+      "all "
+      "places together may be tilted by {:.0f} deg and {:.1f} m too high or too low (95 %)",
+      to_deg(kSigmas95 * kGuessedFloor.tilt), kSigmas95 * kGuessedFloor.height));
 }
 
 /// The places along the chains, on the common floor; then adjusted all together if configured.
@@ -176,7 +164,7 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   std::optional<FloorPlane> guessed;
   std::optional<FloorPlane> floor = floor_in_master(work, chains);
   if (!floor) {
-    work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
+    note_guessed_floor(work);
     Places in_master;
     for (const auto& [sensor, chain] : chains) in_master[sensor] = chain.master_from_sensor;
     floor = guessed = floor_by_bodies(work, in_master).value_or(FloorPlane{});
@@ -201,6 +189,11 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
     place.world_from_sensor = adjusted->places.at(sensor);
     if (adjusted->covariances.contains(sensor)) place.covariance = adjusted->covariances.at(sensor);
   }
+  if (work.config.cameras_alone) {
+    work.result.together = JointCovariance{{}, adjusted->together};
+    for (const auto& [sensor, place] : adjusted->places)
+      work.result.together->sensors.push_back(sensor);
+  }
   if (guessed) level_by_bodies(work, adjusted->places, all);
   if (adjusted->found_bias) work.doubt(advice_on(adjusted->depth_bias));
   return all;
@@ -208,7 +201,12 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
 
 void place_sensors(Work& work) {
   const std::map<SensorId, Chain> chains = best_chains(work.result.master, work.result.edges);
-  for (const auto& [sensor, found] : placed(work, chains)) {
+  const std::map<SensorId, Placed> all = placed(work, chains);
+  if (work.result.together)
+    transform(*work.result.together, [&](const SensorId& sensor) {
+      return at_point(all.at(sensor).world_from_sensor.translation());
+    });
+  for (const auto& [sensor, found] : all) {
     Extrinsics place;
     place.world_from_sensor = found.world_from_sensor;
     place.chain = chains.at(sensor).sensors;
@@ -224,149 +222,6 @@ void place_sensors(Work& work) {
       work.result.sensors.emplace(sensor, std::move(place));
     }
   }
-}
-
-/// Refuses sensors whose place is too uncertain.
-void refuse_wide(Work& work) {
-  const std::map<SensorId, Extrinsics> all = work.result.sensors;
-  for (const auto& [sensor, place] : all) {
-    const double radius = radius_on_floor(place.covariance);
-    if (radius <= work.config.max_position || place.chain.size() < 2) continue;
-    const SensorId& neighbour = place.chain[place.chain.size() - 2];
-    work.doubt(sensor,
-               fmt::format("sensor {} would be placed only to within {:.2f} m, of {:.2f} m "
-                           "allowed: walk where {} and {} both see you, and further to and fro",
-                           sensor.str(), radius, work.config.max_position,
-                           std::min(neighbour, sensor).str(), std::max(neighbour, sensor).str()));
-    work.result.sensors.erase(sensor);
-  }
-}
-
-bool linked(const Work& work, const SensorId& sensor) {
-  return work.result.sensors.contains(sensor);
-}
-
-/// Notes why this sensor is left out: why its pairs with linked sensors were refused.
-void explain_unlinked(Work& work, const SensorId& sensor) {
-  if (!work.result.verdicts[sensor].reasons.empty()) return;
-  std::vector<std::string> strangers;
-  std::vector<std::string> reasons;
-  for (const Refusal& refusal : work.refusals) {
-    if (refusal.target != sensor && refusal.source != sensor) continue;
-    const SensorId& other = refusal.target == sensor ? refusal.source : refusal.target;
-    if (!linked(work, other)) continue;
-    if (refusal.error.code == ErrorCode::NotFound) {
-      strangers.push_back(other.str());
-    } else {
-      reasons.push_back(refusal.error.message);
-    }
-  }
-  if (work.walkers.at(sensor).trail.frames.empty()) {
-    reasons = {why_empty(work.walkers.at(sensor).trail)};
-  } else if (strangers.size() == 1 && reasons.empty()) {
-    const auto [first, second] = std::minmax(sensor.str(), strangers.front());
-    reasons = {fmt::format("sensors {} and {} never saw the person together", first, second)};
-  } else if (reasons.empty() && strangers.empty()) {
-    reasons = {fmt::format("sensor {}'s pairs are all with sensors without a place", sensor.str())};
-  } else if (reasons.empty()) {
-    reasons = {fmt::format("sensor {} never saw the person together with any of {}", sensor.str(),
-                           fmt::join(strangers, ", "))};
-  }
-  for (std::string& reason : reasons) work.doubt(sensor, std::move(reason));
-}
-
-void explain_floor(Work& work, const SensorId& sensor) {
-  const WalkFloor& floor = work.walkers.at(sensor).floor;
-  if (!work.config.use_floor || floor.floor) return;
-  work.doubt(sensor,
-             fmt::format("sensor {}: {}, so its pitch, roll and height come from the walk alone",
-                         sensor.str(), floor.objection));
-}
-
-/// Length of the walk as seen by the sensor that watched it longest.
-Duration duration_of(const Work& work) {
-  Duration longest{};
-  for (const auto& [sensor, walker] : work.walkers) {
-    const auto& frames = walker.trail.frames;
-    if (!frames.empty()) {
-      longest = std::max(longest, frames.back().captured - frames.front().captured);
-    }
-  }
-  return longest;
-}
-
-/// Adds a doubt if the chain of a sensor contains pairs that do not agree well.
-void judge_chain(Work& work, const SensorId& sensor, const std::vector<SensorId>& chain) {
-  for (std::size_t i = 1; i < chain.size(); ++i) {
-    const PairwiseRegistration* edge = edge_between(work.result.edges, chain[i - 1], chain[i]);
-    if (edge == nullptr || edge->rms <= work.config.good_rms) continue;
-    work.doubt(
-        sensor,
-        fmt::format(
-            "sensors {} and {} differ by {:.3f} m rms along the walk; {:.3f} m would be good",
-            edge->target.str(), edge->source.str(), edge->rms, work.config.good_rms));
-  }
-}
-
-void judge_accuracy(Work& work) {
-  for (const auto& [sensor, place] : work.result.sensors) judge_chain(work, sensor, place.chain);
-  for (const auto& [sensor, place] : work.result.sensors) {
-    const double radius = radius_on_floor(place.covariance);
-    if (radius <= work.config.good_position) continue;
-    work.doubt(
-        sensor,
-        fmt::format("sensor {} is placed only to within {:.3f} m; walk longer or further out",
-                    sensor.str(), radius));
-  }
-  // The time from the first frame to the last is always slightly less than requested.
-  const Duration walked = std::chrono::round<std::chrono::seconds>(duration_of(work));
-  if (walked < work.config.good_duration) {
-    work.doubt(fmt::format("the walk lasted only {:.0f} s; {:.0f} s make a good registration",
-                           seconds(walked), seconds(work.config.good_duration)));
-  }
-}
-
-/// What few sensors agree on is no good registration of all.
-void judge_majority(Work& work) {
-  const std::size_t placed = work.result.sensors.size();
-  if (2 * placed <= work.walkers.size())
-    work.doubt(fmt::format("only {} of {} sensors have a place", placed, work.walkers.size()));
-}
-
-/// Sets the verdict of each sensor by the doubts about it, and that of all placed ones together.
-void pass_sentence(Work& work) {
-  work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
-  for (const auto& [sensor, walker] : work.walkers) {
-    SensorVerdict& own = work.result.verdicts[sensor];
-    const bool doubtful = work.doubtful || !own.reasons.empty();
-    own.verdict = doubtful ? Verdict::Provisional : Verdict::Good;
-    if (!linked(work, sensor)) {
-      own.verdict = Verdict::Refused;
-    } else if (doubtful) {
-      work.result.verdict = Verdict::Provisional;
-    }
-  }
-}
-
-void judge(Work& work) {
-  const std::size_t sensors = work.walkers.size();
-  for (const auto& [sensor, walker] : work.walkers) {
-    if (linked(work, sensor)) {
-      explain_floor(work, sensor);
-    } else {
-      explain_unlinked(work, sensor);
-    }
-  }
-  const bool nothing_linked = sensors > 1 && work.result.sensors.size() < 2;
-  if (nothing_linked) {
-    for (const auto& [sensor, walker] : work.walkers)
-      work.result.verdicts[sensor].verdict = Verdict::Refused;
-    work.result.verdict = Verdict::Refused;
-    return;
-  }
-  if (sensors > 1) judge_majority(work);
-  if (sensors > 1) judge_accuracy(work);
-  pass_sentence(work);
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ struct Station {
   Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
   FloorPrior floor = {};  ///< How well its own floor is known; zero: not at all.
   bool master = false;
-  bool fixed = false;  ///< True if it has too few common points to be moved.
+  bool level_held = false;  ///< Of the master where no floor is measured: tilt and height, too.
+  bool fixed = false;       ///< True if it has too few common points to be moved.
 
   [[nodiscard]] Eigen::Isometry3d world_from_sensor() const {
     return world_from_level * level_from_sensor;

@@ -112,6 +112,57 @@ TEST(CommonScale, OfAKnownDistanceIsExact) {
   }
 }
 
+/// All places with nothing but one common factor of 5 % in their errors.
+Registration of_one_factor() {
+  Registration found = exact();
+  JointCovariance together{{}, Eigen::MatrixXd::Zero(6 * kCameras, 6 * kCameras)};
+  Eigen::VectorXd growth = Eigen::VectorXd::Zero(6 * kCameras);
+  const Eigen::Vector3d master = found.sensors.at(found.master).world_from_sensor.translation();
+  for (auto& [id, place] : found.sensors) {
+    const auto at = static_cast<Eigen::Index>(6 * together.sensors.size() + 3);
+    growth.segment<3>(at) = 0.05 * (place.world_from_sensor.translation() - master);
+    place.covariance.bottomRightCorner<3, 3>() =
+        growth.segment<3>(at) * growth.segment<3>(at).transpose();
+    together.sensors.push_back(id);
+  }
+  together.matrix = growth * growth.transpose();
+  found.together = together;
+  return found;
+}
+
+TEST(CommonScale, OfAKnownDistanceLeavesNoCommonFactorInTheCovariances) {
+  RegistrationConfig config;
+  config.known_distances = {{sensor(2), sensor(0), true_distance(0, 2)}};
+  const Registration found = with_scale(of_one_factor(), cameras(), config);
+  EXPECT_FALSE(found.together);
+  for (int i = 1; i < kCameras; ++i) {
+    const Eigen::Matrix3d covariance =
+        found.sensors.at(sensor(i)).covariance.bottomRightCorner<3, 3>();
+    const double sigma = std::sqrt(covariance.trace());
+    EXPECT_NEAR(sigma, 0.005 * true_distance(0, i), 0.0002 * true_distance(0, i)) << i;
+  }
+  config.known_distances.clear();
+  const Registration open = with_scale(of_one_factor(), cameras(), config);
+  EXPECT_GT(std::sqrt(open.sensors.at(sensor(2)).covariance.bottomRightCorner<3, 3>().trace()),
+            0.05 * distance(exact(), 0, 2))
+      << "without a length the factor stays in";
+}
+
+TEST(CommonScale, PlacesOfCamerasAreJudgedWhenItIsKnown) {
+  RegistrationConfig config;
+  config.cameras_alone = true;
+  config.good_position = 0.15;
+  config.known_distances = {{sensor(2), sensor(0), true_distance(0, 2)}};
+  EXPECT_EQ(with_scale(of_one_factor(), cameras(), config).verdict, Verdict::Good);
+  Registration wide = of_one_factor();
+  wide.together->matrix.diagonal()[6 * 1 + 3] += 0.2 * 0.2;  // x of the second camera
+  const Registration found = with_scale(wide, cameras(), config);
+  EXPECT_EQ(found.verdict, Verdict::Provisional);
+  EXPECT_THAT(found.reasons, testing::ElementsAre(HasSubstr("s1 is placed only to within")));
+  EXPECT_EQ(found.verdicts.at(sensor(1)).verdict, Verdict::Provisional);
+  EXPECT_EQ(found.verdicts.at(sensor(2)).verdict, Verdict::Good);
+}
+
 TEST(CommonScale, OfAStatureComesFromLegsAndTrunk) {
   RegistrationConfig config;
   config.stature = kStature;

@@ -44,6 +44,14 @@ TEST(RayDepths, RegisterCamerasThatSendDirectionsAloneWithOneDistance) {
     EXPECT_GT(found.sensors.at(sensor(i)).world_from_sensor.translation().y(), 1.3)
         << "the floor is below the feet of the person";
   }
+  EXPECT_EQ(found.verdict, Verdict::Good);
+  EXPECT_THAT(found.reasons, ElementsAre(HasSubstr("no sensor measures the floor")))
+      << "told once, and no reason against any camera";
+  for (const auto& [id, place] : found.sensors) {
+    EXPECT_TRUE(found.verdicts.at(id).reasons.empty()) << id.str();
+    EXPECT_LT(std::sqrt(place.covariance(0, 0)), deg(1)) << "the tilt of all is not in each";
+    EXPECT_LT(radius_on_floor(place.covariance), 0.15);
+  }
 }
 
 TEST(RayDepths, OfAWalkWithoutALengthAreThoseOfAPersonOfTypicalSize) {
