@@ -21,6 +21,7 @@ constexpr std::array kCases{Case{"people", simulated_people, true},
                             Case{"eight-views-vicon", eight_views, false},
                             Case{"video", runner_speed, false},
                             Case{"one-left", one_left, false},
+                            Case{"rays-alone", rays_alone, false},
                             Case{"calibrate", lens_calibration, false}};
 
 }  // namespace

@@ -41,6 +41,8 @@ struct Agreement {
 [[nodiscard]] std::vector<std::filesystem::path> eight_view_takes();
 /// Measures where people are put whom one camera of four alone sees for two seconds.
 [[nodiscard]] Result<void> one_left(Report& report);
+/// Registers cameras that send rays alone: simulated, and real ones where that data is at hand.
+[[nodiscard]] Result<void> rays_alone(Report& report);
 /// Fuses the bundled videos with real processes.
 [[nodiscard]] Result<void> live_views(Report& report);
 /// Measures how many pictures a second a runner processes on one core.
