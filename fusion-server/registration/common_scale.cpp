@@ -293,7 +293,8 @@ Registration with_scale(Registration found, const std::vector<WalkTrack>& walk,
   const auto known = measured ? measured : scale_by_stature(found, walk, config);
   const Scale scale = known.value_or(Scale{});
   for (auto& [sensor, place] : found.sensors) enlarge(place, scale.factor, rays.contains(sensor));
-  if (measured && together && found.sensors.contains(found.master)) {
+  const bool joint = measured && together && found.sensors.contains(found.master);
+  if (joint) {
     enlarge(*together, scale.factor);
     know_distances(found, std::move(*together), config);
   } else {
@@ -306,7 +307,7 @@ Registration with_scale(Registration found, const std::vector<WalkTrack>& walk,
                       "distances may be {:.0f} % too long or too short; give one distance or a "
                       "stature (registration.known_distances, registration.stature_m)",
                       kSigmas95Percent * kUnknownScale));
-  } else if (scale.sigma >= kStatureScale) {
+  } else if (!joint && scale.sigma >= kStatureScale) {
     doubt(found, fmt::format("the scale is good to {:.0f} % only; a longer distance between two "
                              "sensors would be better",
                              kSigmas95Percent * scale.sigma));

@@ -1,4 +1,4 @@
-// The last part of ray_rig.h: all places together.
+// The last part of ray_rig.h: all places and joints together, by Levenberg and Marquardt.
 #include <algorithm>
 #include <cmath>
 
@@ -6,9 +6,7 @@
 
 #include "common/base/median.h"
 #include "common/geometry/rotation.h"
-#include "fusion-server/registration/point_elimination.h"
 #include "fusion-server/registration/ray_rig.h"
-#include "fusion-server/registration/tukey.h"
 
 namespace chorus::registration {
 namespace {
@@ -16,10 +14,194 @@ namespace {
 constexpr double kRayGate = 4.0;     // sigmas from which a ray does not count
 constexpr double kFirstGate = 12.0;  // ... at first, while the places are rough
 constexpr double kLeastMisfit = 0.1;
-// A ray's joint is known along it no better than this many times the error across: not at all.
-constexpr double kOpenDepth = 1e3;
-constexpr double kDamping = 1e-5;  // relative; also holds the factor that rays leave open
-constexpr double kFixed = 1e-7;    // [rad], and of the unit: nothing moves any more
+constexpr double kCauchy = 2.385;  // sigmas; has 95 % efficiency for Gaussian errors
+constexpr double kFalls = 1e-5;    // of the cost; with less nothing is gained any more
+constexpr double kFirstDamping = 1e-3;
+constexpr double kMostDamping = 1e6;
+constexpr double kMoreDamping = 5.0;
+constexpr double kLessDamping = 0.2;
+constexpr int kMeetings = 3;  // with the rays that count chosen anew
+
+using Row6 = Eigen::Matrix<double, 2, 6>;
+using Row3 = Eigen::Matrix<double, 2, 3>;
+
+/// A counted ray: what it is off, in its sigmas, and the derivatives of that by (turn, shift) of
+/// its camera about itself and by the joint.
+struct OffRay {
+  Eigen::Vector2d off;
+  Row6 by_camera;
+  Row3 by_joint;
+  double weight = 0.0;
+};
+
+Eigen::Matrix3d cross_with(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
+/// Two unit vectors across a ray.
+Row3 across(const Eigen::Vector3d& ray) {
+  Row3 rows;
+  rows.row(0) = ray.unitOrthogonal();
+  rows.row(1) = ray.cross(Eigen::Vector3d(rows.row(0)));
+  return rows;
+}
+
+/// Cauchy's loss of a squared residual, and what it weighs; `scale`: squared.
+double loss(double squared, double scale) { return scale * std::log1p(squared / scale); }
+
+OffRay off_ray(const RaySight& sight, const Eigen::Isometry3d& place, const Eigen::Vector3d& x,
+               double scale) {
+  const Eigen::Matrix3d turned = place.linear().transpose();
+  const Eigen::Vector3d seen = turned * (x - place.translation());
+  const double away = std::max(1e-9, seen.norm());
+  const Eigen::Vector3d direction = seen / away;
+  const Row3 rows = across(sight.ray) / sight.sigma;
+  const Row3 by_seen =
+      rows * (Eigen::Matrix3d::Identity() - direction * direction.transpose()) / away;
+  OffRay out;
+  out.off = rows * direction;
+  out.by_joint = by_seen * turned;
+  out.by_camera.leftCols<3>() = by_seen * cross_with(seen);
+  out.by_camera.rightCols<3>() = -out.by_joint;
+  out.weight = 1.0 / (1.0 + out.off.squaredNorm() / scale);
+  return out;
+}
+
+/// Sum of the losses of all counted rays; a joint behind a camera costs as the worst ray.
+double cost_of(const std::vector<RayPoint>& points, const RayPlaces& places, double scale) {
+  double sum = 0.0;
+  for (const RayPoint& point : points) {
+    if (!point.x) continue;
+    for (const RaySight& sight : point.seen) {
+      if (!sight.counted) continue;
+      const double off = ray_misfit(sight, places.at(sight.camera), *point.x);
+      sum += loss(off * off, scale);
+    }
+  }
+  return sum;
+}
+
+/// One joint's part of the normal equations.
+struct JointPart {
+  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  std::vector<std::pair<Eigen::Index, Eigen::Matrix<double, 6, 3>>> shared;  ///< With cameras.
+};
+
+/// The normal equations of the places (the first is held) and of the joints.
+struct RayEquations {
+  Eigen::MatrixXd places;
+  Eigen::VectorXd right;
+  std::vector<JointPart> joints;
+};
+
+RayEquations equations_of(const std::vector<RayPoint>& points, const RayPlaces& places,
+                          double scale) {
+  std::map<std::size_t, Eigen::Index> row;
+  for (const auto& [camera, place] : places)
+    row[camera] = 6 * (static_cast<Eigen::Index>(row.size()) - 1);
+  const Eigen::Index size = 6 * (static_cast<Eigen::Index>(places.size()) - 1);
+  RayEquations out{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), {}};
+  out.joints.reserve(points.size());
+  for (const RayPoint& point : points) {
+    JointPart& joint = out.joints.emplace_back();
+    if (!point.x) continue;
+    for (const RaySight& sight : point.seen) {
+      if (!sight.counted) continue;
+      const OffRay ray = off_ray(sight, places.at(sight.camera), *point.x, scale);
+      joint.own += ray.weight * ray.by_joint.transpose() * ray.by_joint;
+      joint.right -= ray.weight * ray.by_joint.transpose() * ray.off;
+      const Eigen::Index at = row.at(sight.camera);
+      if (at < 0) continue;
+      out.places.block<6, 6>(at, at) += ray.weight * ray.by_camera.transpose() * ray.by_camera;
+      out.right.segment<6>(at) -= ray.weight * ray.by_camera.transpose() * ray.off;
+      joint.shared.emplace_back(at, ray.weight * ray.by_camera.transpose() * ray.by_joint);
+    }
+  }
+  return out;
+}
+
+/// The equations of the places with the joints eliminated, and what is needed for these.
+struct ReducedEquations {
+  Eigen::MatrixXd places;
+  Eigen::VectorXd right;
+  std::vector<Eigen::Matrix3d> inverse;  ///< Of each joint's own part.
+};
+
+ReducedEquations reduced(const RayEquations& equations, double damping) {
+  ReducedEquations out{equations.places, equations.right, {}};
+  out.places.diagonal() *= 1.0 + damping;
+  out.places.diagonal().array() += 1e-12 * std::max(1e-9, out.places.diagonal().maxCoeff());
+  out.inverse.reserve(equations.joints.size());
+  for (const JointPart& joint : equations.joints) {
+    Eigen::Matrix3d own = joint.own;
+    own.diagonal() *= 1.0 + damping;
+    own.diagonal().array() += 1e-12 * std::max(1e-9, own.diagonal().maxCoeff());
+    const Eigen::Matrix3d& inverse = out.inverse.emplace_back(own.inverse());
+    for (const auto& [i, one] : joint.shared) {
+      out.right.segment<6>(i) -= one * inverse * joint.right;
+      for (const auto& [j, other] : joint.shared)
+        out.places.block<6, 6>(i, j) -= one * inverse * other.transpose();
+    }
+  }
+  return out;
+}
+
+/// Moves joints and places by one damped step of the equations.
+void move_by(const RayEquations& equations, double damping, std::vector<RayPoint>& points,
+             RayPlaces& places) {
+  const ReducedEquations left = reduced(equations, damping);
+  const Eigen::VectorXd motion = left.places.ldlt().solve(left.right);
+  if (!motion.allFinite()) return;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!points[k].x) continue;
+    Eigen::Vector3d rest = equations.joints[k].right;
+    for (const auto& [i, one] : equations.joints[k].shared)
+      rest -= one.transpose() * motion.segment<6>(i);
+    *points[k].x += left.inverse[k] * rest;
+  }
+  Eigen::Index at = -6;
+  for (auto& [camera, place] : places) {
+    if (at >= 0) {
+      place.linear() =
+          place.linear() * exp_map(Eigen::Vector3d(motion.segment<3>(at))).toRotationMatrix();
+      place.translation() += motion.segment<3>(at + 3);
+    }
+    at += 6;
+  }
+}
+
+std::vector<std::optional<Eigen::Vector3d>> joints_of(const std::vector<RayPoint>& points) {
+  std::vector<std::optional<Eigen::Vector3d>> joints;
+  joints.reserve(points.size());
+  for (const RayPoint& point : points) joints.push_back(point.x);
+  return joints;
+}
+
+/// Moves to where the rays that count now meet best; only to where the cost falls.
+void descend(std::vector<RayPoint>& points, RayPlaces& places, double misfit, int iterations) {
+  const double scale = kCauchy * kCauchy * misfit * misfit;
+  double damping = kFirstDamping;
+  double cost = cost_of(points, places, scale);
+  for (int i = 0; i < iterations && damping < kMostDamping; ++i) {
+    const RayEquations equations = equations_of(points, places, scale);
+    const auto joints = joints_of(points);
+    const RayPlaces before = places;
+    double next = cost;
+    for (; damping < kMostDamping; damping *= kMoreDamping) {
+      move_by(equations, damping, points, places);
+      next = cost_of(points, places, scale);
+      if (next < cost) break;
+      places = before;
+      for (std::size_t k = 0; k < points.size(); ++k) points[k].x = joints[k];
+    }
+    if (!(cost - next > kFalls * cost)) return;
+    cost = next;
+    damping *= kLessDamping;
+  }
+}
 
 /// The median angle of counted rays in their sigmas, as the sigma of one of the two directions.
 double misfit_of(const std::vector<RayPoint>& points, const RayPlaces& places) {
@@ -34,87 +216,50 @@ double misfit_of(const std::vector<RayPoint>& points, const RayPlaces& places) {
   return angles.empty() ? 0.0 : median(std::move(angles)) / kMedianOfTwo;
 }
 
-/// The counted rays of a point as measurements at their present distance.
-PointMeasurements measured(const RayPoint& point, const RayPlaces& places,
-                           const std::map<std::size_t, std::size_t>& order) {
-  PointMeasurements all;
-  for (const RaySight& sight : point.seen) {
-    if (!sight.counted) continue;
-    const double away = (*point.x - places.at(sight.camera).translation()).norm();
-    PointMeasurement one;
-    one.sensor = order.at(sight.camera);
-    one.x = away * sight.ray;
-    one.ray = sight.ray;
-    one.sigma = away * sight.sigma;
-    all.push_back(one);
-  }
-  return all;
-}
-
-/// The equations of all points; the last row, of a depth bias, which rays do not have, is held.
-PlaceEquations ray_equations(const std::vector<RayPoint>& points, const RayPlaces& places,
-                             double misfit) {
-  std::map<std::size_t, std::size_t> order;
-  std::vector<Eigen::Isometry3d> stations;
-  for (const auto& [camera, place] : places) {
-    order[camera] = stations.size();
-    stations.push_back(place);
-  }
-  const auto size = static_cast<Eigen::Index>(6 * stations.size() + 1);
-  PlaceEquations equations{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
-  for (const RayPoint& point : points) {
-    if (!point.x) continue;
-    const PointMeasurements own = measured(point, places, order);
-    const FusedPoint fused = fuse_point(own, stations, kOpenDepth);
-    const double off = worst_norm(fused) / (kTukey * misfit);
-    const double weight = tukey_weight(off * off);
-    if (weight > 0.0) add_point(equations, own, fused, weight);
-  }
-  return equations;
-}
-
-/// Moves the places by one step; returns the longest part of it.
-double step(PlaceEquations& equations, RayPlaces& places) {
-  const Eigen::Index last = equations.right.size() - 1;
-  equations.information.diagonal() *= 1.0 + kDamping;
-  equations.information.diagonal().array() += 1e-12 * equations.information.diagonal().maxCoeff();
-  const auto hold = [&](Eigen::Index at, Eigen::Index count) {
-    equations.information.middleRows(at, count).setZero();
-    equations.information.middleCols(at, count).setZero();
-    equations.information.block(at, at, count, count).setIdentity();
-    equations.right.segment(at, count).setZero();
-  };
-  hold(0, 6);  // the first camera
-  hold(last, 1);
-  const Eigen::VectorXd motion = equations.information.ldlt().solve(equations.right);
-  if (!motion.allFinite()) return 0.0;
-  Eigen::Index at = 0;
-  for (auto& [camera, place] : places) {
-    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
-    moved.linear() = exp_map(Eigen::Vector3d(motion.segment<3>(at))).toRotationMatrix();
-    moved.translation() = motion.segment<3>(at + 3);
-    place = moved * place;
-    at += 6;
-  }
-  return motion.lpNorm<Eigen::Infinity>();
+/// Rays leave the size open: it is kept.
+void keep_size(RayPlaces& places, double size) {
+  const double factor = size / std::max(1e-9, size_of(places));
+  const Eigen::Vector3d first = places.begin()->second.translation();
+  for (auto& [camera, place] : places)
+    place.translation() = first + factor * (place.translation() - first);
 }
 
 }  // namespace
 
+double size_of(const RayPlaces& places) {
+  double sum = 0.0;
+  for (const auto& [camera, place] : places)
+    sum += (place.translation() - places.begin()->second.translation()).norm();
+  return sum;
+}
+
 double adjust_rays(std::vector<RayPoint>& points, RayPlaces& places, int iterations) {
+  const double size = size_of(places);
   double misfit = kFirstGate / kRayGate;
-  const auto meet_all = [&] {
+  for (int round = 0; round < kMeetings; ++round) {
     for (RayPoint& point : points) meet(point, places, kRayGate * misfit);
     misfit = std::max(kLeastMisfit, misfit_of(points, places));
-  };
-  meet_all();
-  for (int i = 0; i < iterations; ++i) {
-    PlaceEquations equations = ray_equations(points, places, misfit);
-    const double moved = step(equations, places);
-    meet_all();
-    if (moved < kFixed) break;
+    descend(points, places, misfit, iterations);
+    keep_size(places, size);
   }
-  return misfit;
+  for (RayPoint& point : points) meet(point, places, kRayGate * misfit);
+  return std::max(kLeastMisfit, misfit_of(points, places));
+}
+
+double rays_cost(const std::vector<RayPoint>& points, const RayPlaces& places, double misfit) {
+  const double most = kRayGate * kRayGate * misfit * misfit;
+  double sum = 0.0;
+  double count = 0.0;
+  for (const RayPoint& point : points) {
+    for (const RaySight& sight : point.seen) {
+      if (!places.contains(sight.camera)) continue;
+      const double off =
+          point.x ? ray_misfit(sight, places.at(sight.camera), *point.x) : kRayGate * misfit;
+      sum += std::min(off * off, most);
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? sum / count : 0.0;
 }
 
 }  // namespace chorus::registration

@@ -12,10 +12,12 @@ namespace chorus::registration {
 namespace {
 
 constexpr std::size_t kMostPairs = 40;  // of the view graph, those with most in common
-constexpr std::size_t kStarts = 4;      // pairs to begin with, if the first leaves cameras out
+constexpr std::size_t kStarts = 4;      // pairs to begin with
 constexpr double kAgreement = 0.5;      // least share of rays that agree
 constexpr double kLeastParallax = deg(2);
-constexpr int kRough = 6;  // iterations after each camera
+constexpr double kUnlike = 0.05;       // arrangements differ by more than noise
+constexpr double kNearlyAsGood = 1.2;  // of the cost of the best
+constexpr int kRough = 6;              // iterations after each camera
 constexpr int kFine = 25;
 
 /// A pair of cameras of the view graph.
@@ -169,13 +171,43 @@ RayRig grown_from(const View& start, const std::vector<RayPoint>& points,
   return rig;
 }
 
-std::size_t counted_rays(const RayRig& rig) {
-  std::size_t counted = 0;
-  for (const RayPoint& point : rig.points) {
-    if (!point.x) continue;
-    counted += static_cast<std::size_t>(std::ranges::count(point.seen, true, &RaySight::counted));
+/// By how much two arrangements of the same cameras differ: the greatest shift of a camera, by the
+/// mean distance from the first, when both are of one size.
+double unlikeness(const RayPlaces& one, const RayPlaces& other) {
+  const auto from_first = [](const RayPlaces& places) {
+    RayPlaces moved;
+    const Eigen::Isometry3d first = places.begin()->second.inverse();
+    for (const auto& [camera, place] : places) moved[camera] = first * place;
+    const double size = size_of(moved) / static_cast<double>(moved.size() - 1);
+    for (auto& [camera, place] : moved) place.translation() /= std::max(1e-9, size);
+    return moved;
+  };
+  const RayPlaces a = from_first(one);
+  const RayPlaces b = from_first(other);
+  double most = 0.0;
+  for (const auto& [camera, place] : a) {
+    const auto found = b.find(camera);
+    if (found == b.end()) return 1.0;
+    most = std::max(most, (place.translation() - found->second.translation()).norm());
   }
-  return counted;
+  return most;
+}
+
+/// True if the first places more cameras, or as many and better.
+bool is_better(const RayRig& one, const RayRig& other) {
+  if (one.places.size() != other.places.size()) return one.places.size() > other.places.size();
+  const double misfit = std::min(one.misfit, other.misfit);
+  return rays_cost(one.points, one.places, misfit) < rays_cost(other.points, other.places, misfit);
+}
+
+/// True if another arrangement of as many cameras explains the walk nearly as well.
+bool is_rivalled(const RayRig& best, const std::vector<RayRig>& all) {
+  const double cost = rays_cost(best.points, best.places, best.misfit);
+  return std::ranges::any_of(all, [&](const RayRig& other) {
+    return other.places.size() == best.places.size() &&
+           unlikeness(best.places, other.places) > kUnlike &&
+           rays_cost(other.points, other.places, best.misfit) < kNearlyAsGood * cost;
+  });
 }
 
 }  // namespace
@@ -183,15 +215,16 @@ std::size_t counted_rays(const RayRig& rig) {
 Result<RayRig> rig_of(std::vector<RayPoint> points, const std::vector<std::string>& names) {
   const auto starts = starts_of(points, names);
   if (!starts) return pass(starts);
-  std::optional<RayRig> best;
-  for (std::size_t i = 0; i < std::min(kStarts, starts->size()); ++i) {
-    RayRig rig = grown_from((*starts)[i], points, names);
-    const bool better =
-        !best || rig.places.size() > best->places.size() ||
-        (rig.places.size() == best->places.size() && counted_rays(rig) > counted_rays(*best));
-    if (better) best = std::move(rig);
-    if (best->places.size() == names.size()) break;
-  }
+  std::vector<RayRig> rigs;
+  for (std::size_t i = 0; i < std::min(kStarts, starts->size()); ++i)
+    rigs.push_back(grown_from((*starts)[i], points, names));
+  const auto best = std::ranges::min_element(rigs, is_better);
+  if (is_rivalled(*best, rigs))
+    return fail(ErrorCode::Conflict, "rays",
+                fmt::format("the cameras that send directions alone ({}) can stand in two ways "
+                            "that explain the walk nearly alike: walk longer, and everywhere where "
+                            "they see you",
+                            fmt::join(names, ", ")));
   return std::move(*best);
 }
 

@@ -33,4 +33,12 @@ struct RayRig {
 /// Returns the standard deviation of a ray in units of its sigma.
 double adjust_rays(std::vector<RayPoint>& points, RayPlaces& places, int iterations);
 
+/// Mean squared angle of all rays of placed cameras in their sigmas, each at most the gate's, by
+/// which arrangements of the same cameras are compared; `misfit`: of the better one.
+[[nodiscard]] double rays_cost(const std::vector<RayPoint>& points, const RayPlaces& places,
+                               double misfit);
+
+/// The sum of the distances of all cameras from the first.
+[[nodiscard]] double size_of(const RayPlaces& places);
+
 }  // namespace chorus::registration
