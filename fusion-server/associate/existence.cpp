@@ -31,8 +31,6 @@ constexpr double kAway = 0.25;       // [m]; whoever is farther from where they 
 // somebody whom all saw is kept for some seconds while many miss them.  Below kDenied, who was
 // published is so no longer.
 constexpr double kLeastBelief = -1.0, kDenied = -0.05, kMostBelief = 8.0;
-constexpr double kLongestInstant = 0.25;  // [s]; an instant counts as no more, whatever the pause.
-constexpr Duration kLongestWait = std::chrono::milliseconds(250);
 constexpr double kFewAlone = 2.0;  // A sensor that alone sees more than this is believed less.
 constexpr double kBeside = 1.5;    // [m]; as far as a sensor that was moved unnoticed errs.
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
@@ -147,8 +145,7 @@ bool is_lone(const Track& track, const std::vector<Miss>& missing, const Gaze& g
 /// the sensor sees many such bodies.
 void wait_longer(Track& track, const Gaze& gaze, const Sitting& sitting) {
   const double alone = alone_in(gaze.sights_of(track.id).front().sensor, gaze);
-  const Duration passed = std::min(sitting.elapsed, kLongestWait);
-  track.belief.waited += passed / std::max<std::int64_t>(1, std::llround(alone));
+  track.belief.waited += sitting.elapsed / std::max<std::int64_t>(1, std::llround(alone));
 }
 
 /// What is held back of the rate while the track is not certain enough.  Who looks like somebody's
@@ -179,7 +176,7 @@ Standing standing_of(const Track& track, const std::vector<Miss>& missing, const
   for (const Miss& miss : missing) standing.missed_by.push_back(miss.observer->sensor);
   std::ranges::sort(standing.seen_by);
   std::ranges::sort(standing.missed_by);
-  standing.contested = !track.admitted;
+  standing.admitted = track.admitted;
   standing.image = track.image.sure;
   return standing;
 }
@@ -188,13 +185,13 @@ Standing standing_of(const Track& track, const std::vector<Miss>& missing, const
 
 Standing judge(Track& track, const Gaze& gaze, const Sitting& sitting) {
   Belief& belief = track.belief;
-  note_motion(track, seconds(sitting.elapsed));
+  note_motion(track, seconds(sitting.passed));
   const auto missing = gaze.missing(track.id, track.core);
   const double rate = rate_of(track, missing, gaze, sitting);
   const double held = held_of(track, rate, is_lone(track, missing, gaze), sitting);
   const bool waits = rate > 0.0 && rate <= held;
   if (waits) wait_longer(track, gaze, sitting);
-  const double longest = track.hits > 1 ? kLongestInstant : kFrame;
+  const double longest = track.hits > 1 ? seconds(kLongestInstant) : kFrame;
   const double now = std::clamp(seconds(sitting.elapsed), 1e-3, longest) * (rate - held);
   const double most = most_of(gaze.sights_of(track.id).size(), missing.size());
   // To wait speaks for nobody.
@@ -214,8 +211,7 @@ void learn(const Track& track, const Gaze& gaze, double elapsed, SightFields& fi
     if (!seen && (gaze.hidden_from(observer, track.core, track.id) ||
                   gaze.sees(observer, track.id, track.core)))
       continue;
-    fields[observer.sensor].learn(observer.world_from_sensor.inverse() * track.core, seen,
-                                  std::min(elapsed, kLongestInstant));
+    fields[observer.sensor].learn(observer.world_from_sensor.inverse() * track.core, seen, elapsed);
   }
 }
 

@@ -24,9 +24,13 @@
 
 namespace chorus::associate {
 
+/// An instant counts as no more, whatever the pause before it.
+inline constexpr Duration kLongestInstant = std::chrono::milliseconds(250);
+
 /// How long the instant lasts, and what is asked.
 struct Sitting {
-  Duration elapsed{0};  ///< Since the previous instant.
+  Duration elapsed{0};  ///< What the instant counts for: at most kLongestInstant.
+  Duration passed{0};   ///< Since the previous instant.
   /// How long a body that has not moved waits where it is believed only if it moves.
   Duration doubt{0};
   bool floor_known = false;  ///< False: no body is judged by its height.

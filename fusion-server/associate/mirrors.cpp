@@ -13,6 +13,8 @@ constexpr std::size_t kLeastPairs = 10;
 constexpr double kApart = 0.3;  // [m]; closer bodies are two detections of one person
 // [m, rms]; what depth cameras err by at a joint twice, and two people in one posture do not keep.
 constexpr double kLike = 0.1;
+// [m, rms] of the joints of a person and their image from a plane that is known.
+constexpr double kInMirror = 0.15;
 constexpr double kOnPlane = 0.15;  // [m] between the core and the reflected core, in one plane
 constexpr double kStep = 0.05;     // [m]; a shorter way may be noise
 constexpr double kWay = 0.5;       // [m] that a person goes while the image follows
@@ -63,13 +65,13 @@ std::optional<Mirror> between(const Candidate& person, const Candidate& image) {
 struct Likeness {
   const Candidate* person = nullptr;
   Reflection reflection = {};
-  bool known = false;  ///< True if the plane is that of a known mirror.
+  Mirror* known = nullptr;  ///< The known mirror whose plane it is; none: a new one.
 };
 
 /// The known mirror in which the pairs are a person and their image.
 Mirror* mirror_of(const JointPairs& pairs, Mirrors& mirrors) {
   const auto known = std::ranges::find_if(
-      mirrors, [&](const Mirror& each) { return pairs.distance(each) < kOnPlane; });
+      mirrors, [&](const Mirror& each) { return pairs.distance(each) < kInMirror; });
   return known == mirrors.end() ? nullptr : &*known;
 }
 
@@ -89,8 +91,7 @@ std::optional<Likeness> likeness_to(const Candidate& person, const Candidate& im
     const auto found = pairs.reflection();
     if (!found || (best && found->rms >= best->reflection.rms)) continue;
     Mirror* known = mirror_of(pairs, mirrors);
-    if (found->rms < kLike && known) refine(*known, found->mirror);
-    if (found->rms < kLike || known) best = Likeness{&person, *found, known != nullptr};
+    if (found->rms < kLike || known) best = Likeness{&person, *found, known};
   }
   return best;
 }
@@ -179,6 +180,8 @@ void reflect(std::vector<Candidate>& candidates, const std::vector<Observer>& ob
     Image& image = candidate.track.image;
     const auto like = likeness_of(candidate, candidates, observers, mirrors);
     image.like = false;
+    if (like && like->known && like->reflection.rms < kLike)
+      refine(*like->known, like->reflection.mirror);
     if (like) {
       follow_image(image, candidate.track.core, *like);
     } else {
@@ -186,7 +189,7 @@ void reflect(std::vector<Candidate>& candidates, const std::vector<Observer>& ob
       if (image.unlike > kUnlike) image = {};
     }
     if (!like || image.sure) continue;
-    image.sure = like->known || image.way > kWay;
+    image.sure = like->known != nullptr || image.way > kWay;
     if (!image.sure || like->known) continue;
     if (mirrors.size() >= kMostMirrors) mirrors.erase(mirrors.begin());
     mirrors.push_back(image.mirror);

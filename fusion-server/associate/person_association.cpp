@@ -70,14 +70,15 @@ void dress(std::vector<Candidate>& candidates, const WornPeople& worn) {
   }
 }
 
-/// Follows how unlike their wearers the views are.
+/// Follows how unlike their wearers the views are.  While no view shows a limb with a sensor, what
+/// was known stays.
 void compare_worn(std::vector<Candidate>& candidates, double elapsed) {
   constexpr double kMean = 0.5;  // [s]
   const double share = elapsed / (elapsed + kMean);
   for (Candidate& each : candidates) {
     if (each.sights.empty()) continue;
-    const double now = unlike_worn(each.sights, each.worn);
-    each.track.unlike += share * (now - each.track.unlike);
+    const auto now = each.worn.empty() ? std::optional(0.0) : unlike_worn(each.sights, each.worn);
+    if (now) each.track.unlike += share * (*now - each.track.unlike);
   }
 }
 
@@ -166,12 +167,13 @@ bool knows_floor(const std::vector<Observer>& observers, const Tracks& tracks) {
 
 /// Judges everybody who is seen, and removes who has left.
 std::vector<Standing> judge_all(std::vector<Candidate>& candidates,
-                                const std::vector<Observer>& observers, Duration elapsed,
+                                const std::vector<Observer>& observers, Duration passed,
                                 Tracks& tracks, const AssociationConfig& config) {
+  const Duration elapsed = std::min(passed, kLongestInstant);
   reflect(candidates, observers, seconds(elapsed), tracks.mirrors);
   const std::vector<Assigned> bodies = assigned(candidates, config);
   const Gaze gaze(observers, bodies, tracks.fields, config.gate);
-  const Sitting sitting{elapsed, config.doubt, knows_floor(observers, tracks)};
+  const Sitting sitting{elapsed, passed, config.doubt, knows_floor(observers, tracks)};
   std::vector<Standing> standings;
   for (Candidate& candidate : candidates) {
     if (candidate.sights.empty()) continue;
@@ -282,9 +284,9 @@ Grouping group(Scene scene, const Tracks& before, const AssociationConfig& confi
   }
   for (Candidate& candidate : candidates) update(candidate, instant);
   merge_doubles(candidates, config);
-  const Duration elapsed = std::clamp(instant - before.instant, Duration{0}, config.coast);
-  grouping.standings = judge_all(candidates, scene.observers, elapsed, tracks, config);
-  compare_worn(candidates, seconds(elapsed));
+  const Duration passed = std::clamp(instant - before.instant, Duration{0}, config.coast);
+  grouping.standings = judge_all(candidates, scene.observers, passed, tracks, config);
+  compare_worn(candidates, seconds(std::min(passed, kLongestInstant)));
   grouping.corrections = recognise(candidates, tracks, {instant, scene.worn}, config);
   std::ranges::sort(candidates, {}, [](const Candidate& one) { return one.track.id; });
   grouping.people = published(candidates, instant, config);

@@ -69,6 +69,13 @@ struct Answer {
 
 Track& track_of(const Question& question) { return question.candidate->track; }
 
+/// The doubt about a track's person: by their build, and by the inertial sensors that they wear.
+std::optional<Doubt> doubt_of(const Track& track, const Repeatability& repeatability) {
+  auto doubt = track.build.doubt(repeatability);
+  if (doubt) doubt->odds -= kWornOdds * track.unlike;
+  return doubt;
+}
+
 /// What is remembered of a track that ends: if its person probably changed, the one before.
 Missing missing_of(const Track& track, const std::optional<Doubt>& doubt) {
   if (!doubt || doubt->odds >= 0) return {track.id, track.seen, track.build.whole()};
@@ -141,8 +148,11 @@ double odds_of(const Question& question, const Known& known, const Repeatability
       known.unseen &&
       horizontal_distance(track_of(question).core, known.unseen->predicted) <= known.unseen->gate;
   const auto sensors = worn.find(known.id);
+  // Limbs that no view shows say nothing.
   const double unlike =
-      sensors == worn.end() ? 0.0 : unlike_worn(question.candidate->sights, sensors->second);
+      sensors == worn.end()
+          ? 0.0
+          : unlike_worn(question.candidate->sights, sensors->second).value_or(0.0);
   return odds + (expected ? kExpected : 0.0) - kWornOdds * unlike;
 }
 
@@ -276,13 +286,13 @@ void learn(const Track& track, Repeatability& repeatability) {
   if (!track.named || all.empty() || sight_of(all.back().build) < 1.0) return;
   const Build usual = track.build.before(all.size() - 1);
   if (sight_of(usual) < kUsual) return;
-  const auto doubt = track.build.doubt(repeatability);
+  const auto doubt = doubt_of(track, repeatability);
   if (!doubt || doubt->odds > kInQuestion) repeatability.learn(all.back().build, usual);
 }
 
 /// Computes the doubt about a track, and by it the person's usual build.
 void renew_usual(Candidate& candidate, const Repeatability& repeatability) {
-  candidate.doubt = candidate.track.build.doubt(repeatability);
+  candidate.doubt = doubt_of(candidate.track, repeatability);
   candidate.track.usual = missing_of(candidate.track, candidate.doubt).build;
 }
 
@@ -320,7 +330,7 @@ std::vector<Correction> apply(const std::vector<Question>& questions,
 
 void miss(const Track& track, Tracks& tracks) {
   if (track.named && track.admitted)
-    add_missing(missing_of(track, track.build.doubt(tracks.repeatability)), tracks);
+    add_missing(missing_of(track, doubt_of(track, tracks.repeatability)), tracks);
 }
 
 void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config) {
@@ -343,8 +353,7 @@ std::vector<Correction> recognise(std::vector<Candidate>& candidates, Tracks& tr
     if (each.track.placed == instant) learn(each.track, tracks.repeatability);
   }
   for (Candidate& each : candidates) {
-    each.doubt = each.track.build.doubt(tracks.repeatability);
-    if (each.doubt) each.doubt->odds -= kWornOdds * each.track.unlike;
+    each.doubt = doubt_of(each.track, tracks.repeatability);
     if (each.track.placed == instant) each.track.usual = missing_of(each.track, each.doubt).build;
   }
   std::vector<Question> questions = questions_of(candidates, tracks, instant, config);

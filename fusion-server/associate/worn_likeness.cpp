@@ -34,7 +34,8 @@ std::optional<double> unlike_worn(const SensorView& view, std::span<const WornLi
   return std::clamp((mean - kAsWorn) / (kElsewhere - kAsWorn), 0.0, 1.0);
 }
 
-double unlike_worn(std::span<const PlacedView> views, std::span<const WornLimb> worn) {
+std::optional<double> unlike_worn(std::span<const PlacedView> views,
+                                  std::span<const WornLimb> worn) {
   double sum = 0.0;
   double count = 0.0;
   for (const PlacedView& each : views) {
@@ -43,7 +44,7 @@ double unlike_worn(std::span<const PlacedView> views, std::span<const WornLimb> 
     sum += *unlike;
     count += 1.0;
   }
-  return count > 0 ? sum / count : 0.0;
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
 }  // namespace chorus::associate

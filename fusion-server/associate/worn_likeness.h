@@ -17,7 +17,8 @@ namespace chorus::associate {
 [[nodiscard]] std::optional<double> unlike_worn(const SensorView& view,
                                                 std::span<const WornLimb> worn);
 
-/// The same in the mean of all views; 0 if none shows such a limb.
-[[nodiscard]] double unlike_worn(std::span<const PlacedView> views, std::span<const WornLimb> worn);
+/// The same in the mean of all views that show such a limb; none if no view does.
+[[nodiscard]] std::optional<double> unlike_worn(std::span<const PlacedView> views,
+                                                std::span<const WornLimb> worn);
 
 }  // namespace chorus::associate

@@ -11,6 +11,8 @@ namespace {
 
 // A sensor may lose a person for less than this, and nobody needs to know.
 constexpr Duration kLasting = std::chrono::milliseconds(500);
+// Glimpses farther apart than this do not last together.
+constexpr Duration kLongestPause = std::chrono::milliseconds(250);
 // A contest is told of for so long after its last instant, or it would flicker.
 constexpr Duration kKept = std::chrono::seconds(3);
 
@@ -40,9 +42,10 @@ std::string sentence_about(const Standing& standing) {
 void Contests::look(Timestamp instant, const std::vector<Standing>& standings) {
   for (const Standing& standing : standings) {
     const bool explained = standing.image || !standing.on_floor || !standing.missed_by.empty();
-    if (!standing.contested || !explained) continue;
+    if (standing.admitted || !explained) continue;
     Contest& contest =
         contests_.try_emplace(standing.id, Contest{instant, instant, {}}).first->second;
+    if (!lasts(contest) && instant - contest.last > kLongestPause) contest.since = instant;
     contest.last = instant;
     contest.standing = standing;
     if (contest.counted || !lasts(contest)) continue;

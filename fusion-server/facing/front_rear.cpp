@@ -9,7 +9,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Standing standing_of(const BodyFrame& body) {
+Aspect aspect_of(const BodyFrame& body) {
   return {neck_distance(body.skeleton).value_or(kUnknown),
           facing_angle(body.skeleton).value_or(kUnknown),
           bearing_angle(body.skeleton).value_or(kUnknown),

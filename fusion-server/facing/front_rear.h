@@ -11,7 +11,7 @@
 namespace chorus::facing {
 
 /// Radians and metres in the observing sensor's space; NaN: unknown.
-struct Standing {
+struct Aspect {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< Sensor to neck; d of Eq. (1).
   double facing = std::numeric_limits<double>::quiet_NaN();    ///< phi of Eq. (2).
   double bearing = std::numeric_limits<double>::quiet_NaN();   ///< alpha of Eq. (3), of the neck.
@@ -19,6 +19,6 @@ struct Standing {
   double axis_bearing = std::numeric_limits<double>::quiet_NaN();
 };
 
-[[nodiscard]] Standing standing_of(const BodyFrame& body);
+[[nodiscard]] Aspect aspect_of(const BodyFrame& body);
 
 }  // namespace chorus::facing

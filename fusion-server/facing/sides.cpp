@@ -144,10 +144,10 @@ double slipped_by_turning(const Instant& now, const Spans& spans, const Sides& s
   return share * misled(spans, sides.spans, config.turn_sigma);
 }
 
-/// What the posture, as log odds, tells again about sides that have slipped with this chance.  What
-/// it told before was about the sides that were held then, and is forgotten with them in the share
-/// of twice the chance: at a half, nothing is left of it.
-double seen_anew(double slipped, double posture) { return std::min(1.0, 2.0 * slipped) * posture; }
+/// What posture or worn sensors, as log odds, tell again about sides that have slipped with this
+/// chance.  What they told before was about the sides that were held then, and is forgotten with
+/// them in the share of twice the chance: at a half, nothing is left of it.
+double seen_anew(double slipped, double told) { return std::min(1.0, 2.0 * slipped) * told; }
 
 /// Advances the labels of a view by one step.
 LabelStep step_of_view(const SensorView& view, double agree, double facing, const Sides& sides,
@@ -304,7 +304,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   const double slipped = slipped_by_turning(now, spans, sides, config);
   sides.filter.slip(slipped);
   Evidence evidence = evidence_of(now, person, sides, spans, memory, config);
-  evidence.news += seen_anew(slipped, now.posture);
+  evidence.news += seen_anew(slipped, now.posture + now.worn);
   sides.filter.update(evidence);
   if (must_turn(sides.filter, now.first, config)) {
     turn_round(now, sides, spans);

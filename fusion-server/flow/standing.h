@@ -18,8 +18,8 @@ struct Standing {
   std::vector<SensorId> missed_by;
   bool on_floor = true;  ///< False if the body is far under the floor, or far above it.
   bool image = false;    ///< True if it is somebody's image in a mirror.
-  /// True if more speaks against it than for it: it is not published.
-  bool contested = false;
+  /// False if it is not published: more speaks against it than for it, or it is not sure yet.
+  bool admitted = true;
 };
 
 }  // namespace chorus

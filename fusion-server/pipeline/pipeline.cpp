@@ -57,7 +57,7 @@ std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& historie
 /// 5.2.2: the body's position and facing relative to its sensor, still in sensor space.
 SensorView view_of(const AlignedSensor& from, const BodyFrame& body,
                    const fusion::QualityLimits& limits) {
-  const facing::Standing seen = facing::standing_of(body);
+  const facing::Aspect seen = facing::aspect_of(body);
   SensorView view;
   view.sensor = from.sensor;
   view.body = body.id;
@@ -92,7 +92,9 @@ bool has_spoken(Basis basis) { return basis == Basis::Exact || basis == Basis::I
 
 /// True if the floor that the sensor measures is where the world has it.
 bool knows_floor(const AlignedSensor& sensor, const Eigen::Isometry3d& world_from_sensor) {
-  constexpr double kSameHeight = 0.5;  // [m]
+  // [m]; a platform or the next floor is farther off, what a floor plane errs by is less, and the
+  // place of a sensor above it even at the end of a long chain.
+  constexpr double kSameHeight = 0.5;
   return sensor.floor &&
          std::abs(world_from_sensor.translation().y() - sensor.floor->offset) < kSameHeight;
 }

@@ -117,7 +117,7 @@ TEST(Existence, OneAgainstThreeIsNeverPublished) {
   ContestedRoom room;
   EXPECT_GE(room.until_more_than(0, {{0, 0.2, 0.1}}, 20.0), 20.0);
   ASSERT_EQ(room.standings.size(), 1u);
-  EXPECT_TRUE(room.standings[0].contested);
+  EXPECT_FALSE(room.standings[0].admitted);
   EXPECT_EQ(room.standings[0].seen_by, std::vector{testing::sensor_id("s0")});
   EXPECT_EQ(room.standings[0].missed_by.size(), 3u);
 }
@@ -157,7 +157,7 @@ TEST(Existence, OnWhomTwoOfSixAgreeIsContested) {
     ASSERT_LE(room.see(bodies).size(), 1u) << i;
   }
   EXPECT_EQ(room.standings.size(), 2u);
-  EXPECT_TRUE(room.standings[1].contested);
+  EXPECT_FALSE(room.standings[1].admitted);
 }
 
 TEST(Existence, OnWhomTwoAgreedBeforeOthersAnsweredIsGoneWithinASecond) {

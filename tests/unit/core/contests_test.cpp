@@ -17,7 +17,7 @@ Standing ghost() {
                     {1.2, 0.9, -0.4},
                     {sensor_id("s2"), sensor_id("s3")},
                     {sensor_id("s1"), sensor_id("s4"), sensor_id("s5")}};
-  standing.contested = true;
+  standing.admitted = false;
   return standing;
 }
 
@@ -46,6 +46,15 @@ TEST(Contests, AreToldOfSingleSensorsAndOfHeights) {
   one.place.y() = -1.3;
   EXPECT_EQ(told(contests, one, milliseconds(700), milliseconds(700)),
             "s3 sees somebody at (1.2, -0.4) m, whose middle is 1.3 m under the floor");
+}
+
+TEST(Contests, GlimpsesWithPausesBetweenThemDoNotLast) {
+  Contests contests;
+  for (int i = 0; i < 5; ++i) {
+    contests.look(kStart + milliseconds(600) * i, {ghost()});
+    EXPECT_EQ(contests.sentence_of(sensor_id("s3")), "");
+  }
+  EXPECT_EQ(contests.count_of(sensor_id("s3")), 0u);
 }
 
 TEST(Contests, EndSomeSecondsAfterTheLastInstant) {
@@ -85,7 +94,7 @@ TEST(Contests, AreCountedOnceForEachOfTheSensors) {
 TEST(Contests, AreNotAboutPeopleWhoArePublished) {
   Contests contests;
   Standing believed = ghost();
-  believed.contested = false;
+  believed.admitted = true;
   EXPECT_EQ(told(contests, believed, milliseconds(0), milliseconds(900)), "");
 }
 

@@ -24,25 +24,25 @@ BodyFrame person(const Eigen::Vector3d& neck, double yaw) {
 }
 
 TEST(StandingOf, APersonSquarelyBeforeTheSensor) {
-  const Standing standing = standing_of(person({0, 0, 2.5}, 0));
+  const Aspect standing = aspect_of(person({0, 0, 2.5}, 0));
   EXPECT_NEAR(standing.distance, 2.5, 1e-9);
   EXPECT_NEAR(standing.facing, 0.0, 1e-9);
   EXPECT_NEAR(standing.bearing, 0.0, 1e-9);
 }
 
 TEST(StandingOf, TurningIsFacing) {
-  EXPECT_NEAR(std::abs(standing_of(person({0, 0, 2.5}, deg(30))).facing), deg(30), 1e-9);
-  EXPECT_NEAR(std::abs(standing_of(person({0, 0, 2.5}, deg(120))).facing), deg(120), 1e-9);
+  EXPECT_NEAR(std::abs(aspect_of(person({0, 0, 2.5}, deg(30))).facing), deg(30), 1e-9);
+  EXPECT_NEAR(std::abs(aspect_of(person({0, 0, 2.5}, deg(120))).facing), deg(120), 1e-9);
 }
 
 TEST(StandingOf, StandingAsideIsBearing) {
-  const Standing standing = standing_of(person({1.0, 0, 1.0}, 0));
+  const Aspect standing = aspect_of(person({1.0, 0, 1.0}, 0));
   EXPECT_NEAR(std::abs(standing.bearing), deg(45), 1e-9);
   EXPECT_NEAR(std::abs(standing.facing), deg(45), 1e-9);
 }
 
 TEST(StandingOf, WhatCannotBeToldIsNaN) {
-  const Standing standing = standing_of(BodyFrame{});
+  const Aspect standing = aspect_of(BodyFrame{});
   EXPECT_TRUE(std::isnan(standing.distance));
   EXPECT_TRUE(std::isnan(standing.facing));
   EXPECT_TRUE(std::isnan(standing.bearing));
