@@ -23,6 +23,10 @@ class Estimator {
   /// A joint that nobody saw is NotTracked at position zero, unless the method predicts it.  The
   /// order of the views affects rounding only.
   [[nodiscard]] virtual FusedBody fuse(const Person& person, const Instant& instant) = 0;
+  /// Another method has fused the person at this instant, fuse() is not called: learns of that body
+  /// what is needed to go on from it.  Most methods learn nothing.
+  virtual void attend(const FusedBody& /*body*/, const Person& /*person*/,
+                      const Instant& /*instant*/) {}
   /// A copy, with everything it remembers.
   [[nodiscard]] virtual std::unique_ptr<Estimator> clone() const = 0;
 };

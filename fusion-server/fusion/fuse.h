@@ -14,6 +14,7 @@
 #include "fusion-server/fusion/inertial_limbs.h"
 #include "fusion-server/fusion/methods.h"
 #include "fusion-server/fusion/place_errors.h"
+#include "fusion-server/fusion/source_fade.h"
 
 namespace chorus::fusion {
 
@@ -45,9 +46,19 @@ class Memory {
     Timestamp at;
     Method method = {};
   };
+  /// A person as last published, by this method.
+  struct Published {
+    PlacedBody places;
+    Timestamp at;
+    Method method = {};
+    SourceFade fade = {};
+  };
   [[nodiscard]] FusedBody fuse(const Person& person, const Instant& instant);
+  [[nodiscard]] FusedBody fuse_by(Method method, const Person& person, const Instant& instant);
+  void hand_over(FusedBody& body, Method method, Timestamp instant);
 
   FusionConfig config_;
+  std::map<PersonId, Published> published_;
   std::map<PersonId, Last> last_;
   std::map<PersonId, Timestamp> several_;  ///< When method_for() last returned the configured
                                            ///< method.

@@ -69,4 +69,10 @@ Method method_for(const Person& person, const FusionConfig& config) {
   return fused_already(person) ? Method::InverseVariance : config.method;
 }
 
+bool is_of_a_camera(const SensorView& view) {
+  return std::ranges::any_of(view.skeleton.joints, [](const Joint& joint) {
+    return joint.bears() || (joint.seen() && nearly_a_ray(joint));
+  });
+}
+
 }  // namespace chorus::fusion

@@ -32,4 +32,7 @@ struct MethodRow {
 /// a single source, such as another fusion server or a file of fused frames.
 [[nodiscard]] Method method_for(const Person& person, const FusionConfig& config);
 
+/// True if the view has rays, or points whose depth is hardly known.
+[[nodiscard]] bool is_of_a_camera(const SensorView& view);
+
 }  // namespace chorus::fusion

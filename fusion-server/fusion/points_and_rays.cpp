@@ -14,12 +14,13 @@
 #include "fusion-server/fusion/landmark_error.h"
 #include "fusion-server/fusion/learned_errors.h"
 #include "fusion-server/fusion/least_squares.h"
+#include "fusion-server/fusion/methods.h"
+#include "fusion-server/fusion/source_fade.h"
 
 namespace chorus::fusion {
 namespace {
 
-constexpr std::size_t kEnough = 3;      // joints that several cameras place: they place the body
-constexpr double kSourceFading = 0.15;  // [s] in which a joint follows other cameras than before
+constexpr std::size_t kEnough = 3;  // joints that several cameras place: they place the body
 
 bool any_point(std::span<const JointView> views) {
   return std::ranges::any_of(views, [](const JointView& view) { return view.joint.seen(); });
@@ -109,9 +110,7 @@ class PointsAndRays final : public Estimator {
         held_(config.body) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
-    const double passed = last_ ? std::max(0.0, seconds(instant.at - *last_)) : 0.0;
-    last_ = instant.at;
-    held_.predict(passed);
+    const double passed = step_to(instant.at);
     const PlacedBody expected = held_.expected();
     Meetings meetings;
     for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -128,8 +127,33 @@ class PointsAndRays final : public Estimator {
       if (from_cameras(meetings[j].views)) state_landmark_error(fused, joint);
       return fused;
     });
-    hand_over(body, expected, held.source, passed);
+    const bool changed = held.source && source_ && *held.source != *source_;
+    if (held.source) source_ = held.source;
+    fade_.apply(body, expected, changed, passed);
     return body;
+  }
+
+  /// The body takes the place of one that several cameras have placed.
+  void attend(const FusedBody& body, const Person& person, const Instant& instant) override {
+    (void)step_to(instant.at);
+    PlacedBody placed;
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const Joint& joint = body.skeleton.joints[j];
+      if (!joint.seen() || body.contributors[j] == 0) continue;
+      placed[j] = {joint.position,
+                   joint.covariance.known() ? joint.covariance.matrix()
+                                            : body.variance[j] * Eigen::Matrix3d::Identity(),
+                   true};
+      ++count;
+    }
+    if (count < kEnough) return;
+    Meetings shown;
+    for (std::size_t j = 0; j < kJointCount; ++j)
+      shown[j].views =
+          points_and_rays_of(static_cast<JointId>(j), person, instant.sensors, *errors_);
+    take(placed, person, shown, [](const SensorView& view) { return is_of_a_camera(view); });
+    source_ = Source{};
   }
 
   [[nodiscard]] std::unique_ptr<Estimator> clone() const override {
@@ -148,6 +172,23 @@ class PointsAndRays final : public Estimator {
     std::optional<PlacedBody> body;  ///< According to one camera; none: not asked.
   };
 
+  /// Predicts the held body; returns the time since the last instant [s].
+  double step_to(Timestamp instant) {
+    const double passed = last_ ? std::max(0.0, seconds(instant - *last_)) : 0.0;
+    last_ = instant;
+    held_.predict(passed);
+    return passed;
+  }
+
+  /// Takes a body that others than one camera have placed, and compares these views with it.
+  void take(const PlacedBody& placed, const Person& person, const Meetings& meetings,
+            bool (*wanted)(const SensorView&)) {
+    held_.take(placed);
+    for (std::size_t v = 0; v < person.views.size(); ++v) {
+      if (wanted(person.views[v])) held_.compare(ray_view(person, v, meetings), placed);
+    }
+  }
+
   /// Gives the held body what the views show of it.
   Holding hold(const Person& person, const Meetings& meetings) {
     PlacedBody placed;
@@ -158,9 +199,7 @@ class PointsAndRays final : public Estimator {
       ++count;
     }
     if (count >= kEnough) {
-      held_.take(placed);
-      for (std::size_t v = 0; v < person.views.size(); ++v)
-        held_.compare(ray_view(person, v, meetings), placed);
+      take(placed, person, meetings, [](const SensorView&) { return true; });
       return {Source{}, {}};
     }
     if (person.views.empty()) return {};
@@ -180,27 +219,6 @@ class PointsAndRays final : public Estimator {
     show(fused, meeting.views, all, all);
     if (!any_point(meeting.views)) fused.joint.state = JointState::Inferred;
     return fused;
-  }
-
-  /// A joint stays where it was expected when others than before place the body, and follows them
-  /// within kSourceFading.  What is left of that is stated.
-  void hand_over(FusedBody& body, const PlacedBody& expected, const std::optional<Source>& source,
-                 double passed) {
-    const double kept = std::exp(-passed / kSourceFading);
-    const bool changed = source && source_ && *source != *source_;
-    if (source) source_ = source;
-    for (std::size_t j = 0; j < kJointCount; ++j) {
-      Eigen::Vector3d& offset = offsets_[j];
-      offset *= kept;
-      Joint& joint = body.skeleton.joints[j];
-      if (!joint.seen()) continue;
-      if (changed && expected[j].placed) offset += kept * (expected[j].position - joint.position);
-      if (offset.isZero(1e-6)) continue;
-      joint.position += offset;
-      const Eigen::Matrix3d covariance = joint.covariance.matrix() + offset * offset.transpose();
-      joint.covariance = Covariance(covariance);
-      body.variance[j] = mean_variance(covariance);
-    }
   }
 
   FusedJoint fuse_joint(std::size_t joint, Timestamp instant, const Meeting& meeting) {
@@ -240,11 +258,7 @@ class PointsAndRays final : public Estimator {
   std::shared_ptr<const ErrorModel> errors_;
   HeldBody held_;
   std::optional<Source> source_;  ///< Who last placed the body.
-  std::array<Eigen::Vector3d, kJointCount> offsets_ = [] {
-    std::array<Eigen::Vector3d, kJointCount> none;
-    none.fill(Eigen::Vector3d::Zero());
-    return none;
-  }();
+  SourceFade fade_;
   std::optional<Timestamp> last_;
   JointFilters filters_ = joint_filters();
   std::array<std::optional<Timestamp>, kJointCount> seen_;

@@ -86,7 +86,8 @@ std::vector<Window> windows_of(const LeftTake& take, const Withholding& when, st
   std::vector<Window> windows;
   const double length = static_cast<double>(take.truth.size()) / take.rate_hz;
   for (double begin = when.first; begin + when.lasts < length; begin += when.every)
-    windows.push_back({begin, begin + when.lasts, (windows.size() + turn) % take.tracks.size()});
+    windows.push_back({begin, begin + when.lasts,
+                       when.only.value_or((windows.size() + turn) % take.tracks.size())});
   return windows;
 }
 
@@ -210,7 +211,7 @@ Result<void> measure_left(Report& report, const LeftTake& take, const Withholdin
   const auto whole = course_of(take, take.tracks);
   if (!whole) return pass(whole);
   add_course(all, *whole, {}, take.rate_hz);
-  const std::size_t turns = report.quick() ? 1 : take.tracks.size();
+  const std::size_t turns = report.quick() || when.only ? 1 : take.tracks.size();
   for (std::size_t turn = 0; turn < turns; ++turn) {
     const auto windows = windows_of(take, when, turn);
     const auto course = course_of(take, withheld(take, windows));

@@ -1,6 +1,7 @@
 // What is measured of a person whom one camera of several sees for a while.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct Withholding {
   double first = 4.0;
   double every = 4.0;
   double lasts = 2.0;
+  std::optional<std::size_t> only = {};  ///< This camera is left each time.
 };
 
 /// Adds the rows of a take as shipped, with one camera left at times and with all of them.
@@ -32,6 +34,7 @@ struct Withholding {
                                         const Withholding& when);
 
 /// A person who walks between four simulated cameras; `points`: of guessed depth, otherwise rays.
-[[nodiscard]] LeftTake simulated_take(std::uint64_t seed, bool points);
+/// `among_depth`: all but the last one measure depth.
+[[nodiscard]] LeftTake simulated_take(std::uint64_t seed, bool points, bool among_depth = false);
 
 }  // namespace chorus::bench

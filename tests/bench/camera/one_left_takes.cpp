@@ -1,5 +1,6 @@
 // The takes of the case one-left: real ones, and a simulated walk.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -21,6 +22,11 @@ constexpr double kSizeOff = 0.06;        // how far a camera has a person's size
 constexpr double kWander = 0.04;         // and how far it wanders, within
 constexpr double kWanderTime = 1.0;      // [s]
 constexpr std::size_t kSimulated = 4;    // cameras
+constexpr double kDepthNoise = 0.015;    // [m] per axis of a depth sensor's joint, white
+constexpr double kDepthSlow = 0.020;     // and one that lasts for kDepthTime
+constexpr double kDepthTime = 0.7;       // [s]
+
+enum class Shows { Rays, Guesses, Depth };
 
 /// Of one camera: how wrong it has the person's size.
 struct SizeError {
@@ -37,8 +43,9 @@ class LeftCamera {
     size_.now = kWander * normal_(random_);
   }
 
-  SensorFrame see(const Skeleton<WorldSpace>& person, Timestamp at, bool points, double passed) {
+  SensorFrame see(const Skeleton<WorldSpace>& person, Timestamp at, Shows what, double passed) {
     const double kept = std::exp(-passed / kWanderTime);
+    const double slow = std::exp(-passed / kDepthTime);
     size_.now = kept * size_.now + std::sqrt(1.0 - kept * kept) * kWander * normal_(random_);
     SensorFrame frame;
     frame.captured = frame.received = at;
@@ -46,12 +53,28 @@ class LeftCamera {
     body.id = BodyId{1};
     body.captured = at;
     body.skeleton = to_sensor(camera_from_world_, person);
-    for (Joint& joint : body.skeleton.joints) show(joint, points);
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      for (double& axis : slow_[j])
+        axis = slow * axis + std::sqrt(1.0 - slow * slow) * normal_(random_);
+      if (what == Shows::Depth)
+        measure(body.skeleton.joints[j], slow_[j]);
+      else
+        show(body.skeleton.joints[j], what == Shows::Guesses);
+    }
     frame.bodies.push_back(std::move(body));
     return frame;
   }
 
  private:
+  /// As a depth sensor.
+  void measure(Joint& joint, const std::array<double, 3>& slow) {
+    joint.orientation.coeffs().setZero();
+    joint.state = JointState::Tracked;
+    for (int axis = 0; axis < 3; ++axis)
+      joint.position[axis] +=
+          kDepthNoise * normal_(random_) + kDepthSlow * slow[static_cast<std::size_t>(axis)];
+  }
+
   void show(Joint& joint, bool points) {
     const Eigen::Vector3d exact = joint.position;
     joint = {};
@@ -79,6 +102,7 @@ class LeftCamera {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   SizeError size_;
+  std::array<std::array<double, 3>, kJointCount> slow_{};  ///< Of a depth sensor, over kDepthSlow.
 };
 
 /// A folder of camera landmarks with published places and truth.
@@ -113,10 +137,11 @@ Result<void> add_real(Report& report, const std::filesystem::path& folder, std::
 
 }  // namespace
 
-LeftTake simulated_take(std::uint64_t seed, bool points) {
+LeftTake simulated_take(std::uint64_t seed, bool points, bool among_depth) {
   constexpr double kLength = 34.0;  // [s]
   LeftTake take;
-  take.name = points ? "one-left-simulated-points" : "one-left-simulated-rays";
+  take.name = fmt::format("one-left-{}-{}", among_depth ? "of-depth" : "simulated",
+                          points ? "points" : "rays");
   synthetic::Ring ring;
   ring.count = kSimulated;
   ring.radius = 4.0;
@@ -136,8 +161,10 @@ LeftTake simulated_take(std::uint64_t seed, bool points) {
     const Timestamp at = importers::kDefaultStart + from_seconds(i / take.rate_hz);
     take.truth.push_back(synthetic::truth(scene, 0, at));
     for (std::size_t c = 0; c < kSimulated; ++c) {
+      const bool depth = among_depth && c + 1 < kSimulated;
+      const Shows what = depth ? Shows::Depth : points ? Shows::Guesses : Shows::Rays;
       take.tracks[c].frames.push_back(
-          cameras[c].see(take.truth.back(), at, points, 1.0 / take.rate_hz));
+          cameras[c].see(take.truth.back(), at, what, 1.0 / take.rate_hz));
       take.tracks[c].frames.back().sensor = take.tracks[c].sensor;
       take.tracks[c].frames.back().sequence = static_cast<std::uint64_t>(i);
     }
@@ -149,6 +176,10 @@ Result<void> one_left(Report& report) {
   for (const bool points : {false, true}) {
     const auto take = simulated_take(report.seed(), points);
     if (const auto done = measure_left(report, take, {}); !done) return done;
+    const auto mixed = simulated_take(report.seed(), points, true);
+    Withholding last;
+    last.only = kSimulated - 1;
+    if (const auto done = measure_left(report, mixed, last); !done) return done;
   }
   if (const auto done = add_real(report, kFourViews, 1); !done) return done;
   for (const auto& path : eight_view_takes()) {
@@ -157,7 +188,8 @@ Result<void> one_left(Report& report) {
   report.note(
       "one-left: four cameras, all but one lose the person for 2 s again and again (Pose2Sim's "
       "take of 1.7 s: once, 1 s); every camera in turn is left.  Place: the middle of shoulders "
-      "and hips.  growth: (error at the end - error before) / length.  simulated: simulator.");
+      "and hips.  of-depth: three depth sensors and one camera, which is left each time.  growth: "
+      "(error at the end - error before) / length.  simulated: simulator.");
   return {};
 }
 

@@ -1,6 +1,8 @@
 // A body of which one camera is left.
 #include "fusion-server/fusion/held_body.h"
 
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "fusion-server/fusion/fuse.h"
@@ -135,6 +137,7 @@ struct OneLeftRoom {
       view.sensor = sensors[static_cast<std::size_t>(camera)];
       view.eye = camera_eye(1.6 * camera);
       view.skeleton = testing::standing_person(place);
+      if (depth.contains(camera)) continue;
       for (Joint& joint : view.skeleton.joints) {
         joint.position = (joint.position - view.eye).normalized();
         joint.measurement = Measurement::Ray;
@@ -143,6 +146,7 @@ struct OneLeftRoom {
     instant += milliseconds(33);
     return memory.fuse({person}, {instant, sensors}, {})[0];
   }
+  std::set<int> depth;  ///< These measure depth.
   Memory memory;
   Timestamp instant = from_unix_ns(1'795'246'200'000'000'000);
 };
@@ -168,6 +172,33 @@ TEST(OneCameraLeft, TheBodyIsHandedBackWithoutALeap) {
       << "what is not yet handed back is stated";
   for (int i = 0; i < 30; ++i) body = room.see(place, {0, 1, 2, 3});
   EXPECT_LT(off().norm(), 0.01);
+}
+
+TEST(OneCameraLeft, OfDepthSensorsMovesWhomTheyPlaced) {
+  OneLeftRoom room;
+  room.depth = {0, 2, 3};
+  Eigen::Vector3d place(0, 0, 0);
+  FusedBody body;
+  for (int i = 0; i < 60; ++i) body = room.see(place, {0, 1, 2, 3});
+  ASSERT_EQ(body.method, "body-filter");
+  const auto off = [&] {
+    return Eigen::Vector3d(body.skeleton[JointId::Neck].position -
+                           testing::standing_person(place)[JointId::Neck].position);
+  };
+  // Camera 1 looks nearly along x.
+  for (int i = 0; i < 30; ++i) body = room.see(place += Eigen::Vector3d(0.01, 0, 0.02), {1});
+  EXPECT_EQ(body.method, "points-and-rays");
+  ASSERT_TRUE(body.skeleton[JointId::Neck].seen());
+  EXPECT_LT(std::abs(off().z()), 0.06) << "of 0.6 m across";
+  EXPECT_LT(off().norm(), 0.25);
+  EXPECT_LT(off().dot(body.skeleton[JointId::Neck].covariance.matrix().inverse() * off()), 7.8);
+  const Eigen::Vector3d before = off();
+  ASSERT_GT(before.norm(), 0.03);
+  body = room.see(place, {0, 1, 2, 3});
+  EXPECT_EQ(body.method, "body-filter");
+  EXPECT_LT((off() - before).norm(), 0.5 * before.norm()) << "handed back without a leap";
+  for (int i = 0; i < 30; ++i) body = room.see(place, {0, 1, 2, 3});
+  EXPECT_LT(off().norm(), 0.02);
 }
 
 }  // namespace
