@@ -283,6 +283,19 @@ Result<Registration> adopted(const Registration& current, const Registration& ca
   return extended(current, candidate, kind);
 }
 
+Registration confirmed_part(Registration candidate) {
+  std::vector<SensorId> unconfirmed;
+  for (const auto& [sensor, own] : candidate.verdicts) {
+    if (own.unconfirmed && candidate.sensors.contains(sensor)) unconfirmed.push_back(sensor);
+  }
+  for (const SensorId& sensor : unconfirmed)
+    candidate = without(std::move(candidate), sensor,
+                        "sensor " + sensor.str() +
+                            " was placed by directions alone, and is used once somebody has "
+                            "accepted its place (chorus register --accept)");
+  return candidate;
+}
+
 void note_refusals(Registration& current, const Registration& candidate) {
   for (const auto& [sensor, own] : candidate.verdicts) {
     if (own.verdict == Verdict::Refused && !current.sensors.contains(sensor))

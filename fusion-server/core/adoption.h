@@ -43,6 +43,10 @@ extern const char* const kContradicted;
                                            const Registration& candidate, SolveKind kind,
                                            bool hold);
 
+/// What may be used without asking: the registration without its unconfirmed places, whose sensors
+/// are refused with that reason.
+[[nodiscard]] Registration confirmed_part(Registration candidate);
+
 /// Notes the reason for each sensor that neither the registration nor the candidate could place.
 void note_refusals(Registration& current, const Registration& candidate);
 

@@ -148,11 +148,15 @@ void say_start(const Situation& s, Walker walker, std::vector<std::string>& out)
   }
 }
 
-/// All have a place, but not a good one: says which walk would mend that.
+/// All have a place, but not a good one: says which walk would mend that.  None makes places of
+/// directions alone good.
 void say_provisional(const Situation& s, std::vector<std::string>& out) {
   if (s.registration.verdict != Verdict::Provisional || s.proposes) return;
+  const auto rays = those(s, [&](const SensorId& id) { return s.last_seen.sends_rays_alone(id); });
+  if (rays.size() >= s.registration.sensors.size()) return;
   std::vector<SensorId> weak;
   for (const auto& [sensor, place] : s.registration.sensors) {
+    if (s.last_seen.sends_rays_alone(sensor)) continue;
     const auto own = s.registration.verdicts.find(sensor);
     if (own != s.registration.verdicts.end() && own->second.verdict != Verdict::Good &&
         sensor != s.registration.master)

@@ -65,6 +65,7 @@ Result<std::uint64_t> PlacesInUse::accept(const std::set<SensorId>& configured) 
   Registration next = proposal_->registration;
   keep_configured(next, configured);
   if (next.sensors.empty()) return none_configured();
+  for (auto& [sensor, own] : next.verdicts) own.unconfirmed = false;
   const std::uint64_t session = *drop_proposal();
   adopt(std::move(next));
   return session;

@@ -277,8 +277,8 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
     session_.finish();
   }
   if (asks_first(current)) return Outcome::Nothing;
-  auto next =
-      places_.successor(registration(), candidate, SolveKind::Provisional, current.automatic);
+  auto next = places_.successor(registration(), confirmed_part(candidate), SolveKind::Provisional,
+                                current.automatic);
   if (!next) return Outcome::Nothing;
   places_.adopt_provisionally(std::move(*next));
   current.adopted = true;
@@ -288,9 +288,21 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
 /// Compares with the registration from before the session; the session's own provisional ones do
 /// not count.
 Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
+  const Registration sure = confirmed_part(candidate);
+  const bool whole = asks_first(sessions_.front()) || sure.sensors.empty();
+  if (whole && !candidate.sensors.empty()) {
+    auto next = places_.successor(places_.settled(), candidate, SolveKind::Final,
+                                  sessions_.front().automatic);
+    if (next) return propose(std::move(*next), candidate, now);
+  }
+  const Outcome outcome = put_into_use(whole ? candidate : sure, now);
+  if (sure.sensors.size() < candidate.sensors.size()) propose_rest(candidate);
+  return outcome;
+}
+
+Outcome Registrar::put_into_use(const Registration& candidate, Timestamp now) {
   SessionStatus& current = sessions_.front();
   auto next = places_.successor(places_.settled(), candidate, SolveKind::Final, current.automatic);
-  if (next && asks_first(current)) return propose(std::move(*next), candidate, now);
   current.adopted = next.has_value();
   Outcome outcome = Outcome::Adopted;
   if (next) {
@@ -305,6 +317,15 @@ Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   back_off(candidate, now);
   end_session(SessionState::Done);
   return outcome;
+}
+
+/// Proposes the unconfirmed places beside those that are in use by now.
+void Registrar::propose_rest(const Registration& candidate) {
+  auto next = places_.successor(registration(), candidate, SolveKind::Final, true);
+  if (!next) return;
+  drop_proposal("replaced by another proposal");
+  auto changes = place_changes(registration(), *next);
+  places_.propose({sessions_.front().id, std::move(*next), std::move(changes)});
 }
 
 void Registrar::explain_refusal(const Registration& candidate, const Error& why, bool withdrawn) {

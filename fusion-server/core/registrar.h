@@ -3,7 +3,8 @@
 // It uses no thread, socket or clock: frames, requests and solutions go in, solve jobs come out.
 // Provisional registrations belong to the session, and are withdrawn when its final solve is
 // refused.  A sensor that could not be placed does not start sessions again and again.  A result
-// that has to be accepted first waits as a proposal: until it is accepted or declined, until the
+// that has to be accepted first, because a client wants that or because places of it are
+// unconfirmed, waits as a proposal: until it is accepted or declined, until the
 // registration in use becomes another one, or until the server ends.
 #pragma once
 
@@ -106,6 +107,8 @@ class Registrar {
   void drop_proposal(const std::string& reason);
   Outcome settle_provisional(const Registration& candidate);
   Outcome settle_final(const Registration& candidate, Timestamp now);
+  Outcome put_into_use(const Registration& candidate, Timestamp now);
+  void propose_rest(const Registration& candidate);
   void explain_refusal(const Registration& candidate, const Error& why, bool withdrawn);
   void back_off(const Registration& candidate, Timestamp now);
   [[nodiscard]] std::vector<std::string> shortfalls(const Registration& candidate) const;

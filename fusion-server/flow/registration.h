@@ -47,6 +47,9 @@ enum class Verdict { None, Provisional, Good, Refused };
 struct SensorVerdict {
   Verdict verdict = Verdict::None;   ///< Refused: the sensor has no place.
   std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
+  /// The place is used only once somebody has accepted it (registration/ray_places.h).  Of the
+  /// result of a walk; not stored.
+  bool unconfirmed = false;
 };
 
 /// By how much all sensors report joints too near, along their lines of sight, as a walk says.

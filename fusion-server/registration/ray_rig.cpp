@@ -79,8 +79,9 @@ Result<std::vector<View>> starts_of(const std::vector<RayPoint>& points,
   for (const auto& [pair, rays] : graph) {
     const auto seen = two_views(rays);
     if (!seen) continue;
-    widest = std::max(widest, seen->parallax);
-    if (seen->parallax < kLeastParallax) continue;
+    const double parallax = std::min(seen->parallax, seen->beyond_turn);
+    widest = std::max(widest, parallax);
+    if (parallax < kLeastParallax) continue;
     starts.push_back({pair.first, pair.second, *seen});
   }
   if (starts.empty() && widest > 0.0)

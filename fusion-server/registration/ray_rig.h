@@ -4,9 +4,9 @@
 //   minimise over places T_i and joints x_k: sum rho(angle(r_ik, T_i^-1 x_k) / sigma_k)
 //
 // The start is a view graph: of each pair the essential matrix, the best pair first, then one
-// camera after the other by perspective-n-point.  Then all places together, with the joints
-// eliminated (point_elimination.h) and Tukey's loss.  What is left open is where the rig stands and
-// how large it is.  docs/papers/rays.md, "Registration".
+// camera after the other by perspective-n-point.  Then all places and joints together, with
+// Cauchy's loss.  What is left open is where the rig stands and how large it is.
+// docs/papers/rays.md, "Registration".
 #pragma once
 
 #include <map>

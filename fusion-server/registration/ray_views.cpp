@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/SVD>
 #include <opencv2/calib3d.hpp>
 
 #include "common/base/median.h"
@@ -65,6 +66,23 @@ auto guarded(const Estimate& estimate) -> decltype(estimate()) {
   }
 }
 
+/// The median angle that is left when one rotation takes the second camera's rays to the first's:
+/// where cameras are only turned, there is no other parallax, whatever an essential matrix fits.
+double beyond_turn(const CommonRays& rays, const std::vector<std::size_t>& index) {
+  Eigen::Matrix3d both = Eigen::Matrix3d::Zero();
+  for (const std::size_t i : index) both += rays.first[i] * rays.second[i].transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(both, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d proper = Eigen::Matrix3d::Identity();
+  proper(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  const Eigen::Matrix3d turn = svd.matrixU() * proper * svd.matrixV().transpose();
+  std::vector<double> angles;
+  for (const std::size_t i : index) {
+    const Eigen::Vector3d second = turn * rays.second[i];
+    angles.push_back(std::atan2(rays.first[i].cross(second).norm(), rays.first[i].dot(second)));
+  }
+  return angles.empty() ? 0.0 : median(std::move(angles));
+}
+
 Result<TwoViews> two_views_of(const CommonRays& rays) {
   const PixelPairs pairs = pixel_pairs(rays);
   if (pairs.first.size() < kLeastCommon) return tl::unexpected(too_few(pairs.first.size()));
@@ -91,6 +109,7 @@ Result<TwoViews> two_views_of(const CommonRays& rays) {
   }
   if (angles.empty()) return fail(ErrorCode::Unavailable, "rays", "no common rays meet");
   views.parallax = median(std::move(angles));
+  views.beyond_turn = beyond_turn(rays, pairs.index);
   return views;
 }
 

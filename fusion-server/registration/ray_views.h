@@ -19,6 +19,7 @@ struct TwoViews {
   std::size_t common = 0;                                               ///< Rays that both have.
   std::size_t agreeing = 0;  ///< Of these, rays that meet in front of both.
   double parallax = 0.0;     ///< Median angle between rays that agree [rad].
+  double beyond_turn = 0.0;  ///< What is left of it if the cameras were only turned [rad].
 };
 
 /// Rays of the same joints at the same instants, in either camera's own space.

@@ -1,10 +1,10 @@
 // Brings the sensors of a walk in step, and solves it (registration.h).
-#include "fusion-server/registration/common_scale.h"
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/latency.h"
 #include "fusion-server/registration/overruled_clocks.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/ray_depths.h"
+#include "fusion-server/registration/ray_places.h"
 #include "fusion-server/registration/registration.h"
 #include "fusion-server/registration/time_offset.h"
 
@@ -23,7 +23,7 @@ Registration solve_as_stated(const std::vector<WalkTrack>& walk, Timestamp now,
   Registration found = without_latencies(
       in_step, [&] { return solve_with(estimate, in_step, now, config); }, config);
   found.clocks = offsets_of_placed(clocks, found);
-  return with_scale(std::move(found), in_step, config);
+  return settled(std::move(found), in_step, config);
 }
 
 }  // namespace

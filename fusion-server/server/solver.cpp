@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "fusion-server/registration/common_scale.h"
 #include "fusion-server/registration/guessed_depth.h"
 #include "fusion-server/registration/latency.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/ray_depths.h"
+#include "fusion-server/registration/ray_places.h"
 #include "fusion-server/registration/time_offset.h"
 
 namespace chorus::server {
@@ -127,7 +127,7 @@ Registration solve_walk(const core::SolveJob& job, Timestamp now) {
   Registration found = registration::without_latencies(
       walk, [&] { return solve_pairs_first(walk, moment); }, config, search);
   found.clocks = clocks.offsets;
-  return registration::with_scale(std::move(found), walk, config);
+  return registration::settled(std::move(found), walk, config);
 }
 
 }  // namespace

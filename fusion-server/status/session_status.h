@@ -54,7 +54,7 @@ struct SensorAccuracy {
 
 /// When the result of a session comes into use.
 enum class Adoption {
-  AtOnce,
+  AtOnce,  ///< Places that are unconfirmed (flow/registration.h) wait all the same.
   /// After somebody has accepted it, if another registration is in use; else at once.
   WhenAccepted,
 };

@@ -192,10 +192,13 @@ std::string proposal_report(const nlohmann::json& proposal) {
                     millimetres("expectedRadius"), millimetres("moves"),
                     shown(client::number_at(change, "turnsDegrees"), 1)});
   }
+  std::string reasons;
+  for (const std::string& reason : lines_at(proposal, "reasons"))
+    reasons += "  " + printable(reason) + "\n";
   return fmt::format(
-      "proposed, not in use: {}\n{}chorus register --accept puts it into use, chorus register "
-      "--decline keeps the old one\n",
-      text_at(proposal, "verdict"), table(std::move(rows)));
+      "proposed, not in use: {}\n{}{}chorus register --accept puts it into use, chorus register "
+      "--decline keeps what was\n",
+      text_at(proposal, "verdict"), reasons, table(std::move(rows)));
 }
 
 /// Whether this session's result waits to be accepted.

