@@ -37,12 +37,15 @@ TEST(Register, AProposalNamesTheSensorsThatItCouldNotPlace) {
   auto texts = walk(done.dump());
   auto waiting = nlohmann::json::parse(kIdle);
   waiting["sensors"]["s3"] = {{"verdict", "Good"}};  // its place of now is not the proposal's
-  waiting["proposal"] = {
-      {"sessionId", 7}, {"verdict", "Good"}, {"changes", nlohmann::json::array()}};
+  waiting["proposal"] = {{"sessionId", 7},
+                         {"verdict", "Good"},
+                         {"reasons", {"measure whether s1 is 3.10 m from it"}},
+                         {"changes", nlohmann::json::array()}};
   texts["/registration"] = {kRuns, waiting.dump()};
   const Outcome told = register_at(ScriptedServer(texts), {"--propose"});
   EXPECT_EQ(told.code, kExitFailed);
   EXPECT_THAT(told.out, ::testing::HasSubstr("proposed, not in use: Good"));
+  EXPECT_THAT(told.out, ::testing::HasSubstr("measure whether s1 is 3.10 m from it"));
   EXPECT_THAT(told.error, ::testing::HasSubstr("s3 has no place: the walk lasted only 2 s\n"));
 }
 
