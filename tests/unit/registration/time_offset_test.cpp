@@ -2,6 +2,7 @@
 #include "fusion-server/registration/time_offset.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -202,6 +203,25 @@ TEST(OffsetProfile, OfSensorsThatSawNothingTogetherIsNone) {
       offset_walker(off_by(watch(2, ring_place(deg(40)), spec), std::chrono::hours(1), 0.5), {});
   EXPECT_FALSE(OffsetProfile(first, late, {}, 1.1).best());
   EXPECT_FALSE(OffsetProfile(first, Walker{}, {}, 1.1).best());
+}
+
+/// Two cells of a hall share a passage, which is a tenth of what each of them sees.
+TEST(OffsetProfile, OfSensorsThatShareAPassageOnlyIsFoundFromTheFramesAroundIt) {
+  WalkSpec spec;
+  spec.length = 180.0;
+  WalkTrack passing = watch(1, ring_place(0), spec);
+  std::erase_if(passing.frames, [](const SensorFrame& frame) {
+    return std::fmod(seconds(frame.captured - kWalkStart), 20.0) > 2.0;
+  });
+  const Walker first = offset_walker(passing, {});
+  const Walker second =
+      offset_walker(off_by(watch(2, ring_place(deg(60)), spec), milliseconds(150), 0.5), {});
+  const OffsetProfile profile(first, second, {}, 1.1);
+  const auto best = profile.best();
+  ASSERT_TRUE(best);
+  EXPECT_NEAR(best->offset, -0.150, 0.020);
+  EXPECT_LT(best->sigma, 0.050);
+  EXPECT_TRUE(profile.place_at(best->offset));
 }
 
 TEST(OffsetProfile, WithoutFloorsFindsTheOffsetToo) {
