@@ -7,7 +7,10 @@
 namespace chorus::worn {
 namespace {
 
-constexpr double kWearerGone = 5.0;   // [s] for which nobody has seen the wearer
+constexpr double kWearerGone = 5.0;  // [s] for which nobody has seen the wearer
+constexpr double kRenamedWithin =
+    0.5;                              // [s] from the wearer's last sight to a newcomer's first one
+constexpr double kRenamedNear = 0.4;  // [m] between both: nobody else can have come so near
 constexpr double kSameSight = 0.5;    // [m] between two passes' sights of one person
 constexpr double kSlipIsNews = 60.0;  // [s] for which a slip is told
 // Sides that are less probable teach nothing (as SidesConfig::learn_from): what is learned on wrong
@@ -132,6 +135,25 @@ bool Wear::calibrate_one(double time) {
   return next != nullptr;
 }
 
+/// Who the wearer is now: the tracker may have given them another id, where they stand.  Notes
+/// where they are.
+void Wear::follow_wearer(Source& source, const std::vector<FusedBody>& bodies, double time) const {
+  if (!source.wearer) return;
+  const bool there = std::ranges::find(bodies, *source.wearer, &FusedBody::id) != bodies.end();
+  if (!there && source.place && time >= source.seen && time - source.seen <= kRenamedWithin) {
+    for (const FusedBody& body : bodies) {
+      const auto place = middle_of(body);
+      if (!place || std::ranges::find(source.beside, body.id) != source.beside.end()) continue;
+      if ((*place - *source.place).norm() <= kRenamedNear) source.wearer = body.id;
+    }
+  }
+  const auto wearer = std::ranges::find(bodies, *source.wearer, &FusedBody::id);
+  if (wearer == bodies.end()) return;
+  source.place = middle_of(*wearer);
+  source.beside.clear();
+  for (const FusedBody& body : bodies) source.beside.push_back(body.id);
+}
+
 void Wear::learn(const std::vector<FusedBody>& bodies, Timestamp instant) {
   if (sources_.empty()) return;
   if (!origin_) origin_ = instant;
@@ -140,6 +162,7 @@ void Wear::learn(const std::vector<FusedBody>& bodies, Timestamp instant) {
   for (auto& [id, source] : sources_) {
     std::vector<inertial::InertialReading> readings = source.history.at(instant);
     std::erase_if(readings, [](const auto& each) { return !each.inertial_from_sensor; });
+    follow_wearer(source, bodies, time);
     if (source.wearer) {
       const auto body = std::ranges::find(bodies, *source.wearer, &FusedBody::id);
       if (body != bodies.end()) {

@@ -56,7 +56,9 @@ class Wear {
   struct Source {
     inertial::OrientationHistory history;
     std::optional<PersonId> wearer;
-    double seen = 0.0;  ///< When the wearer was last seen [s].
+    double seen = 0.0;                          ///< When the wearer was last seen [s],
+    std::optional<Eigen::Vector3d> place = {};  ///< where [m],
+    std::vector<PersonId> beside = {};          ///< and who else was.
     WearerSearch search;
     std::map<std::string, WornSensor> sensors;
     std::vector<std::string> unplaced;  ///< Sensors whose limb is not known.
@@ -69,6 +71,7 @@ class Wear {
                    const FusedBody& body, double time);
   [[nodiscard]] bool calibrate_one(double time);
   void begin(const std::vector<FusedBody>& bodies, Timestamp instant);
+  void follow_wearer(Source& source, const std::vector<FusedBody>& bodies, double time) const;
 
   WornConfig config_;
   std::map<SensorId, Source> sources_;

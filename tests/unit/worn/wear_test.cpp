@@ -215,6 +215,32 @@ TEST(FirstPass, LooksForAsLongAsCalibrationsImprove) {
   EXPECT_EQ(world.pass.found().front().wearer, PersonId{1});
 }
 
+TEST(Wear, AWearerWhoGetsAnotherIdWhereTheyStandIsFollowed) {
+  WornWorld world({kWearer, kOther});
+  world.run(20.0);
+  ASSERT_TRUE(world.all_calibrated());
+  world.people.front().id = 9;
+  world.run(20.5);
+  EXPECT_EQ(world.report().wearer, PersonId{9});
+  EXPECT_TRUE(world.all_calibrated());
+  EXPECT_EQ(world.says().size(), walker::kLimbs.size());
+}
+
+TEST(Wear, WhoComesElsewhereOrWasThereBeforeIsNotTheWearer) {
+  WornWorld world({kWearer, kOther});
+  world.run(20.0);
+  const Suit suit = world.suit;
+  for (double t = 20.0; t < 26.0; t += 1.0 / 15.0) {  // only the other one, and a newcomer
+    Walker newcomer = kThird;
+    newcomer.id = 7;
+    world.wear.take(suit.says(kWearer, t));
+    world.wear.learn({walker::fused_of(kOther, t, 0.015, world.random),
+                      walker::fused_of(newcomer, t, 0.015, world.random)},
+                     walker::at(t));
+  }
+  EXPECT_FALSE(world.wear.reports(walker::at(26.0)).front().wearer);
+}
+
 TEST(Wear, NothingIsLearnedOfLimbsWhileItIsInDoubtWhichSideIsWhich) {
   WornWorld world({kWearer});
   world.sides = 0.7;
