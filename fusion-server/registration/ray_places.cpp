@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,31 +14,12 @@
 namespace chorus::registration {
 namespace {
 
-// A distance by hand is good to 0.5 %, and lenses lie within 20 mm of where one holds the tape; two
-// places that are right to 60 mm differ by no more than this along the line between them.
-constexpr double kAgreeing = 0.05;  // [m]
-constexpr int kLastRounds = 25;     // as after the last camera of a rig
+constexpr int kLastRounds = 25;  // as after the last camera of a rig
 
 double apart(const Registration& found, const SensorId& a, const SensorId& b) {
   return (found.sensors.at(a).world_from_sensor.translation() -
           found.sensors.at(b).world_from_sensor.translation())
       .norm();
-}
-
-/// The sensors at the ends of measured distances; none at all if one of these disagrees, or if
-/// there are too few.
-std::set<SensorId> vouched_for(const Registration& found, const RegistrationConfig& config) {
-  std::set<std::pair<SensorId, SensorId>> pairs;
-  std::set<SensorId> ends;
-  for (const KnownDistance& known : config.known_distances) {
-    if (!found.sensors.contains(known.first) || !found.sensors.contains(known.second)) continue;
-    const double off = apart(found, known.first, known.second) - known.length;
-    if (!(std::abs(off) <= kAgreeing)) return {};
-    pairs.insert(std::minmax(known.first, known.second));
-    ends.insert({known.first, known.second});
-  }
-  const std::size_t least = config.cameras_alone ? 2 : 1;
-  return pairs.size() >= least ? ends : std::set<SensorId>{};
 }
 
 /// The nearest other sensor whose distance was not measured, or the nearest one.
@@ -116,23 +96,17 @@ Registration settled(Registration found, const std::vector<WalkTrack>& walk,
 
 Registration with_ray_doubts(Registration found, const std::vector<WalkTrack>& walk,
                              const RegistrationConfig& config) {
-  const std::set<SensorId> vouched = vouched_for(found, config);
   bool any = false;
   for (const WalkTrack& track : walk) {
     if (!track.directions || !found.sensors.contains(track.sensor)) continue;
-    found.verdicts[track.sensor].unconfirmed = !vouched.contains(track.sensor);
-    any = any || !vouched.contains(track.sensor);
-    doubt(found, track.sensor,
-          vouched.contains(track.sensor)
-              ? fmt::format("sensor {} was placed by directions alone; measured distances agree",
-                            track.sensor.str())
-              : check_of(track.sensor, found, config));
+    found.verdicts[track.sensor].unconfirmed = true;
+    doubt(found, track.sensor, check_of(track.sensor, found, config));
+    any = true;
   }
   if (any)
     found.reasons.emplace_back(
         "places by directions alone may be off by more than 0.1 m without a sign of it: they come "
-        "into use once somebody has accepted them, or once one more measured distance agrees "
-        "(registration.known_distances)");
+        "into use once somebody has accepted them");
   return found;
 }
 

@@ -1,5 +1,5 @@
-// Cameras that send rays alone, registered from one person who walks and one measured distance, or
-// two: what the places err by, and how many of them would be used without asking anybody.
+// Cameras that send rays alone, registered from one person who walks and one measured distance:
+// what the places err by, and how many of them would be used without asking anybody.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -122,28 +122,16 @@ registration::KnownDistance longest(const RayWalk& walk) {
   return best;
 }
 
-/// The distance between the two cameras of a rig of four that this one does not join.
-registration::KnownDistance across(const RayWalk& walk, const registration::KnownDistance& first) {
-  RayWalk rest = walk;
-  rest.world_from_sensor.erase(first.first);
-  rest.world_from_sensor.erase(first.second);
-  return longest(rest);
-}
-
-/// With the longest distance, or with that and the one across it.
-Registration registered(const RayWalk& walk, int distances) {
+Registration registered(const RayWalk& walk) {
   registration::RegistrationConfig config;
   config.known_distances = {longest(walk)};
-  if (distances > 1) config.known_distances.push_back(across(walk, config.known_distances.front()));
   return registration::solve(walk.tracks, importers::kDefaultStart, config);
 }
 
 void score(Report& report, const std::string& name, const std::vector<RayWalk>& walks) {
-  for (const int distances : {1, 2}) {
-    RayScores scores;
-    for (const RayWalk& walk : walks) scores.add(registered(walk, distances), walk);
-    scores.report(report, distances == 1 ? name : name + "-two-distances");
-  }
+  RayScores scores;
+  for (const RayWalk& walk : walks) scores.add(registered(walk), walk);
+  scores.report(report, name);
 }
 
 // -- simulated ----------------------------------------------------------------------------------
