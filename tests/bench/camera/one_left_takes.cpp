@@ -54,12 +54,13 @@ class LeftCamera {
     body.captured = at;
     body.skeleton = to_sensor(camera_from_world_, person);
     for (std::size_t j = 0; j < kJointCount; ++j) {
+      if (what != Shows::Depth) {
+        show(body.skeleton.joints[j], what == Shows::Guesses);
+        continue;
+      }
       for (double& axis : slow_[j])
         axis = slow * axis + std::sqrt(1.0 - slow * slow) * normal_(random_);
-      if (what == Shows::Depth)
-        measure(body.skeleton.joints[j], slow_[j]);
-      else
-        show(body.skeleton.joints[j], what == Shows::Guesses);
+      measure(body.skeleton.joints[j], slow_[j]);
     }
     frame.bodies.push_back(std::move(body));
     return frame;
