@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/base/strong_id.h"
+#include "common/body/hand_points.h"
 #include "common/body/skeleton.h"
 #include "common/time/timestamp.h"
 
@@ -11,6 +12,7 @@ struct BodyFrame {
   BodyId id;
   Timestamp captured;
   Skeleton<SensorSpace> skeleton;
+  HandsPtr hands = {};  ///< In sensor space.
 };
 
 }  // namespace chorus

@@ -59,24 +59,80 @@ Result<Span> span_in(const json& object, const std::string& where) {
   return Span{*from, *to};
 }
 
-Result<Phase> phase_in(const json& object, const std::string& where) {
-  constexpr std::array<std::string_view, 3> kKeys{"name", "fromSeconds", "toSeconds"};
-  if (auto ok = known_keys(object, kKeys, true, where); !ok) return pass(ok);
-  const auto span = span_in(object, where);
-  if (!span) return pass(span);
-  auto asked = read_asked(object, where);
-  if (!asked) return pass(asked);
-  const auto name = object.value("name", json(""));
-  if (!name.is_string()) return tl::unexpected<Error>(bad(where + ".name", "must be a text"));
-  return Phase{name.get<std::string>(), *span, *asked};
+Result<std::string> mark_named(const json& object, const char* key, const Marks& marks,
+                               const std::string& where) {
+  const auto found = object.find(key);
+  const std::string at = fmt::format("{}.{}", where, key);
+  if (found == object.end() || !found->is_string())
+    return tl::unexpected<Error>(bad(at, "must be the name of a mark"));
+  auto name = found->get<std::string>();
+  if (std::ranges::find(marks.all, name, &NamedInstant::name) != marks.all.end()) return name;
+  std::string known;
+  for (const NamedInstant& mark : marks.all)
+    if (known.find("'" + mark.name + "'") == std::string::npos)
+      known += (known.empty() ? "'" : ", '") + mark.name + "'";
+  return tl::unexpected<Error>(
+      bad(at, fmt::format("the recording has no mark '{}'; {}", name,
+                          known.empty() ? "it has none" : "it has " + known)));
 }
 
-Result<void> read_phases(const json& list, Task& task, const std::string& where) {
+/// From each mark of the one name to the next one of the other, or to the next of any name.
+Result<std::vector<Span>> marked_spans(const json& object, const Marks& marks,
+                                       const std::string& where) {
+  if (object.contains("fromSeconds") || object.contains("toSeconds"))
+    return tl::unexpected<Error>(bad(where, "is told by seconds or by marks, not by both"));
+  const auto from = mark_named(object, "fromMark", marks, where);
+  if (!from) return pass(from);
+  const bool named_end = object.contains("toMark");
+  const auto to = named_end ? mark_named(object, "toMark", marks, where) : Result<std::string>("");
+  if (!to) return pass(to);
+  std::vector<Span> spans;
+  for (auto begin = marks.all.begin(); begin != marks.all.end(); ++begin) {
+    if (begin->name != *from || (!spans.empty() && begin->at < spans.back().to)) continue;
+    const auto end = std::find_if(begin + 1, marks.all.end(), [&](const NamedInstant& mark) {
+      return mark.at > begin->at && (!named_end || mark.name == *to);
+    });
+    const double until = end == marks.all.end() ? marks.end : std::min(end->at, marks.end);
+    if (begin->at >= 0.0 && begin->at < until) spans.push_back({begin->at, until});
+  }
+  if (spans.empty())
+    return tl::unexpected<Error>(bad(where, "lies outside the frames of the recording"));
+  return spans;
+}
+
+/// One span told by seconds, or one for each mark.
+Result<std::vector<Span>> spans_in(const json& object, const Marks& marks,
+                                   const std::string& where) {
+  if (object.contains("fromMark") || object.contains("toMark"))
+    return marked_spans(object, marks, where);
+  const auto span = span_in(object, where);
+  if (!span) return pass(span);
+  return std::vector{*span};
+}
+
+Result<std::vector<Phase>> phases_in(const json& object, const Marks& marks,
+                                     const std::string& where) {
+  constexpr std::array<std::string_view, 5> kKeys{"name", "fromSeconds", "toSeconds", "fromMark",
+                                                  "toMark"};
+  if (auto ok = known_keys(object, kKeys, true, where); !ok) return pass(ok);
+  const auto spans = spans_in(object, marks, where);
+  if (!spans) return pass(spans);
+  auto asked = read_asked(object, where);
+  if (!asked) return pass(asked);
+  const auto name = object.value("name", object.value("fromMark", json("")));
+  if (!name.is_string()) return tl::unexpected<Error>(bad(where + ".name", "must be a text"));
+  std::vector<Phase> phases;
+  for (const Span& span : *spans) phases.push_back({name.get<std::string>(), span, *asked});
+  return phases;
+}
+
+Result<void> read_phases(const json& list, const Marks& marks, Task& task,
+                         const std::string& where) {
   if (!list.is_array()) return tl::unexpected<Error>(bad(where, "must be a list"));
   for (std::size_t i = 0; i < list.size(); ++i) {
-    auto phase = phase_in(list[i], fmt::format("{}[{}]", where, i));
-    if (!phase) return pass(phase);
-    task.phases.push_back(std::move(*phase));
+    const auto phases = phases_in(list[i], marks, fmt::format("{}[{}]", where, i));
+    if (!phases) return pass(phases);
+    task.phases.insert(task.phases.end(), phases->begin(), phases->end());
   }
   std::ranges::stable_sort(task.phases, {}, [](const Phase& phase) { return phase.span.from; });
   for (std::size_t i = 1; i < task.phases.size(); ++i) {
@@ -92,11 +148,6 @@ Result<void> read_phases(const json& list, Task& task, const std::string& where)
 }
 
 Result<TaskLift> lift_in(const json& object, const std::string& where) {
-  constexpr std::array<std::string_view, 6> kKeys{"fromSeconds", "toSeconds", "loadKg",
-                                                  "perMinute",   "hours",     "coupling"};
-  if (auto ok = known_keys(object, kKeys, false, where); !ok) return pass(ok);
-  const auto span = span_in(object, where);
-  if (!span) return pass(span);
   const auto asked = read_asked(object, where);
   if (!asked) return pass(asked);
   if (!asked->load_kg || !asked->coupling || asked->coupling == Coupling::Unacceptable)
@@ -106,15 +157,24 @@ Result<TaskLift> lift_in(const json& object, const std::string& where) {
   if (!often) return pass(often);
   const auto hours = number(object, "hours", 0.0, where);
   if (!hours) return pass(hours);
-  return TaskLift{*span, *asked->load_kg, *often, *hours, *asked->coupling};
+  return TaskLift{{}, *asked->load_kg, *often, *hours, *asked->coupling};
 }
 
-Result<void> read_lifts(const json& list, Task& task, const std::string& where) {
-  if (!list.is_array()) return tl::unexpected<Error>(bad(where, "must be a list"));
+Result<void> read_lifts(const json& list, const Marks& marks, Task& task, const std::string& file) {
+  constexpr std::array<std::string_view, 8> kKeys{
+      "fromSeconds", "toSeconds", "fromMark", "toMark", "loadKg", "perMinute", "hours", "coupling"};
+  if (!list.is_array()) return tl::unexpected<Error>(bad(file, "must be a list"));
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const auto lift = lift_in(list[i], fmt::format("{}[{}]", where, i));
+    const std::string where = fmt::format("{}[{}]", file, i);
+    if (auto ok = known_keys(list[i], kKeys, false, where); !ok) return pass(ok);
+    const auto spans = spans_in(list[i], marks, where);
+    if (!spans) return pass(spans);
+    auto lift = lift_in(list[i], where);
     if (!lift) return pass(lift);
-    task.lifts.push_back(*lift);
+    for (const Span& span : *spans) {
+      lift->span = span;
+      task.lifts.push_back(*lift);
+    }
   }
   return {};
 }
@@ -145,22 +205,23 @@ Result<ClassPoints> points_in(const json& object, const std::string& where) {
   return points;
 }
 
-Result<void> read_parts(const json& object, Task& task, const std::string& file) {
+Result<void> read_parts(const json& object, const Marks& marks, Task& task,
+                        const std::string& file) {
   if (object.contains("cycleSeconds")) {
     const auto cycle = number(object, "cycleSeconds", 1.0, file);
     if (!cycle) return pass(cycle);
     task.cycle = *cycle;
   }
   if (object.contains("stance")) {
-    const auto span = span_in(object["stance"], file + ".stance");
-    if (!span) return pass(span);
-    task.stance = *span;
+    const auto spans = spans_in(object["stance"], marks, file + ".stance");
+    if (!spans) return pass(spans);
+    task.stance = spans->front();
   }
   if (object.contains("phases")) {
-    if (auto ok = read_phases(object["phases"], task, file + ".phases"); !ok) return ok;
+    if (auto ok = read_phases(object["phases"], marks, task, file + ".phases"); !ok) return ok;
   }
   if (object.contains("lifts")) {
-    if (auto ok = read_lifts(object["lifts"], task, file + ".lifts"); !ok) return ok;
+    if (auto ok = read_lifts(object["lifts"], marks, task, file + ".lifts"); !ok) return ok;
   }
   if (!object.contains("eawsPoints")) return {};
   auto points = points_in(object["eawsPoints"], file + ".eawsPoints");
@@ -191,7 +252,7 @@ std::optional<std::size_t> Task::phase_at(double at) const {
   return std::nullopt;
 }
 
-Result<Task> read_task(std::string_view text, const std::string& file) {
+Result<Task> read_task(std::string_view text, const std::string& file, const Marks& marks) {
   JsonLimits limits;
   limits.comments = true;
   const auto object = parse_json(text, limits);
@@ -207,7 +268,7 @@ Result<Task> read_task(std::string_view text, const std::string& file) {
   const auto title = object->value("title", json(""));
   if (!title.is_string()) return tl::unexpected<Error>(bad(file + ".title", "must be a text"));
   task.title = title.get<std::string>();
-  if (auto ok = read_parts(*object, task, file); !ok) return pass(ok);
+  if (auto ok = read_parts(*object, marks, task, file); !ok) return pass(ok);
   return task;
 }
 

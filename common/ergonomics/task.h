@@ -7,7 +7,10 @@
 //    "coupling": "fair"}], "eawsPoints": {"secondsPerMinute": [3, 4.5], "points": {"standing":
 //    [0.7, 1]}}}
 //
-// Seconds count from the first frame of the recording.
+// Seconds count from the first frame of the recording.  Instead of them, phases, lifts and the
+// stance may name marks that were set while it ran: {"name": "lift", "fromMark": "takes it",
+// "toMark": "puts it down"}, once for each mark of that name; without "toMark" until the next mark
+// of any name, or the recording's end.
 #pragma once
 
 #include <map>
@@ -26,6 +29,18 @@ struct Span {
   double to = 0.0;    ///< [s], not included
 
   [[nodiscard]] bool holds(double at) const { return at >= from && at < to; }
+};
+
+/// An instant that somebody named while the recording ran.
+struct NamedInstant {
+  double at = 0.0;  ///< [s]
+  std::string name;
+};
+
+/// What the keys fromMark and toMark mean.
+struct Marks {
+  std::vector<NamedInstant> all;  ///< In the order of time.
+  double end = 0.0;               ///< Of the recording [s].
 };
 
 struct Phase {
@@ -63,8 +78,9 @@ struct Task {
 };
 
 /// InvalidArgument names the key: unknown ones (with the nearest known), phases that overlap or end
-/// before they begin, loads that look like newtons.
-[[nodiscard]] Result<Task> read_task(std::string_view text, const std::string& file);
+/// before they begin, loads that look like newtons, marks that were not set.
+[[nodiscard]] Result<Task> read_task(std::string_view text, const std::string& file,
+                                     const Marks& marks = {});
 
 /// Refuses phases, lifts and stances that reach beyond a recording of `seconds`.
 [[nodiscard]] Result<void> fits(const Task& task, double seconds, const std::string& file);

@@ -76,6 +76,7 @@ Result<GloveTake> read_glove_take(std::string_view text, std::string_view origin
                     ", as chorus scan names it");
   GloveTake out;
   out.side = side;
+  out.alone = bvh->joints[*joints[0]].parent == *joints[0];
   if (bvh->frame_time > 0.0) out.rate_hz = 1.0 / bvh->frame_time;
   for (std::size_t i = 0; i < bvh->frames.size(); ++i) {
     if (!bvh->frames[i].empty()) {

@@ -16,6 +16,7 @@ namespace chorus::hand {
 struct GloveTake {
   Side side = Side::Right;
   double rate_hz = 60.0;
+  bool alone = false;  ///< The hand is the file's root: no arm says where its world's ahead is.
   std::vector<Pose> poses;  ///< Never empty; wrist: where the file puts it [m].
 
   [[nodiscard]] double length_s() const { return static_cast<double>(poses.size()) / rate_hz; }

@@ -9,9 +9,11 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/body/hand_points.h"
+
 namespace chorus::layout {
 
-inline constexpr std::size_t kHandJoints = 21;
+inline constexpr std::size_t kHandJoints = kHandPoints;
 inline constexpr std::size_t kFingers = 5;
 inline constexpr std::size_t kFingerJoints = 4;
 inline constexpr std::string_view kHandLayout = "hand_21";

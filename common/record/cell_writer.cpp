@@ -43,6 +43,7 @@ std::string_view schema_text(std::string_view name) {
                             SchemaRow{kRegistrationSchemaName, kRegistrationSchema},
                             SchemaRow{kOrientationsSchemaName, kOrientationsSchema},
                             SchemaRow{kCalibrationSchemaName, kCalibrationSchema},
+                            SchemaRow{kMarkSchemaName, kMarkSchema},
                             SchemaRow{kSceneSchemaName, scene_schema()},
                             SchemaRow{kTransformsSchemaName, transforms_schema()}};
   for (const SchemaRow& row : kSchemas) {
@@ -145,6 +146,10 @@ Result<void> CellWriter::write(const PlacesChanged& places) {
     return ok;
   return put("/transforms", kTransformsSchemaName, stamps,
              frame_transforms(places.at, places.places));
+}
+
+Result<void> CellWriter::write(const Marked& mark) {
+  return put(std::string(kMarksTopic), kMarkSchemaName, {mark.at, mark.at, 0}, mark_json(mark));
 }
 
 }  // namespace chorus::record

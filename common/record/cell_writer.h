@@ -7,6 +7,7 @@
 //                                                 or whether its clock offset is known
 //   /frame                     chorus.Frame       fused
 //   /registration              chorus.Registration  when it changes
+//   /marks                     chorus.Mark        an instant that somebody named
 //   /inertial/{id}/orientations  chorus.Orientations  what worn inertial sensors say, as they sent
 //   it /inertial/{id}/clock         chorus.ClockModel    as for a sensor /inertial/{id}/calibration
 //   chorus.InertialCalibration  when it changes
@@ -25,6 +26,7 @@
 #include <vector>
 
 #include "common/inertial/calibration.h"
+#include "common/record/marks.h"
 #include "common/record/recording.h"
 #include "common/record/skeleton_scene.h"
 #include "common/resource/frame_resource.h"
@@ -93,6 +95,7 @@ class CellWriter {
   [[nodiscard]] Result<void> write(const CalibrationChanged& changed);
   [[nodiscard]] Result<void> write(const FusedFrame& fused);
   [[nodiscard]] Result<void> write(const PlacesChanged& places);
+  [[nodiscard]] Result<void> write(const Marked& mark);
   /// Closes the open chunk and passes it to the operating system.
   [[nodiscard]] Result<void> flush() { return writer_.flush(); }
   /// Waits until the disk has stored what was flushed.

@@ -19,10 +19,10 @@
 namespace chorus::record {
 namespace {
 
-/// Whether the event states something about those after it.
+/// Whether the event is no frame: it states something about those after it, or names an instant.
 bool is_state(const RecordedEvent& event) {
   return std::holds_alternative<PlacesChanged>(event) ||
-         std::holds_alternative<CalibrationChanged>(event);
+         std::holds_alternative<CalibrationChanged>(event) || std::holds_alternative<Marked>(event);
 }
 
 namespace fs = std::filesystem;
@@ -301,8 +301,8 @@ bool Recorder::offer(RecordedEvent event) {
   {
     const std::scoped_lock lock(impl_->mutex);
     if (impl_->stopping) return false;
-    // A registration or a calibration is accepted even if the queue is full: it rarely changes, and
-    // what comes after it is meaningless without it.
+    // A registration, a calibration or a mark is accepted even if the queue is full: it is rare,
+    // and what comes after it is meaningless without it.
     if (impl_->queue.size() >= most && !is_state(event)) {
       ++impl_->report.dropped;
       return false;

@@ -50,7 +50,7 @@ struct RecorderOptions {
 };
 
 using RecordedEvent =
-    std::variant<RawFrame, RawOrientations, CalibrationChanged, FusedFrame, PlacesChanged>;
+    std::variant<RawFrame, RawOrientations, CalibrationChanged, FusedFrame, PlacesChanged, Marked>;
 
 class Recorder {
  public:

@@ -74,6 +74,7 @@ class ArvidaFrame {
     pen_.put("> a skel:Skeleton ;\n  ch:bodyId ");
     pen_.put_integer(body.id);
     pen_.put_fields(BodyFields{}, body);
+    pen_.need(kJointText + kJointCount * (64 + names_.size()));
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);

@@ -93,6 +93,12 @@ Result<void> read_field(const SubjectFacts& facts, Owner& owner) {
       return refuse(facts, Field::kNames[0].name,
                     "is no name of 1-64 characters of A-Z a-z 0-9 _ -");
     Field::set(owner, *value);
+  } else if constexpr (Field::kKind == FieldKind::List) {
+    const auto& list = facts.lists[kListNames.index_of(Field::kNames[0].name)];
+    if (!list) return {};
+    FieldValues<Field::kSize> values{};
+    if (list->size() == values.size()) std::ranges::copy(*list, values.begin());
+    if (list->size() != values.size() || !Field::set(owner, values)) return refuse<Field>(facts);
   }
   return {};
 }
@@ -176,6 +182,32 @@ Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
   return body;
 }
 
+Result<PropResource> read_prop(const SubjectFacts& subject) {
+  PropResource prop;
+  if (auto ok = read_fields<PropFields>(subject, prop); !ok) return pass(ok);
+  constexpr std::size_t kLongest = 32;
+  if (prop.name.empty() || prop.name.size() > kLongest)
+    return refuse(subject, "propName", "is missing, or longer than 32 characters");
+  if (!number<PropPlace>(subject, 0)) return refuse(subject, "x", "a held prop has a place");
+  if (!number<PropTurn>(subject, 0)) return refuse(subject, "qx", "a held prop has an orientation");
+  prop.orientation.normalize();
+  return prop;
+}
+
+Result<void> read_props(const Facts& facts, const SubjectFacts& subject, FrameResource& frame) {
+  if (subject.props.size() > kMaxProps)
+    return fail(ErrorCode::TooLarge, place_of(subject, "heldProp"),
+                "more than " + std::to_string(kMaxProps) + " props");
+  for (const std::size_t at : subject.props) {
+    auto prop = read_prop(facts[at]);
+    if (!prop) return pass(prop);
+    if (std::ranges::find(frame.props, prop->name, &PropResource::name) != frame.props.end())
+      return refuse(facts[at], "propName", "two props have this name");
+    frame.props.push_back(*std::move(prop));
+  }
+  return {};
+}
+
 Result<FrameResource> read_head(const SubjectFacts& subject) {
   FrameResource frame;
   if (!subject.sequence) return refuse(subject, "sequence", "is missing");
@@ -251,6 +283,7 @@ Result<FrameResource> assemble(const Facts& facts) {
     }
     frame->bodies.push_back(*std::move(body));
   }
+  if (auto ok = read_props(facts, *root, *frame); !ok) return pass(ok);
   return frame;
 }
 

@@ -4,6 +4,7 @@
 
 #include "common/body/interpolate.h"
 #include "common/resource/frame_body_fields.h"
+#include "common/resource/frame_prop_fields.h"
 
 namespace chorus::resource {
 namespace {
@@ -55,6 +56,21 @@ JointResource joint_between(const JointResource& a, const JointResource& b, cons
   return out;
 }
 
+/// Those that the same person holds in both frames.
+std::vector<PropResource> props_between(const FrameResource& a, const FrameResource& b, double s) {
+  std::vector<PropResource> props;
+  for (const PropResource& prop : a.props) {
+    const auto later = std::ranges::find(b.props, prop.name, &PropResource::name);
+    if (later == b.props.end() || later->holder != prop.holder) continue;
+    PropResource& mixed = props.emplace_back();
+    mixed.name = prop.name;
+    mixed.position = (1.0 - s) * prop.position + s * later->position;
+    mixed.orientation = prop.orientation.slerp(s, later->orientation);
+    mix_fields<PropFields>(mixed, prop, *later, s);
+  }
+  return props;
+}
+
 }  // namespace
 
 FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp instant) {
@@ -66,6 +82,7 @@ FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp 
   FrameResource out = a;
   out.captured = instant;
   out.bodies.clear();
+  out.props = props_between(a, b, after / span);
   for (const BodyResource& body : a.bodies) {
     const auto later = std::find_if(b.bodies.begin(), b.bodies.end(),
                                     [&](const BodyResource& other) { return other.id == body.id; });

@@ -2,6 +2,7 @@
 // To add one: CONTRIBUTING.md.
 #pragma once
 
+#include "common/resource/frame_hand_fields.h"
 #include "common/resource/frame_joint_fields.h"
 
 namespace chorus::resource {
@@ -99,7 +100,8 @@ struct MethodName : PlainField<MethodName, &BodyResource::method, FieldKind::Nam
 };
 
 using BodyFields = Fields<Slot, SidesConfidence, CarriedFor, SmoothedOver, Velocity<BodyResource>,
-                          VelocityVariance<BodyResource>, Stature, StatureSigma, MethodName>;
+                          VelocityVariance<BodyResource>, Stature, StatureSigma, MethodName,
+                          LeftHand, LeftHandVariance, RightHand, RightHandVariance>;
 struct RegistrationVersion
     : PlainField<RegistrationVersion, &FrameResource::registration_version, FieldKind::Whole> {
   static constexpr std::array<FieldName, 1> kNames{{{"registrationVersion"}}};

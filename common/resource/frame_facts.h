@@ -13,6 +13,7 @@
 
 #include "common/base/result.h"
 #include "common/resource/frame_body_fields.h"
+#include "common/resource/frame_prop_fields.h"
 
 namespace chorus::resource {
 
@@ -41,12 +42,13 @@ constexpr NameList names_of() {
     }
     return true;
   };
-  JointFields::all(add) && BodyFields::all(add) && FrameFields::all(add);
+  JointFields::all(add) && BodyFields::all(add) && FrameFields::all(add) && PropFields::all(add);
   return list;
 }
 inline constexpr NameList kNumberNames = names_of<FieldKind::Numbers>();
 inline constexpr NameList kWholeNames = names_of<FieldKind::Whole>();
 inline constexpr NameList kNameNames = names_of<FieldKind::Name>();
+inline constexpr NameList kListNames = names_of<FieldKind::List>();
 
 /// Where the numbers of a field are in SubjectFacts::numbers.
 template <class Field>
@@ -71,11 +73,13 @@ struct SubjectFacts {
   std::array<std::optional<double>, kNumberNames.size> numbers;
   std::array<std::optional<std::uint64_t>, kWholeNames.size> wholes;
   std::array<std::optional<std::string>, kNameNames.size> names;
+  std::array<std::optional<std::vector<double>>, kListNames.size> lists;
   std::vector<std::string> sensors;
   std::vector<std::string> contributors;
   std::optional<std::vector<double>> shares;  ///< As listed (frame_shares.h).
   std::vector<std::size_t> bodies;            ///< Indices of subjects.
   std::vector<std::size_t> joints;
+  std::vector<std::size_t> props;
 };
 
 using Facts = std::vector<SubjectFacts>;

@@ -23,6 +23,11 @@ class TurtleTemplate : FrameTemplate<Style::Turtle> {
     for (BodyResource& body : frame_.bodies) {
       if (!this->body(body)) return std::nullopt;
     }
+    for (const std::string_view name : props_) {
+      if (!text("\n<") || !text(scoped_) || !text(kPropMark) || !text(name) ||
+          !text("> a ch:HeldProp") || !prop(name) || !text(" .\n"))
+        return std::nullopt;
+    }
     if (!at_end() || !slots_differ()) return std::nullopt;
     return std::move(frame_);
   }
@@ -34,7 +39,19 @@ class TurtleTemplate : FrameTemplate<Style::Turtle> {
     scoped_ = {names_.data(), static_cast<std::size_t>(here() - names_.data())};
     if (!text("> a ch:Frame ;\n  ch:sequence ") || !same(named)) return false;
     frame_.sequence = named;
-    return captured(frame_.captured) && origin();
+    return captured(frame_.captured) && origin() && prop_links();
+  }
+
+  bool prop_links() {
+    if (!text(" ;\n  ch:heldProp ")) return true;
+    do {
+      std::string_view name;
+      if (props_.size() == kMaxProps || !text("<") || !text(scoped_) || !text(kPropMark) ||
+          !word(name) || !text(">"))
+        return false;
+      props_.push_back(name);
+    } while (text(", "));
+    return true;
   }
 
   bool same(std::uint64_t id) {
@@ -80,6 +97,7 @@ class TurtleTemplate : FrameTemplate<Style::Turtle> {
     return true;
   }
 
+  std::vector<std::string_view> props_;  ///< The names of things in hands.
   std::string_view names_;
   std::string_view scoped_;  ///< The IRI of the frame itself: names_, "frames/" and the sequence.
 };

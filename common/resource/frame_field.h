@@ -13,9 +13,9 @@
 namespace chorus::resource {
 
 /// A field's numbers are decimals, all of them given or none.  Whole: an integer from 0 on.  Name:
-/// 1-64 characters of [A-Za-z0-9_-].  The others are only in joints, and each format has its own
-/// code for them.
-enum class FieldKind : std::uint8_t { Numbers, Whole, Name, State, Contributors, Shares };
+/// 1-64 characters of [A-Za-z0-9_-].  List: decimals under one name, always Field::kSize of them.
+/// The others are only in joints, and each format has its own code for them.
+enum class FieldKind : std::uint8_t { Numbers, Whole, Name, List, State, Contributors, Shares };
 
 /// What a frame between two others has (frame_between.h).  Earlier: the earlier frame's value;
 /// EarlierOfBoth: the same, if the later one has a value too.  Larger, Linear: if both have one.

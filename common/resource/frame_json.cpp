@@ -34,7 +34,10 @@ class JsonFrame {
       pen_.put("}");
       comma = ",";
     }
-    pen_.put("]}\n");
+    pen_.put("]");
+    put_props();
+    pen_.need_more(0);
+    pen_.put("}\n");
     return pen_.take();
   }
 
@@ -42,6 +45,7 @@ class JsonFrame {
     pen_.need_more(2 * names_.size() + context_.size());
     pen_.puts("{", context_);
     put_body_head(body, true);
+    pen_.need_more(2 * names_.size());
     pen_.put_sequence();
     pen_.put_origin();
     pen_.puts(",\"frame\":\"", frame_name_, "\"");
@@ -67,6 +71,20 @@ class JsonFrame {
     pen_.put_unsigned(body.id);
     pen_.put_fields(BodyFields{}, body);
     pen_.put_times(body.captured);
+  }
+
+  void put_props() {
+    std::string_view before = ",\"heldProps\":[";
+    for (const PropResource& prop : frame_.props) {
+      if (!writable(prop)) continue;
+      pen_.need_more(names_.size());
+      pen_.puts(before, "{\"@id\":\"", frame_name_, kPropMark, prop.name,
+                "\",\"@type\":\"HeldProp\"");
+      pen_.put_prop(prop);
+      pen_.put("}");
+      before = ",";
+    }
+    if (before == ",") pen_.put("]");
   }
 
   void put_joints(const BodyResource& body) {

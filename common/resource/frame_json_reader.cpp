@@ -28,6 +28,7 @@ class Reading {
     read_fields<FrameFields>(frame, root);
     list(frame, root, "sensors", facts_[frame].sensors);
     read_bodies(frame, root);
+    read_props(frame, root);
     if (error_) return tl::unexpected<Error>(*error_);
     return std::move(facts_);
   }
@@ -76,6 +77,20 @@ class Reading {
     }
   }
 
+  void read_props(std::size_t frame, const json& root) {
+    const auto props = root.find("heldProps");
+    if (props == root.end()) return;
+    if (!props->is_array()) return complain(frame, "heldProps", "is no array");
+    for (const json& object : *props) {
+      if (!object.is_object())
+        return complain(frame, "heldProps", "holds something that is no object");
+      if (facts_[frame].props.size() > kMaxProps) return;  // assemble() reports the limit.
+      const std::size_t prop = add_subject(object, "a held prop");
+      facts_[frame].props.push_back(prop);
+      read_fields<PropFields>(prop, object);
+    }
+  }
+
   void read_joints(std::size_t body, const json& object) {
     const auto joints = object.find("joints");
     if (joints == object.end()) return;
@@ -106,6 +121,9 @@ class Reading {
       } else if constexpr (Field::kKind == FieldKind::Name) {
         const std::string_view name = Field::kNames[0].name;
         text(at, object, name, facts_[at].names[kNameNames.index_of(name)]);
+      } else if constexpr (Field::kKind == FieldKind::List) {
+        const std::string_view name = Field::kNames[0].name;
+        numbers(at, object, name, facts_[at].lists[kListNames.index_of(name)]);
       }
       return true;
     });

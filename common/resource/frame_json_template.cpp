@@ -14,7 +14,7 @@ class JsonTemplate : FrameTemplate<Style::Json> {
   using FrameTemplate::FrameTemplate;
 
   std::optional<FrameResource> run() {
-    if (!head() || !bodies() || !text("}")) return std::nullopt;
+    if (!head() || !bodies() || !props() || !text("}")) return std::nullopt;
     text("\n");
     if (!at_end() || !slots_differ()) return std::nullopt;
     return std::move(frame_);
@@ -56,6 +56,17 @@ class JsonTemplate : FrameTemplate<Style::Json> {
       if (!joint(body.joints[i]) || !text("}")) return false;
     }
     return text("}}");
+  }
+
+  bool props() {
+    if (!text(",\"heldProps\":[")) return true;
+    do {
+      std::string_view name;
+      if (!text("{\"@id\":\"") || !text(names_) || !text("frame") || !text(kPropMark) ||
+          !word(name) || !text("\",\"@type\":\"HeldProp\"") || !prop(name) || !text("}"))
+        return false;
+    } while (text(","));
+    return text("]");
   }
 
   /// Recordings of earlier versions lack the type.

@@ -22,6 +22,13 @@ JointState writable_state(const JointResource& joint) {
   return plausible(joint) ? joint.state : JointState::NotTracked;
 }
 
+bool writable(const PropResource& prop) {
+  constexpr std::size_t kLongest = 32;
+  const double length = prop.orientation.norm();
+  return is_name(prop.name) && prop.name.size() <= kLongest && prop.position.allFinite() &&
+         prop.position.cwiseAbs().maxCoeff() <= kMaxCoordinate && std::abs(length - 1.0) < 0.1;
+}
+
 bool is_name(std::string_view text) { return SensorId::parse(text).has_value(); }
 
 std::string in_quotes(std::string_view text) {
@@ -107,6 +114,10 @@ FrameResource to_resource(const SensorFrame& frame) {
     BodyResource& written = out.bodies.emplace_back();
     written.id = body.id.value;
     written.captured = body.captured;
+    if (body.hands) {
+      written.left_hand = body.hands->left;
+      written.right_hand = body.hands->right;
+    }
     for (std::size_t i = 0; i < kJointCount; ++i)
       written.joints[i] = {body.skeleton.joints[i], std::nullopt, 0};
   }
@@ -124,6 +135,7 @@ SensorFrame to_sensor_frame(const FrameResource& frame, SensorId sensor, Timesta
     BodyFrame& seen = out.bodies.emplace_back();
     seen.id = BodyId{body.id};
     seen.captured = body.captured;
+    seen.hands = shared({body.left_hand, body.right_hand});
     for (std::size_t i = 0; i < kJointCount; ++i) {
       Joint& read = seen.skeleton.joints[i];
       read = body.joints[i];

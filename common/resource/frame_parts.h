@@ -18,6 +18,9 @@ enum class Style : std::uint8_t { Turtle, Json, JsonLd };
 /// finite and plausible.
 [[nodiscard]] JointState writable_state(const JointResource& joint);
 
+/// True if a prop has a name, a place and an orientation; others are not written.
+[[nodiscard]] bool writable(const PropResource& prop);
+
 /// True for 1-64 characters of [A-Za-z0-9_-].
 [[nodiscard]] bool is_name(std::string_view text);
 
@@ -29,6 +32,9 @@ enum class Style : std::uint8_t { Turtle, Json, JsonLd };
 
 [[nodiscard]] std::string_view name_of(JointState state);
 [[nodiscard]] std::string_view name_of(SpaceKind space);
+
+/// Between the names of a frame and of a thing that somebody holds in it, in its IRI.
+inline constexpr std::string_view kPropMark = "#prop-";
 
 /// Upper bounds of the bytes of one body, and of one joint without its names.
 inline constexpr std::size_t kBodyBytes = 16384;

@@ -8,6 +8,7 @@
 #include "common/resource/fixed_point.h"
 #include "common/resource/frame_body_fields.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/frame_prop_fields.h"
 #include "common/resource/frame_sensor_pen.h"
 #include "common/resource/joint_texts.h"
 
@@ -38,6 +39,9 @@ class FramePen : public SensorPen<kStyle> {
     if (writable_state(joint) == JointState::NotTracked) return put_state(JointState::NotTracked);
     put_fields(JointFields{}, joint);
   }
+
+  /// All that is said of a thing in somebody's hands but its type.
+  void put_prop(const PropResource& prop) { put_fields(PropFields{}, prop); }
 
   /// For integers that readers of JSON might round.
   void put_unsigned(std::uint64_t value) {
@@ -92,6 +96,8 @@ class FramePen : public SensorPen<kStyle> {
     } else if constexpr (Field::kKind == FieldKind::Name) {
       if (const auto& name = Field::get(owner); name && is_name(*name))
         puts(kPlain<Field>, "\"", *name, "\"");
+    } else if constexpr (Field::kKind == FieldKind::List) {
+      if (const auto values = Field::get(owner)) put_list<Field>(*values);
     } else if constexpr (Field::kKind == FieldKind::State) {
       if (Field::kTurtle == kTurtle) put_state(owner.state);
     } else if constexpr (Field::kKind == FieldKind::Contributors) {
@@ -104,6 +110,22 @@ class FramePen : public SensorPen<kStyle> {
   template <class Field, std::size_t... kI>
   void put_numbers(const FieldValues<sizeof...(kI)>& values, std::index_sequence<kI...>) {
     (put_number<Field::kRow.decimals>(kBefore<kStyle, Field, kI>, values[kI]), ...);
+  }
+
+  /// Makes room of its own: few bodies have lists.
+  template <class Field>
+  void put_list(const FieldValues<Field::kSize>& values) {
+    constexpr std::size_t kNumberBytes = 20;  // sign, five digits, point, decimals, quotes, comma
+    need(kJointBytes + Field::kSize * kNumberBytes);
+    std::string_view before = kTurtle ? "(" : "[";
+    put(kPlain<Field>);
+    for (const double value : values) {
+      puts(before, kMark);
+      this->template put_decimal<Field::kRow.decimals>(value);
+      put(kMark);
+      before = kTurtle ? " " : ",";
+    }
+    put(kTurtle ? ")" : "]");
   }
 
   template <int kDecimals>

@@ -20,8 +20,11 @@ using rdf::TermView;
 /// Largest number of subjects in a document; 64 bodies of 25 joints and the frame are 1 665.
 constexpr std::size_t kMaxSubjects = 4096;
 
-/// Most cells of RDF lists: the shares of 64 bodies of 25 joints that ten sensors see.
-constexpr std::size_t kMaxCells = 16'384;
+/// Most cells of RDF lists: the shares of 64 bodies of 25 joints that ten sensors see, and the
+/// joints of their hands.
+constexpr std::size_t kMaxCells = 24'576;
+/// Most values of one list: a share for each sensor; a hand has 63.
+constexpr std::size_t kMostInList = kMaxSensors;
 
 enum class Property : std::uint8_t {
   BodyIs,
@@ -31,8 +34,10 @@ enum class Property : std::uint8_t {
   Contributor,
   JointIs,
   JointName,
+  List,
   Name,
   Number,
+  PropIs,
   Sensor,
   Sequence,
   Shares,
@@ -45,7 +50,7 @@ enum class Property : std::uint8_t {
 struct Verb {
   std::string_view name;
   Property property;
-  std::size_t index = 0;  ///< In SubjectFacts::numbers, wholes or names.
+  std::size_t index = 0;  ///< In SubjectFacts::numbers, wholes, names or lists.
 };
 
 constexpr std::array kOwnVerbs{
@@ -54,6 +59,7 @@ constexpr std::array kOwnVerbs{
     Verb{"captured", Property::Captured},
     Verb{"capturedNanoseconds", Property::CapturedNanoseconds},
     Verb{"contributor", Property::Contributor},
+    Verb{"heldProp", Property::PropIs},
     Verb{"joint", Property::JointIs},
     Verb{"jointName", Property::JointName},
     Verb{"sensor", Property::Sensor},
@@ -66,7 +72,9 @@ constexpr std::array kOwnVerbs{
 
 /// The properties in a frame document, sorted by name: those above and the fields of the tables.
 constexpr auto kVerbs = [] {
-  std::array<Verb, kOwnVerbs.size() + kNumberNames.size + kWholeNames.size + kNameNames.size> all{};
+  std::array<Verb, kOwnVerbs.size() + kNumberNames.size + kWholeNames.size + kNameNames.size +
+                       kListNames.size>
+      all{};
   auto end = std::ranges::copy(kOwnVerbs, all.begin()).out;
   const auto add = [&end](const NameList& list, Property property) {
     for (std::size_t i = 0; i < list.size; ++i) *end++ = {list.names[i], property, i};
@@ -74,6 +82,7 @@ constexpr auto kVerbs = [] {
   add(kNumberNames, Property::Number);
   add(kWholeNames, Property::Whole);
   add(kNameNames, Property::Name);
+  add(kListNames, Property::List);
   std::ranges::sort(all, {}, &Verb::name);
   return all;
 }();
@@ -140,12 +149,15 @@ class Collector {
   }
 
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
-  /// All facts that were taken; Malformed if the shares of a joint are not a list of numbers.
+  /// All facts that were taken; Malformed if what has to be a list of numbers is none.
   [[nodiscard]] Result<Facts> finish() && {
-    for (const auto& [at, list] : share_lists_) {
-      facts_[at].shares = numbers_of(list);
-      if (facts_[at].shares) continue;
-      return fail(ErrorCode::Malformed, place_of(facts_[at], "shares"), "is no list of numbers");
+    for (const auto& [whose, list] : lists_) {
+      const auto& [at, verb] = whose;
+      auto& read =
+          verb->property == Property::Shares ? facts_[at].shares : facts_[at].lists[verb->index];
+      read = numbers_of(list);
+      if (read) continue;
+      return fail(ErrorCode::Malformed, place_of(facts_[at], verb->name), "is no list of numbers");
     }
     return std::move(facts_);
   }
@@ -183,8 +195,8 @@ class Collector {
       const auto found = cells_.find(*at);
       if (found == cells_.end()) return std::nullopt;
       const Cell& cell = found->second;
-      // A longer list, which may have no end, has too many shares anyway.
-      if (cell.broken || !cell.number || numbers.size() > kMaxSensors) return std::nullopt;
+      // A longer list, which may have no end, has too many values anyway.
+      if (cell.broken || !cell.number || numbers.size() > kMostInList) return std::nullopt;
       numbers.push_back(*cell.number);
       at = &cell.rest;
     }
@@ -198,8 +210,11 @@ class Collector {
         return link(at, object, &SubjectFacts::bodies);
       case Property::JointIs:
         return link(at, object, &SubjectFacts::joints);
+      case Property::PropIs:
+        return link(at, object, &SubjectFacts::props);
       case Property::Shares:
-        return link_shares(at, object);
+      case Property::List:
+        return link_list(at, row, object);
       case Property::Sensor:
       case Property::Contributor:
         return list_text(at, row.property == Property::Sensor, object);
@@ -251,9 +266,9 @@ class Collector {
     return {};
   }
 
-  std::string_view link_shares(std::size_t at, const TermView& object) {
+  std::string_view link_list(std::size_t at, const Verb& verb, const TermView& object) {
     if (object.kind == TermKind::Literal) return "is a literal, not a list";
-    const auto [list, fresh] = share_lists_.try_emplace(at, object.value);
+    const auto [list, fresh] = lists_.try_emplace({at, &verb}, object.value);
     return fresh || list->second == object.value ? std::string_view() : kTwice;
   }
 
@@ -335,7 +350,8 @@ class Collector {
   using Index = ByName<std::size_t>;
 
   ByName<Cell> cells_;
-  std::map<std::size_t, std::string> share_lists_;  ///< Their first cells, by subject.
+  /// The first cells of lists, by subject and by what they are lists of.
+  std::map<std::pair<std::size_t, const Verb*>, std::string> lists_;
   Index iris_;
   Index blanks_;
   std::size_t last_ = 0;

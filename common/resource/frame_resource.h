@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/body/hand_points.h"
 #include "common/body/skeleton.h"
 #include "common/resource/media_type.h"
 #include "common/resource/place.h"
@@ -55,9 +56,24 @@ struct BodyResource {
   std::optional<double> stature;            ///< Fused [m].
   std::optional<double> stature_sigma;      ///< Fused: its standard deviation [m].
   std::optional<std::string> method;        ///< Fused: name of the fusion method.
+  std::optional<HandPoints> left_hand;      ///< In the frame's space.
+  std::optional<HandPoints> right_hand;
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };
+
+/// Fused: a thing that somebody holds, as a rigid body.
+struct PropResource {
+  std::string name;  ///< 1-32 characters of [A-Za-z0-9_-]; unique in a frame.
+  std::optional<std::uint64_t> holder = {};            ///< Id of the body that holds it.
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  std::optional<double> place_sigma = {};         ///< Per axis [m].
+  std::optional<double> turn_sigma_degrees = {};  ///< As on the wire.
+};
+
+/// Most things in hands that a frame tells of.
+inline constexpr std::size_t kMaxProps = 64;
 
 struct FrameResource {
   std::uint64_t sequence = 0;
@@ -68,6 +84,7 @@ struct FrameResource {
   std::optional<std::uint64_t> registration_version = {};
   std::vector<std::string> sensors;  ///< Fused: the sensors of the contributor bits (at most 64).
   std::vector<BodyResource> bodies;  ///< At most kMaxBodies, with distinct ids.
+  std::vector<PropResource> props = {};  ///< At most kMaxProps, with distinct names.
 };
 
 /// How far the length of a ray's direction may be from 1.

@@ -4,6 +4,7 @@
 // the result is false.  Then the parser reads the document from the start and reports mistakes.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "common/resource/frame_body_fields.h"
 #include "common/resource/frame_parts.h"
+#include "common/resource/frame_prop_fields.h"
 #include "common/resource/joint_texts.h"
 #include "common/resource/template_text.h"
 
@@ -55,6 +57,19 @@ class FrameTemplate : protected TemplateText {
     return (field<Each>(owner) && ...);
   }
 
+  /// A thing in somebody's hands, whose name in its IRI was read.
+  bool prop(std::string_view named) {
+    if (frame_.props.size() == kMaxProps) return false;
+    PropResource prop;
+    places_ = 0;
+    if (!fields(PropFields{}, prop) || prop.name != named || places_ != 2) return false;
+    prop.orientation.normalize();
+    if (std::ranges::find(frame_.props, prop.name, &PropResource::name) != frame_.props.end())
+      return false;
+    frame_.props.push_back(std::move(prop));
+    return true;
+  }
+
   /// Everything in a joint behind its name.
   bool joint(JointResource& joint) {
     if (text(kTurtle ? " ;\n  ch:state ch:NotTracked" : ",\"state\":\"NotTracked\"")) return true;
@@ -97,12 +112,16 @@ class FrameTemplate : protected TemplateText {
   bool value(Owner& owner) {
     if constexpr (Field::kKind == FieldKind::Numbers) {
       if constexpr (std::is_same_v<Field, Position> || std::is_same_v<Field, Ray>) ++places_;
+      if constexpr (std::is_same_v<Field, PropPlace> || std::is_same_v<Field, PropTurn>) ++places_;
       FieldValues<Field::kNames.size()> values;
       return numbers<Field>(values, std::make_index_sequence<Field::kNames.size()>{}) &&
              Field::set(owner, values);
     } else if constexpr (Field::kKind == FieldKind::Whole) {
       std::uint64_t whole = 0;
       return integer(whole) && Field::set(owner, whole);
+    } else if constexpr (Field::kKind == FieldKind::List) {
+      FieldValues<Field::kSize> values;
+      return list<Field>(values) && Field::set(owner, values);
     } else {
       std::string_view read;
       return name(read) && Field::set(owner, read);
@@ -114,6 +133,15 @@ class FrameTemplate : protected TemplateText {
     return (((kI == 0 || text(kBefore<kStyle, Field, kI>)) &&
              decimal<Field::kRow.decimals>(values[kI])) &&
             ...);
+  }
+
+  template <class Field>
+  bool list(FieldValues<Field::kSize>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!text(kTurtle ? (i == 0 ? "(" : " ") : (i == 0 ? "[" : ","))) return false;
+      if (!decimal<Field::kRow.decimals>(values[i])) return false;
+    }
+    return text(kTurtle ? ")" : "]");
   }
 
   bool state(JointState& out) {
@@ -135,7 +163,7 @@ class FrameTemplate : protected TemplateText {
     return true;
   }
 
-  int places_ = 0;                       ///< How many positions and rays the joint has.
+  int places_ = 0;  ///< How many positions and rays the joint has; of a prop, place and turn.
   std::optional<ShareList> share_list_;  ///< Of the frame's sensors, once these are read.
 };
 

@@ -24,12 +24,14 @@ class TurtleFrame {
     pen_.put_times(frame_.captured);
     pen_.put_origin();
     pen_.put_sensors();
+    put_prop_links();
     put_body_links();
     for (const BodyResource& body : frame_.bodies) {
       put_body(body);
       put_joint_links();
       put_joints(body);
     }
+    for (const PropResource& prop : frame_.props) put_prop(prop);
     return pen_.take();
   }
 
@@ -41,6 +43,7 @@ class TurtleFrame {
     put_living_name(body);
     pen_.put("> a ch:TrackedBody .\n");
     put_body(body);
+    pen_.need_more(2 * names_.size());
     pen_.put_sequence();
     pen_.put_origin();
     pen_.puts(" ;\n  ch:frame <", frame_name_, ">");
@@ -69,6 +72,24 @@ class TurtleFrame {
   /// The IRI of a body at this instant; its `ch:of` points to the body itself.
   [[nodiscard]] std::string body_name(const BodyResource& body) const {
     return frame_name_ + "#" + std::to_string(body.id);
+  }
+
+  void put_prop_links() {
+    std::string_view before = " ;\n  ch:heldProp <";
+    for (const PropResource& prop : frame_.props) {
+      if (!writable(prop)) continue;
+      pen_.need_more(names_.size());
+      pen_.puts(before, frame_name_, kPropMark, prop.name, ">");
+      before = ", <";
+    }
+  }
+
+  void put_prop(const PropResource& prop) {
+    if (!writable(prop)) return;
+    pen_.need_more(names_.size());
+    pen_.puts("\n<", frame_name_, kPropMark, prop.name, "> a ch:HeldProp");
+    pen_.put_prop(prop);
+    pen_.put(" .\n");
   }
 
   void put_body_links() {

@@ -64,6 +64,14 @@ bool TemplateText::name(std::string_view& out) {
   return text("\"") && SensorId::parse(out).has_value();
 }
 
+bool TemplateText::word(std::string_view& out) {
+  constexpr std::ptrdiff_t kLongest = 32;
+  const char* const begin = at_;
+  while (at_ < end_ && at_ - begin < kLongest && plain(*at_)) ++at_;
+  out = {begin, static_cast<std::size_t>(at_ - begin)};
+  return !out.empty();
+}
+
 bool TemplateText::folder(std::string_view close, std::string_view& out) {
   const std::size_t length = rest().substr(0, kMaxFolder).find(close);
   if (length == std::string_view::npos) return false;

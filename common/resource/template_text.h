@@ -77,6 +77,9 @@ class TemplateText {
   /// A name of [A-Za-z0-9_-] in quotes, such as an id.
   bool name(std::string_view& out);
 
+  /// The same without quotes, at most 32 characters.
+  bool word(std::string_view& out);
+
   /// What stands before `close` in the IRI of a document's frame: "", "../", "sensors/s1/".
   bool folder(std::string_view close, std::string_view& out);
 

@@ -65,8 +65,16 @@ std::optional<Mark> mark_of(const json& stored) {
   return Mark{static_cast<int>(id), seconds, string_in(stored, "text")};
 }
 
-/// No file: no marks.  Conflict when the file cannot be read, because it must not be replaced then.
-Result<std::vector<Mark>> marks_in(const fs::path& file) {
+std::string marks_json(const std::vector<Mark>& marks) {
+  json all = json::array();
+  for (const Mark& mark : marks)
+    all.push_back({{"id", mark.id}, {"seconds", mark.seconds}, {"text", mark.text}});
+  return all.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+Result<std::vector<Mark>> stored_marks(const fs::path& file) {
   if (!is_there(file)) return std::vector<Mark>{};
   const auto damaged = [](const std::string& reason) {
     return fail(
@@ -89,20 +97,12 @@ Result<std::vector<Mark>> marks_in(const fs::path& file) {
   return marks;
 }
 
-std::string marks_json(const std::vector<Mark>& marks) {
-  json all = json::array();
-  for (const Mark& mark : marks)
-    all.push_back({{"id", mark.id}, {"seconds", mark.seconds}, {"text", mark.text}});
-  return all.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
-}  // namespace
-
 Result<Mark> parse_mark(std::string_view body) {
   const auto object = object_of(body, R"({"seconds": 12.4, "text": "takes the drill"})");
   if (!object) return pass(object);
   const Mark mark{0, number_in(*object, "seconds"), string_in(*object, "text")};
-  if (!(mark.seconds >= 0.0) || !std::isfinite(mark.seconds))
+  const bool present = !object->contains("seconds");
+  if (!present && (!(mark.seconds >= 0.0) || !std::isfinite(mark.seconds)))
     return fail(ErrorCode::InvalidArgument, "seconds", "is a number of 0 or more");
   const bool plain = std::ranges::none_of(
       mark.text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
@@ -152,7 +152,7 @@ Result<http::DocumentPtr> RecordingViews::outline(const std::string& name) {
   const auto file = marks_file(name);
   out["writable"] = file.has_value();
   if (file) {
-    const auto marks = marks_in(*file);
+    const auto marks = stored_marks(*file);
     if (!marks) out["notes"].push_back(to_string(marks.error()));
     out["marks"] = json::parse(marks_json(marks.value_or(std::vector<Mark>{})));
   }
@@ -197,7 +197,7 @@ Result<http::DocumentPtr> RecordingViews::marks(const std::string& name) {
   const auto file = marks_file(name);
   if (!file) return pass(file);
   const std::scoped_lock lock(mutex_);
-  const auto all = marks_in(*file);
+  const auto all = stored_marks(*file);
   if (!all) return pass(all);
   return document(marks_json(*all));
 }
@@ -205,20 +205,41 @@ Result<http::DocumentPtr> RecordingViews::marks(const std::string& name) {
 Result<http::ActionResult> RecordingViews::mark(const std::string& name, std::string_view body) {
   auto wish = parse_mark(body);
   if (!wish) return pass(wish);
-  if (const auto files = options_.files_of(name); !files) return pass(files);
+  const bool present = std::isnan(wish->seconds);
+  if (present) {
+    const auto now = options_.mark_running(name, wish->text);
+    if (!now) return pass(now);
+    if (*now) {
+      wish->seconds = **now;
+      return keep(name, std::move(*wish));
+    }
+  }
+  if (const auto files = options_.files_of(name); !files) {
+    return present || files.error().code != ErrorCode::Unavailable
+               ? pass(files)
+               : fail(ErrorCode::Conflict, "seconds",
+                      "while a recording runs, marks are set at the present: leave `seconds` out");
+  }
+  if (present)
+    return fail(ErrorCode::InvalidArgument, "seconds",
+                "is missing: the recording has ended, so say where the mark is");
+  return keep(name, std::move(*wish));
+}
+
+Result<http::ActionResult> RecordingViews::keep(const std::string& name, Mark mark) {
   const auto file = marks_file(name);
   if (!file) return pass(file);
   const std::scoped_lock lock(mutex_);
-  auto all = marks_in(*file);
+  auto all = stored_marks(*file);
   if (!all) return pass(all);
   if (all->size() >= kMostMarks)
     return fail(ErrorCode::TooLarge, "marks",
                 "at most " + std::to_string(kMostMarks) + " are kept");
-  for (const Mark& each : *all) wish->id = std::max(wish->id, each.id);
-  if (wish->id == std::numeric_limits<int>::max())
+  for (const Mark& each : *all) mark.id = std::max(mark.id, each.id);
+  if (mark.id == std::numeric_limits<int>::max())
     return fail(ErrorCode::TooLarge, "marks", "no higher `id` is left: remove the highest one");
-  ++wish->id;
-  all->push_back(*wish);
+  ++mark.id;
+  all->push_back(std::move(mark));
   std::ranges::stable_sort(*all, {}, &Mark::seconds);
   if (auto kept = replace_file(*file, marks_json(*all)); !kept) return pass(kept);
   return http::ActionResult{http::status::kCreated, document(marks_json(*all)),
@@ -230,7 +251,7 @@ Result<http::ActionResult> RecordingViews::unmark(const std::string& name, const
   const auto file = marks_file(name);
   if (!file) return pass(file);
   const std::scoped_lock lock(mutex_);
-  auto all = marks_in(*file);
+  auto all = stored_marks(*file);
   if (!all) return pass(all);
   const auto own = [&](const Mark& each) { return std::to_string(each.id) == id; };
   if (std::erase_if(*all, own) == 0)

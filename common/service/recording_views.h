@@ -5,8 +5,9 @@
 // and the files stay open while somebody looks.  1.45 MB took 65 ms, most requests take a few
 // milliseconds.  Cutting has a thread of its own, which ends early when the service stops.
 //
-// Marks are kept beside the recording in marks.json.  While that file cannot be read, nothing is
-// marked, so that what is in it stays.
+// Marks are kept beside the recording in marks.json; while the recording runs, a mark is set at the
+// present and is written into its files as well (record/marks.h).  While marks.json cannot be read,
+// nothing is marked there, so that what is in it stays.
 #pragma once
 
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -30,6 +32,10 @@ struct RecordingViewsOptions {
   std::function<Result<std::vector<std::filesystem::path>>(const std::string& name)> files_of;
   /// The folder in which each recording has a folder; empty: nothing can be marked or cut.
   std::filesystem::path folder;
+  /// Writes a mark into the recording of this name, at the present, if it runs: how long after its
+  /// beginning that was [s].  None: it does not run.
+  std::function<Result<std::optional<double>>(const std::string& name, const std::string& text)>
+      mark_running = [](const auto&, const auto&) { return std::nullopt; };
   std::uintmax_t min_free_bytes = 0;  ///< A cut ends when less than this is free.
   /// Called with a new recording that a cut has made.
   std::function<void(const record::RecordingReport&)> made = [](const auto&) {};
@@ -46,8 +52,12 @@ struct Mark {
 };
 
 /// Reads {"seconds": 12.4, "text": "..."}: at most 200 characters of UTF-8 without control
-/// characters; the id is 0.
+/// characters; the id is 0.  Without seconds, which is for the present, they are NaN.
 [[nodiscard]] Result<Mark> parse_mark(std::string_view body);
+
+/// The marks in a marks.json, in the order of time.  No file: no marks.  Conflict when the file
+/// cannot be read, because it must not be replaced then.
+[[nodiscard]] Result<std::vector<Mark>> stored_marks(const std::filesystem::path& file);
 
 /// What is asked of a cut: {"from": 3, "to": 8.5, "name": "walk-2"}.
 struct CutRequest {
@@ -79,6 +89,7 @@ class RecordingViews {
                                                 const http::Request& request);
   [[nodiscard]] Result<http::DocumentPtr> marks(const std::string& name);
   [[nodiscard]] Result<http::ActionResult> mark(const std::string& name, std::string_view body);
+  [[nodiscard]] Result<http::ActionResult> keep(const std::string& name, Mark mark);
   [[nodiscard]] Result<http::ActionResult> unmark(const std::string& name, const std::string& id);
   [[nodiscard]] Result<http::ActionResult> cut(const std::string& name, std::string_view body);
   [[nodiscard]] Result<std::filesystem::path> marks_file(const std::string& name) const;

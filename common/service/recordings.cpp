@@ -200,6 +200,17 @@ Result<RecordingReport> Recordings::stop(std::string_view name) {
   return recorder->report();
 }
 
+Result<std::optional<double>> Recordings::mark(std::string_view name, const std::string& text) {
+  const auto known = find(name);
+  if (!known) return pass(known);
+  const auto recorder = this->recorder(Stream::Any);
+  if (!is_running(*known) || !recorder) return std::nullopt;
+  const Timestamp now = options_.clock->now();
+  if (!recorder->offer(record::Marked{now, text}))
+    return fail(ErrorCode::Unavailable, "recordings/" + std::string(name), "it is ending");
+  return std::max(0.0, seconds(now - known->started));
+}
+
 std::map<std::string, RecordingReport> Recordings::some(const std::string& after,
                                                         std::size_t most) const {
   const std::scoped_lock lock(mutex_);

@@ -69,6 +69,10 @@ class Recordings {
   /// NotFound when none has this name.
   [[nodiscard]] Result<record::RecordingReport> stop(std::string_view name);
 
+  /// Writes a mark into the running recording of this name, at the present: how long after its
+  /// beginning that was [s].  None: it does not run; Unavailable: it is ending.
+  [[nodiscard]] Result<std::optional<double>> mark(std::string_view name, const std::string& text);
+
   /// The metrics chorus_recording_* in Prometheus' text format.
   [[nodiscard]] std::string metrics_text() const;
 

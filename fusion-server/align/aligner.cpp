@@ -55,7 +55,8 @@ std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant,
   const double s = seconds(instant - around.before->captured) / seconds(gap);
   std::vector<BodyFrame> bodies;
   for (const auto& [earlier, later] : same_bodies(*around.before, *around.after, config.max_speed))
-    bodies.push_back({earlier->id, instant, interpolate(earlier->skeleton, later->skeleton, s)});
+    bodies.push_back({earlier->id, instant, interpolate(earlier->skeleton, later->skeleton, s),
+                      between(earlier->hands, later->hands, s)});
   return bodies;
 }
 

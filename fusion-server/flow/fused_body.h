@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "common/base/strong_id.h"
+#include "common/body/hand_points.h"
 #include "common/body/skeleton.h"
 #include "common/body/stature.h"
 #include "common/sensor/shares.h"
@@ -63,6 +64,8 @@ struct FusedBody {
   std::array<std::uint64_t, kJointCount> worn_contributors = {};
   /// By how much they, not the views, determine the position [0, 1].
   std::array<double, kJointCount> worn_share = {};
+  /// The joints of the hands, where a sensor tells them, in the world.
+  HandsPtr hands = {};
   /// The joints before inertial sensors had their say; none: they had none.
   std::optional<Skeleton<WorldSpace>> sighted = {};
 };

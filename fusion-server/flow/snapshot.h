@@ -10,6 +10,7 @@
 #include "fusion-server/flow/aligned_sensor.h"
 #include "fusion-server/flow/correction.h"
 #include "fusion-server/flow/fused_body.h"
+#include "fusion-server/flow/held_thing.h"
 
 namespace chorus {
 
@@ -32,6 +33,8 @@ struct Snapshot {
   std::uint64_t registration_version = 0;
   /// Of ids in earlier snapshots, as far as they are noticed at this instant.
   std::vector<Correction> corrections = {};
+  /// What people hold; set when the snapshot is published.
+  std::vector<HeldThing> held = {};
 };
 
 }  // namespace chorus

@@ -33,6 +33,11 @@ void move_by(const Eigen::Isometry3d& site_from_cell, FusedBody& body) {
     if (turned.known()) turned = turned.turned(rotation);
     if (body.motion) (*body.motion)[i].velocity = rotation * (*body.motion)[i].velocity;
   }
+  if (!body.hands) return;
+  Hands hands = *body.hands;
+  for (auto* hand : {&hands.left, &hands.right})
+    if (*hand) *hand = moved(site_from_cell, **hand);
+  body.hands = shared(std::move(hands));
 }
 
 /// What another cell told of a person: joints without orientations.

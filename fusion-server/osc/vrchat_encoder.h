@@ -6,17 +6,29 @@
 // chest, 7 and 8 elbows (rotating with the upper arm).  Bones: humanoid.h.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "fusion-server/outlet/tracker_frame.h"
 
 namespace chorus::vrchat {
 
-struct Content {
-  bool head = true;  ///< Adds /tracking/trackers/head, which aligns the spaces.
+/// Gives one of the eight numbers to a thing in the person's hands instead of a part of the body.
+struct PropTracker {
+  int tracker = 0;  ///< 1 to 8.
+  std::string prop;
+
+  bool operator==(const PropTracker&) const = default;
 };
 
-/// The messages of one body; trackers whose joints are not tracked are omitted.
+struct Content {
+  bool head = true;  ///< Adds /tracking/trackers/head, which aligns the spaces.
+  std::vector<PropTracker> trackers = {};
+  std::vector<const outlet::TrackerProp*> props = {};  ///< What the person holds.
+};
+
+/// The messages of one body; trackers whose joints are not tracked are omitted, and those of things
+/// that the person does not hold.
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody& body,
                                                     const Content& content = {});
 

@@ -7,6 +7,7 @@
 
 #include "common/base/config_reader.h"
 #include "common/base/result.h"
+#include "fusion-server/osc/vrchat_encoder.h"
 #include "fusion-server/outlet/outlet.h"
 #include "fusion-server/outlet/person_targets.h"
 
@@ -17,6 +18,9 @@ struct Settings {
   int slot = 0;                                ///< Slot of the person who is sent to `targets`.
   std::vector<outlet::PersonTargets> persons;  ///< Further persons, with their targets.
   bool head = true;  ///< Adds the head, which VRChat uses to align its space with ours.
+
+  /// Of everybody's trackers, those that are things in hands.
+  std::vector<PropTracker> prop_trackers = {};
 
   bool operator==(const Settings&) const = default;
 };

@@ -10,6 +10,7 @@
 #include "fusion-server/associate/track_motion.h"
 #include "fusion-server/facing/front_rear.h"
 #include "fusion-server/facing/stand_in.h"
+#include "fusion-server/pipeline/head_turns.h"
 
 namespace chorus::pipeline {
 namespace {
@@ -32,12 +33,23 @@ void enlarge(Joint& joint, double scale) {
     joint.covariance = Covariance(Eigen::Matrix3d(scale * scale * joint.covariance.matrix()));
 }
 
+HandsPtr enlarged(const HandsPtr& hands, double scale) {
+  if (!hands) return nullptr;
+  Hands out = *hands;
+  for (auto* hand : {&out.left, &out.right}) {
+    if (!*hand) continue;
+    for (Eigen::Vector3d& point : (*hand)->points) point *= scale;
+  }
+  return shared(std::move(out));
+}
+
 /// The bodies in metres, where the sensor guesses lengths from the size of people.
 void enlarge(AlignedSensor& aligned, const Registration& registration) {
   const auto place = registration.sensors.find(aligned.sensor);
   if (place == registration.sensors.end() || place->second.scale == 1.0) return;
   for (BodyFrame& body : aligned.bodies) {
     for (Joint& joint : body.skeleton.joints) enlarge(joint, place->second.scale);
+    body.hands = enlarged(body.hands, place->second.scale);
   }
 }
 
@@ -85,6 +97,7 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
       views.push_back(std::move(view));
     }
   }
+  leave_out_lone_hands(aligned, views);
   return views;
 }
 
@@ -258,6 +271,7 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
   forget_the_gone(perceived.memory);
+  perceived.hands = hands_in_world(aligned, registration);
   perceived.registration_version = registration.version;
   perceived.reports = report(aligned, perceived.people, taking_part(registration, config));
   return perceived;
@@ -271,6 +285,8 @@ Step fuse(Perceived seen, const Inputs& in, std::vector<SensorId> sensors,
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
   leave_out_the_unplaced(snapshot.bodies, seen.people);
+  give_hands(seen.hands, snapshot.bodies);
+  state_head_turns(seen.people, snapshot.bodies);
   for (const FusedBody& body : snapshot.bodies)
     associate::follow(seen.memory.tracks, body.id, points_of(body.skeleton));
   seen.memory.seating.seat(snapshot.bodies, in.instant, config.association.coast, config.seating);

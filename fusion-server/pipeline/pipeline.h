@@ -16,6 +16,7 @@
 #include "fusion-server/flow/worn_people.h"
 #include "fusion-server/fusion/fuse.h"
 #include "fusion-server/fusion/quality.h"
+#include "fusion-server/pipeline/hands.h"
 #include "fusion-server/pipeline/seating.h"
 
 namespace chorus::pipeline {
@@ -80,6 +81,7 @@ struct Perceived {
   std::uint64_t registration_version = 0;
   std::vector<Correction> corrections = {};
   std::vector<Standing> standings = {};  ///< As Grouping::standings.
+  std::vector<SeenHand> hands = {};
 };
 
 struct Step {

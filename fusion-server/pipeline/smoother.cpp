@@ -41,6 +41,7 @@ Perception perception_of(const Inputs& in, std::vector<SensorId> sensors, const 
   Perception now{in, std::move(sensors), seen.people, seen.reports, {}, {}};
   now.registration_version = seen.registration_version;
   now.corrections = seen.corrections;
+  now.hands = seen.hands;
   for (const associate::Track& track : seen.memory.tracks.people) now.tracked.insert(track.id);
   for (const auto& [person, sides] : seen.memory.sides.people) {
     if (sides.seen == in.instant) now.sides.emplace(person, sides.filter.step());
@@ -98,6 +99,7 @@ void Smoother::fuse_oldest(const PipelineConfig& config) {
   weigh(seen.people, config.quality);
   seen.reports = std::move(now.reports);
   seen.registration_version = now.registration_version;
+  seen.hands = std::move(now.hands);
   seen.memory = std::move(memory_);
   seen.memory.fusion.keep_only(now.tracked);
   forget(now.corrections, seen.memory);

@@ -24,6 +24,7 @@ struct Perception {
   std::map<PersonId, facing::SidesStep> sides;  ///< Of those whose sides were resolved.
   std::uint64_t registration_version = 0;
   std::vector<Correction> corrections = {};
+  std::vector<SeenHand> hands = {};
 };
 
 [[nodiscard]] Perception perception_of(const Inputs& in, std::vector<SensorId> sensors,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "fusion-server/fusion/prediction.h"
+#include "fusion-server/rest/held_things.h"
 
 namespace chorus::rest {
 
@@ -23,7 +24,16 @@ resource::FramePtr FrameSink::predicted(Timestamp now) const {
   Snapshot then = *newest;
   const Duration ahead = std::clamp<Duration>(now - newest->instant, Duration{0}, kFarthest);
   then.instant += ahead;
-  for (FusedBody& body : then.bodies) body = fusion::predicted(body, ahead);
+  for (std::size_t i = 0; i < then.bodies.size(); ++i) {
+    then.bodies[i] = fusion::predicted(newest->bodies[i], ahead);
+    then.bodies[i].hands = hands_along(newest->bodies[i], then.bodies[i]);
+  }
+  for (HeldThing& thing : then.held) {
+    const auto now_at = std::ranges::find(then.bodies, thing.holder, &FusedBody::id);
+    const auto was_at = std::ranges::find(newest->bodies, thing.holder, &FusedBody::id);
+    if (now_at != then.bodies.end() && was_at != newest->bodies.end())
+      thing = carried_along(thing, *was_at, *now_at);
+  }
   return frame_of(then);
 }
 

@@ -83,7 +83,7 @@ Result<std::uint64_t> parse_holder(std::string_view body, const std::vector<std:
 }
 
 PropResources::PropResources(service::Serving serving, std::shared_ptr<workplace::PropBoard> board)
-    : serving_(std::move(serving)), board_(std::move(board)), held_(board_) {}
+    : serving_(std::move(serving)), board_(std::move(board)), held_(board_), things_(board_) {}
 
 void PropResources::publish(std::shared_ptr<const Snapshot> snapshot) {
   std::vector<workplace::Holder> people;

@@ -11,6 +11,7 @@
 #include "common/resource/node.h"
 #include "common/service/serving.h"
 #include "common/workplace/prop_board.h"
+#include "fusion-server/rest/held_things.h"
 #include "fusion-server/sink.h"
 
 namespace chorus::rest {
@@ -32,6 +33,8 @@ class PropResources final : public Sink {
 
   [[nodiscard]] std::string_view name() const override { return "props"; }
   void publish(std::shared_ptr<const Snapshot> snapshot) override;
+  /// What puts the same things into snapshots.
+  [[nodiscard]] HeldThings& held() { return things_; }
   /// This object must outlive the router.
   void add_routes(http::Router& router);
 
@@ -42,6 +45,7 @@ class PropResources final : public Sink {
   service::Serving serving_;
   std::shared_ptr<workplace::PropBoard> board_;
   workplace::HeldProps held_;  ///< Of the pipeline's thread.
+  HeldThings things_;
   std::shared_ptr<http::LiveDocument> live_ = std::make_shared<http::LiveDocument>();
   mutable std::mutex mutex_;
   std::vector<std::uint64_t> here_;  ///< Who is seen now; guarded by mutex_.

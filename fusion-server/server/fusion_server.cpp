@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <iterator>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -134,6 +133,7 @@ service::RecordingViewsOptions FusionServer::Impl::recording_views_options() {
   service::RecordingViewsOptions options;
   options.files_of = [this](const std::string& name) { return recordings->files_of(name); };
   options.folder = config.at_start.recording.folder;
+  options.mark_running = [this](auto& n, auto& text) { return recordings->mark(n, text); };
   options.min_free_bytes = config.at_start.recording.limits.min_free_bytes;
   options.made = [this](const record::RecordingReport& made) { recordings->adopt(made); };
   options.run = serving.run;
@@ -257,7 +257,8 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   options.sinks.push_back(lookout->people());
   options.sinks.push_back(&desk);
   options.on_status = [this](const Status& next) { take_status(next); };
-  options.on_amended = [this](const Snapshot& snapshot) { frame_sink->amend(snapshot); };
+  options.complete = [this](Snapshot& snapshot) { props->held().put(snapshot); };
+  options.on_amended = [this](auto& each) { frame_sink->amend(props->held().again(each)); };
   options.poll_reports = [this] {
     return followers ? followers->reports() : std::vector<client::FollowReport>{};
   };

@@ -235,6 +235,7 @@ void PipelineLoop::decide(const Decide& wish) {
 }
 
 void PipelineLoop::publish(Snapshot snapshot) {
+  options_.complete(snapshot);
   const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
   for (Sink* sink : options_.sinks) sink->publish(shared);
   ++counters_.ticks;

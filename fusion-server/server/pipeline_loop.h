@@ -78,6 +78,8 @@ struct LoopOptions {
   /// Called on the pipeline's thread with an earlier snapshot that was fused again with late
   /// frames.
   std::function<void(const Snapshot&)> on_amended;
+  /// Called on the same thread with a snapshot before it is published.
+  std::function<void(Snapshot&)> complete = [](Snapshot&) {};
 };
 
 class PipelineLoop {

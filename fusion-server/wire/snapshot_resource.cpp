@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "common/base/units.h"
 #include "common/body/bones.h"
 #include "common/sensor/shares.h"
 
@@ -110,6 +111,10 @@ BodyResource body_of(const FusedBody& body, Timestamp instant, const WornBits& w
     out.joints[j].orientation_covariance = body.orientation_covariance[j];
     if (body.motion) set_velocity((*body.motion)[j], out.joints[j]);
   }
+  if (body.hands) {
+    out.left_hand = body.hands->left;
+    out.right_hand = body.hands->right;
+  }
   set_trunk_velocity(body, out);
   if (body.bones) set_bones(*body.bones, out);
   if (body.stature) {
@@ -117,6 +122,15 @@ BodyResource body_of(const FusedBody& body, Timestamp instant, const WornBits& w
     out.stature_sigma = body.stature->sigma;
   }
   return out;
+}
+
+resource::PropResource prop_of(const HeldThing& thing) {
+  resource::PropResource prop{thing.name, thing.holder.value};
+  prop.position = thing.world_from_thing.translation();
+  prop.orientation = Eigen::Quaterniond(thing.world_from_thing.linear());
+  if (thing.sigma > 0.0) prop.place_sigma = thing.sigma;
+  if (thing.turn_sigma > 0.0) prop.turn_sigma_degrees = to_deg(thing.turn_sigma);
+  return prop;
 }
 
 }  // namespace
@@ -137,6 +151,7 @@ FrameResource to_resource(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < count; ++i) {
     frame.bodies.push_back(body_of(snapshot.bodies[i], snapshot.instant, worn));
   }
+  for (const HeldThing& thing : snapshot.held) frame.props.push_back(prop_of(thing));
   return frame;
 }
 

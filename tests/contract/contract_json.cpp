@@ -25,6 +25,11 @@ Json number_with_limits(const Term& term) {
 
 Json number_of_openapi(const Term&) { return Json{{"$ref", "#/components/schemas/Decimal"}}; }
 
+Json list(const Term& term, const Json& number) {
+  return Json{
+      {"type", "array"}, {"minItems", term.size}, {"maxItems", term.size}, {"items", number}};
+}
+
 /// Puts what the table says of a class into its properties.
 void put_properties(Json& properties, const std::string& owner, Json (*number)(const Term&)) {
   for (const Term& term : field_terms()) {
@@ -32,13 +37,14 @@ void put_properties(Json& properties, const std::string& owner, Json (*number)(c
     Json value = number(term);
     if (term.kind == FieldKind::Whole) value = whole(term);
     if (term.kind == FieldKind::Name) value = Json{{"type", "string"}, {"pattern", kNamePattern}};
+    if (term.kind == FieldKind::List) value = list(term, value);
     if (term.first()) value["description"] = term.comment(true);
     properties[term.name] = value;
   }
 }
 
 std::string type_of(const Term& term) {
-  if (term.is_number()) return "xsd:decimal";
+  if (term.is_number() || term.kind == FieldKind::List) return "xsd:decimal";
   return term.kind == FieldKind::Whole ? "xsd:integer" : "";
 }
 
@@ -79,6 +85,9 @@ std::string owners_of(const Term& term) {
 
 std::string readable_type(const Term& term) {
   if (term.kind == FieldKind::Name) return "name of `[A-Za-z0-9_-]`" + owners_of(term);
+  if (term.kind == FieldKind::List)
+    return "list of " + std::to_string(term.size) + " decimals" + readable_unit(term.row.unit) +
+           owners_of(term);
   const std::string many = term.group.size() > 1 ? "s" : "";
   const std::string type = term.is_number() ? "decimal" + many : "integer";
   const bool limited = term.group.size() == 1 && term.row.most > 0;
@@ -93,7 +102,8 @@ std::string with_context(const std::string& text) {
   std::string out = text;
   std::size_t after = out.find('\n', out.find("\n    \"space\":") + 1) + 1;
   for (const Term& term : field_terms()) {
-    const std::string type = type_of(term).empty() ? "" : ", \"@type\": \"" + type_of(term) + "\"";
+    std::string type = type_of(term).empty() ? "" : ", \"@type\": \"" + type_of(term) + "\"";
+    if (term.kind == FieldKind::List) type += ", \"@container\": \"@list\"";
     put_line(out, after,
              "    \"" + term.name + "\":", " { \"@id\": \"ch:" + term.name + "\"" + type + " },");
   }

@@ -26,13 +26,16 @@ std::string joined(const std::vector<std::string>& parts, const std::string& bef
 
 std::string range_of(const Term& term) {
   if (term.is_number()) return "xsd:decimal";
+  if (term.kind == resource::FieldKind::List) return "rdf:List";
   return term.kind == resource::FieldKind::Whole ? "xsd:integer" : "xsd:string";
 }
 
 std::string paragraph(const Term& term) {
   const bool several =
       term.owners.size() > 1 || term.row.also.find("domainIncludes") != std::string_view::npos;
-  std::string text = "\nch:" + term.name + " a rdf:Property, owl:DatatypeProperty ;\n";
+  std::string text = "\nch:" + term.name + " a rdf:Property, owl:" +
+                     (term.kind == resource::FieldKind::List ? "Object" : "Datatype") +
+                     "Property ;\n";
   text += "  rdfs:label \"" + term.label() + "\"@en ;\n";
   text += "  rdfs:comment \"" + term.comment(false) + "\"@en ;\n";
   text += (several ? "  dcam:domainIncludes " : "  rdfs:domain ") +
@@ -43,7 +46,18 @@ std::string paragraph(const Term& term) {
   return text + " ;\n  owl:versionInfo \"since " + std::string(term.row.since) + "\" .\n";
 }
 
+/// Of the list, and of the numbers in it.
+std::string list_shapes(const Term& term) {
+  return "<#" + term.name + "> a sh:PropertyShape ;\n  sh:path ch:" + term.name +
+         " ; sh:maxCount 1 ; sh:nodeKind sh:BlankNodeOrIRI .\n<#" + term.name +
+         "Numbers> a sh:PropertyShape ;\n  sh:path ( ch:" + term.name +
+         " [ sh:zeroOrMorePath rdf:rest ] rdf:first ) ; sh:datatype xsd:decimal ; "
+         "sh:minInclusive " +
+         short_number(term.least()) + " ; sh:maxInclusive " + short_number(term.row.most) + " .\n";
+}
+
 std::string shape(const Term& term) {
+  if (term.kind == resource::FieldKind::List) return list_shapes(term);
   std::string text = "<#" + term.name + "> a sh:PropertyShape ;\n  sh:path ch:" + term.name +
                      " ; sh:maxCount 1 ; sh:datatype " + range_of(term);
   if (term.kind == resource::FieldKind::Name)
@@ -71,6 +85,7 @@ std::string shape_of(const std::string& owner, const std::vector<Term>& terms) {
   for (const Term& term : terms) {
     if (!term.of(owner)) continue;
     names.push_back("<#" + term.name + ">");
+    if (term.kind == resource::FieldKind::List) names.push_back("<#" + term.name + "Numbers>");
     if (term.first() && term.group.size() > 1) groups += " ;\n" + whole_or_not(term.group);
   }
   if (names.empty()) return {};

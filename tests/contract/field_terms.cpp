@@ -43,6 +43,7 @@ void add_field(std::vector<Term>& terms, const std::string& owner) {
                          Field::kRow,
                          {owner},
                          group});
+        if constexpr (requires { Field::kSize; }) terms.back().size = Field::kSize;
       }
     }
   }

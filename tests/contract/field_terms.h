@@ -16,6 +16,8 @@ struct Term {
   std::vector<std::string> owners;  ///< Classes that have it: "Joint", "Skeleton", "Frame".
   std::vector<std::string> group;   ///< The names of its field, of which all are given or none.
 
+  std::size_t size = 1;  ///< Of a list.
+
   [[nodiscard]] bool first() const { return group.front() == name; }
   [[nodiscard]] bool of(const std::string& owner) const;
   [[nodiscard]] bool is_number() const { return kind == resource::FieldKind::Numbers; }

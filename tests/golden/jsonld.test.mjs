@@ -32,7 +32,7 @@ test('there is something to compare', () => assert.ok(names.length >= 3));
 function livingLines(triples) {
   return triples.filter((line) => !line.includes('ns#of ')).map((line) => line.split(' ').map((term) => term
     .replace(/\/frames\/\d+#(\d+)-(\w+)$/, '/skeletons/$1#$2').replace(/\/frames\/\d+#(\d+)$/, '/skeletons/$1')
-    .replace(/\/frames\/\d+$/, '/frame')).join(' ')).sort();
+    .replace(/\/frames\/\d+#prop-/, '/frame#prop-').replace(/\/frames\/\d+$/, '/frame')).join(' ')).sort();
 }
 
 for (const name of names) {
@@ -58,6 +58,10 @@ for (const name of names) {
       }
       body['@id'] = body.of;
       delete body.of;
+    }
+    for (const prop of frame.heldProps ?? []) {
+      assert.equal(prop['@id'], `${frame['@id']}#prop-${prop.propName}`);
+      prop['@id'] = `frame#prop-${prop.propName}`;
     }
     return { ...frame, '@id': 'frame' };
   };

@@ -23,7 +23,8 @@ const visible = ['no-time', 'no-body-time', 'no-sequence', 'no-source', 'no-spac
   'half-a-position', 'absurd-coordinate', 'nan-coordinate', 'two-positions', 'unknown-state', 'unknown-space', 'unknown-joint',
   'negative-sequence', 'negative-variance', 'string-for-a-number', 'decimal-for-an-integer', 'quaternion-of-length-two',
   'source-with-a-slash', 'too-many-bodies', 'time-as-a-string', 'share-below-zero', 'shares-as-text', 'shares-of-words', 'two-lists-of-shares', 'age-below-zero',
-  'half-a-velocity', 'velocity-beyond-belief', 'method-with-a-space', 'taller-than-a-giraffe', 'orientation-covariance-below-zero'];
+  'half-a-velocity', 'velocity-beyond-belief', 'method-with-a-space', 'taller-than-a-giraffe', 'orientation-covariance-below-zero',
+  'hand-as-a-text', 'held-prop-without-a-place', 'held-prop-without-a-turn'];
 for (const name of visible) {
   test(`bad/${name}.ttl does not conform`, async () => {
     assert.equal((await validator.validate(read(`golden/bad/${name}.ttl`))).conforms, false);

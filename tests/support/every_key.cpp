@@ -42,6 +42,8 @@ std::vector<json> other_values(const json& value) {
     others.push_back(json::array({"127.0.0.1:7"}));
     others.push_back(json::array({"127.0.0.1"}));
     others.push_back(json::array({json{{"id", "one"}, {"url", "http://127.0.0.1:7/"}}}));
+    others.push_back(json::array({json{{"hand", "right.json"}}}));
+    others.push_back(json::array({json{{"tracker", 8}, {"prop", "driver"}}}));
     others.push_back(json::parse(R"([{"kind": "pillar"}])"));
     others.push_back(json::parse(R"([{"token": "0123456789abcdef", "role": "images"}])"));
     others.push_back(json::parse(R"([{"between": ["s1", "s2"], "m": 4.31}])"));

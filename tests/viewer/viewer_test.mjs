@@ -291,22 +291,21 @@ test('a whole day without a shell: walk, cancel, undo, record, stop, download', 
   await page.waitForSelector('#coverage:not([hidden])', SOON);
   assert.match(await text(page, '#pairs'), /s1 – s2: 12 common sightings, ±90 mm expected/);
   await picture(page, 'registering');
-  await button('Cancel the walk').click();
-  await button('Undo').click();
-  await button('Forget all places').click();
-  await button('Forget them: are you sure?').click();
+  for (const name of ['Cancel the walk', 'Undo', 'Forget all places', 'Forget them: are you sure?']) await button(name).click();
   await page.keyboard.press('e');
   await page.getByLabel('name', { exact: true }).fill('walk-1');
   await button('Record').click();
   await page.getByText('120 frames, 1.5 MB').waitFor(SOON);
   await picture(page, 'recording');
-  await button('Stop').click();
+  assert.ok(await button('Mark').isDisabled(), 'nothing is said of the present yet');
+  await page.fill('#mark-text', ' takes the drill ');
+  for (const name of ['Mark', 'Stop']) await button(name).click();
   const download = page.getByRole('link', { name: 'download' });
   assert.equal(await download.getAttribute('href'), '../recordings/walk-1.mcap');
   assert.deepEqual(world.posted, ['/registration 200', 'DELETE /registration/sessions/7 200', '/registration/undo 200', 'DELETE /registration 200',
-    '/recordings/ 200', 'DELETE /recordings/walk-1 200']);
+    '/recordings/ 200', '/recordings/walk-1/marks 200', 'DELETE /recordings/walk-1 200']);
   assert.deepEqual(JSON.parse(world.bodies[0]), { seconds: 45, adopt: 'at-once' });
-  assert.deepEqual(JSON.parse(world.bodies[4]), { name: 'walk-1', raw: true, fused: true });
+  assert.deepEqual([4, 5].map((i) => JSON.parse(world.bodies[i])), [{ name: 'walk-1', raw: true, fused: true }, { text: 'takes the drill' }]);
   assert.deepEqual(complaints, []);
   await page.close();
 });

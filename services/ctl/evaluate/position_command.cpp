@@ -1,4 +1,5 @@
 // chorus position: puts the take of an inertial suit where cameras saw the person.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -8,8 +9,10 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/units.h"
+#include "common/body/bones.h"
 #include "common/exporters/bvh.h"
 #include "common/geometry/rotation.h"
+#include "common/positioning/recalibrate.h"
 #include "common/positioning/take.h"
 #include "common/record/frame_recording.h"
 #include "common/report/report_files.h"
@@ -120,9 +123,48 @@ Result<positioning::TakeSettings> settings_of(const PositionArguments& arguments
   return settings;
 }
 
-Result<int> run_position(const PositionArguments& arguments) {
+/// What is told of bones that were found anew, those that changed first.
+std::vector<std::string> notes_of(positioning::Recalibration found) {
+  std::vector<std::string> notes{
+      fmt::format("recalibrated by {} pictures: joints lie {:.2f} degrees from their landmarks "
+                  "(median), {:.2f} before",
+                  found.pictures, to_deg(found.after), to_deg(found.before))};
+  std::ranges::stable_sort(found.bones, std::ranges::greater{}, &positioning::BoneFound::turn);
+  for (const positioning::BoneFound& bone : found.bones)
+    notes.push_back(fmt::format(
+        "bone to {}: turned by {:.1f} degrees (sigma {:.1f}), {:+.1f} % longer (sigma {:.1f})",
+        name_of(bone.end), to_deg(bone.turn), to_deg(bone.turn_sigma), 100.0 * (bone.stretch - 1.0),
+        100.0 * bone.stretch_sigma));
+  return notes;
+}
+
+/// The take with the bones that the cameras tell, if that is asked; its places stay.
+Result<std::vector<std::string>> recalibrate_take(const PositionArguments& arguments,
+                                                  const PlacedCameras& cameras, Timestamp start,
+                                                  positioning::TakeResult& result) {
+  if (!arguments.recalibrate) return std::vector<std::string>{};
+  const auto found = positioning::recalibrate(cameras.cameras, result.placed, start);
+  if (!found) return pass(found);
+  for (positioning::Placed& one : result.placed)
+    one.pose = positioning::recalibrated(one.pose, *found);
+  return notes_of(*found);
+}
+
+/// States the stature by what --size-from names; what is told of it.
+Result<std::vector<std::string>> take_size(PositionArguments& arguments) {
+  if (arguments.size_from.empty()) return std::vector<std::string>{};
+  const auto size = found_size(arguments);
+  if (!size) return pass(size);
+  arguments.stature = size->length;
+  return std::vector{fmt::format("stature {:.2f} m (sigma {:.2f}) by {}", size->length, size->sigma,
+                                 fs::path(arguments.size_from).filename().string())};
+}
+
+Result<int> run_position(PositionArguments arguments) {
   const auto inputs = sorted_inputs(arguments.inputs);
   if (!inputs) return pass(inputs);
+  auto notes = take_size(arguments);
+  if (!notes) return pass(notes);
   const auto suit = suit::read_suit_file(inputs->suit, {.stature = arguments.stature});
   if (!suit) return pass(suit);
   auto settings = settings_of(arguments, *suit);
@@ -133,10 +175,14 @@ Result<int> run_position(const PositionArguments& arguments) {
                         ? Timestamp{}
                         : cameras->cameras.front().frames.front().captured;
   Progress progress(std::cerr, on_terminal(), "placing");
-  const auto result = positioning::place_take(cameras->cameras, *suit, *settings,
-                                              [&](double share) { progress.show(share, {}); });
+  auto result = positioning::place_take(cameras->cameras, *suit, *settings,
+                                        [&](double share) { progress.show(share, {}); });
   progress.finish();
   if (!result) return pass(result);
+  auto found = recalibrate_take(arguments, *cameras, settings->start, *result);
+  if (!found) return pass(found);
+  notes->insert(notes->end(), cameras->notes.begin(), cameras->notes.end());
+  notes->insert(notes->end(), found->begin(), found->end());
   const PositionReport report{{{"suit", inputs->suit.filename().string()},
                                {"places", fs::path(arguments.places).filename().string()},
                                {"stature", fmt::format("{:.2f} m", settings->tracker.stature)}},
@@ -144,9 +190,10 @@ Result<int> run_position(const PositionArguments& arguments) {
                               cameras->cameras,
                               arguments.method,
                               walked_places(*result, settings->tracker.stature),
-                              cameras->notes,
+                              *notes,
                               settings->tracker.stature};
   if (const auto ok = write_all(arguments, report, settings->start); !ok) return pass(ok);
+  for (const std::string& note : *notes) std::cout << note << '\n';
   std::cout << position_text(report)
             << fmt::format("wrote corrected.bvh, position.mcap and report.html to {}\n",
                            arguments.out);
@@ -168,8 +215,17 @@ Run add_position(CLI::App& options) {
   options.add_option("--intrinsics", arguments->lenses,
                      "The lens: one file for all videos, or one for each");
   options.add_option("--out", arguments->out, "Folder for the results")->required();
-  options.add_option("--stature", arguments->stature, "The person's height [m]")
-      ->check(number_range(0.5, 2.5));
+  CLI::Option* const stature =
+      options.add_option("--stature", arguments->stature, "The person's height [m]")
+          ->check(number_range(0.5, 2.5));
+  options
+      .add_option("--size-from", arguments->size_from,
+                  "What tells the height: a depth camera's recording (.mcap), or a recording or "
+                  "video of the person standing before a placed camera")
+      ->excludes(stature);
+  options.add_flag("--recalibrate", arguments->recalibrate,
+                   "Find bones and constant turns of the suit's segments by the cameras, from a "
+                   "walk of a minute");
   const auto methods = positioning::method_names();
   options
       .add_option("--method", arguments->method,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/base/file.h"
+#include "common/positioning/body_size.h"
 #include "common/record/frame_recording.h"
 #include "fusion-server/wire/registration_file.h"
 #include "services/ctl/calibrate/lens_file.h"
@@ -160,6 +161,33 @@ Result<PositionInputs> sorted_inputs(const std::vector<std::string>& given) {
     return fail(ErrorCode::InvalidArgument, "input",
                 "a video is missing, or a camera's recording (.mcap)");
   return out;
+}
+
+Result<LearnedLength> found_size(const PositionArguments& arguments) {
+  const fs::path file(arguments.size_from);
+  Looked looked;
+  if (file.extension() == ".mcap") {
+    auto recording = record::read_frame_recording(file);
+    if (!recording) return pass(recording);
+    looked.recording = std::move(*recording);
+  } else {
+    const PositionInputs only{{file}, {}, {}};
+    if (const auto ok = check_lenses(only, arguments); !ok) return pass(ok);
+    auto videos = looked_through(only, arguments);
+    if (!videos) return pass(videos);
+    looked = std::move(videos->front());
+  }
+  if (auto size = positioning::size_by_depth(looked.recording.frames)) return size;
+  const auto text = read_file(arguments.places, kMaxPlacesFile);
+  if (!text) return pass(text);
+  const auto registration = wire::read_registration(*text);
+  if (!registration) return pass(registration);
+  const auto place = registration->sensors.find(looked.recording.sensor);
+  if (place == registration->sensors.end())
+    return fail(ErrorCode::NotFound, arguments.places,
+                "has no place for " + looked.recording.sensor.str() +
+                    ", which is to tell the person's size");
+  return positioning::size_by_picture(looked.recording.frames, place->second.world_from_sensor);
 }
 
 Result<PlacedCameras> placed_cameras(const PositionInputs& inputs,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/body/stature.h"
 #include "common/positioning/take.h"
 
 namespace chorus::ctl {
@@ -27,6 +28,8 @@ struct PositionArguments {
   double search_s = 2.0;
   double rate_hz = 30.0;
   std::string out;
+  std::string size_from;     ///< What tells the person's stature; empty: nothing.
+  bool recalibrate = false;  ///< The bones are found anew.
 };
 
 struct PositionInputs {
@@ -42,6 +45,10 @@ struct PlacedCameras {
   std::vector<positioning::CameraTake> cameras;
   std::vector<std::string> notes;  ///< What was looked at, and what could not be.
 };
+
+/// The stature by --size-from: a depth camera's recording, or somebody who stands before one of the
+/// placed cameras, in a recording or video.
+[[nodiscard]] Result<LearnedLength> found_size(const PositionArguments& arguments);
 
 /// What the cameras saw, as far as the method asks: videos are looked through, recordings read.
 /// Refuses cameras without a place, and pictures that the method needs but does not get.

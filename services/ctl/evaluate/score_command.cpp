@@ -12,6 +12,7 @@
 #include "common/base/file.h"
 #include "common/record/recording.h"
 #include "services/ctl/convert/fused_frames.h"
+#include "services/ctl/evaluate/recorded_marks.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/number_range.h"
 #include "services/ctl/line/server_option.h"
@@ -37,11 +38,13 @@ struct ScoreArguments {
   bool no_stance = false;
 };
 
-Result<ergonomics::Task> task_of(const ScoreArguments& arguments) {
+Result<ergonomics::Task> task_of(const ScoreArguments& arguments, const FusedSpan& span) {
   if (arguments.task.empty()) return ergonomics::Task{};
   const auto text = read_file(arguments.task, kMaxTaskBytes);
   if (!text) return pass(text);
-  return ergonomics::read_task(*text, arguments.task);
+  const auto marks = marks_of(arguments.source, span);
+  if (!marks) return pass(marks);
+  return ergonomics::read_task(*text, arguments.task, *marks);
 }
 
 Result<std::vector<ergonomics::PostureRule>> rules_of(const ScoreArguments& arguments) {
@@ -99,7 +102,7 @@ Result<assessment::Assessment> assessed(const ScoreArguments& arguments, const R
   const auto methods = ergonomics::find_methods(arguments.methods);
   if (!methods) return pass(methods);
   about.methods = *methods;
-  auto task = task_of(arguments);
+  auto task = task_of(arguments, {about.start, about.seconds});
   if (!task) return pass(task);
   if (auto ok = ergonomics::fits(*task, about.seconds, arguments.task); !ok) return pass(ok);
   about.task = std::move(*task);

@@ -47,6 +47,7 @@ Run add_register(CLI::App& options);
 Run add_origin(CLI::App& options);
 Run add_status(CLI::App& options);
 Run add_record(CLI::App& options);
+Run add_mark(CLI::App& options);
 Run add_replay(CLI::App& options);
 Run add_view(CLI::App& options);
 Run add_fuse(CLI::App& options);

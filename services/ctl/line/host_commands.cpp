@@ -76,6 +76,13 @@ constexpr std::array kHostCommands{
             "Everything a fusion server needs to do its work again: raw frames, clock models,\n"
             "registration; and its fused frames.  Then: chorus fuse walk.mcap --out fused.mcap.",
             &add_record},
+    Command{"mark", "Names the present in the recording that a fusion server is making",
+            "Examples:\n"
+            "  chorus mark 'takes the drill'\n"
+            "  chorus mark lift --url http://10.0.0.5:8080/\n"
+            "The mark is kept in the recording.  Phases of a task begin and end at marks:\n"
+            "docs/guide/ergonomics.md.",
+            &add_mark},
     Command{"camera", "Shows the webcams of this host",
             "Examples:\n"
             "  chorus camera list\n"

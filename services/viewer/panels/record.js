@@ -24,10 +24,19 @@ function Start({ resource, say }) {
   </div>`;
 }
 
+/// Names the present, for the phases of a task (`chorus score --task`).
+function MarkNow({ path, say }) {
+  const [text, setText] = useState('');
+  return html`<label>now <input id="mark-text" maxlength="60" placeholder="takes the drill" value=${text} onInput=${(event) => setText(event.target.value)} /></label>
+    <${Action} id="mark-now" label="Mark" disabled=${text.trim() === ''} run=${() => request(`${path}/marks`, { text: text.trim() })} say=${say} />`;
+}
+
 function Running({ recording, resource, say }) {
+  const path = resource(`recordings/${encodeURIComponent(recording.name)}`);
   return html`<div class="row">
     <p class="bad">● recording <strong>${recording.name}</strong>: ${recording.frames} frames, ${size(recording.bytes)}${recording.dropped > 0 ? `, ${recording.dropped} dropped` : ''}</p>
-    <${Action} id="stop" kind="primary" label="Stop" run=${() => request(resource(`recordings/${encodeURIComponent(recording.name)}`), null, 'DELETE')} say=${say} />
+    <${Action} id="stop" kind="primary" label="Stop" run=${() => request(path, null, 'DELETE')} say=${say} />
+    <${MarkNow} path=${path} say=${say} />
   </div>`;
 }
 

@@ -48,6 +48,47 @@ TEST(TaskFile, RefusalsNameThePlaceAndWhatToDo) {
       HasSubstr("as many points"));
 }
 
+/// Two lifts, the second of which the recording's end cuts off.
+const Marks kMarks{{{0.0, "stand"}, {2.0, "lift"}, {3.5, "down"}, {6.0, "lift"}}, 8.0};
+
+TEST(TaskFile, PhasesAreToldByMarks) {
+  const auto task = read_task(R"({"stance": {"fromMark": "stand"},
+      "phases": [{"fromMark": "lift", "toMark": "down", "loadKg": 12},
+                 {"name": "rest", "fromMark": "down"}],
+      "lifts": [{"fromMark": "lift", "loadKg": 12, "perMinute": 1, "hours": 1, "coupling": "fair"}]})",
+                              "t", kMarks);
+  ASSERT_TRUE(task) << to_string(task.error());
+  ASSERT_EQ(task->phases.size(), 3U);
+  EXPECT_EQ(task->phases[0].name, "lift") << "named after the mark";
+  EXPECT_EQ(task->phases[0].span.from, 2.0);
+  EXPECT_EQ(task->phases[0].span.to, 3.5);
+  EXPECT_EQ(task->phases[1].name, "rest");
+  EXPECT_EQ(task->phases[1].span.to, 6.0) << "without toMark until the next mark";
+  EXPECT_EQ(task->phases[2].span.to, 8.0) << "until the recording's end";
+  EXPECT_EQ(*task->asked_at(7.0).load_kg, 12.0);
+  EXPECT_EQ(task->lifts.size(), 2U);
+  EXPECT_EQ(task->lifts[1].span.from, 6.0);
+  EXPECT_EQ(task->stance->to, 2.0);
+  EXPECT_TRUE(fits(*task, 8.0, "t"));
+}
+
+TEST(TaskFile, MarksThatWereNotSetAreNamed) {
+  const auto said = [](std::string_view text, const Marks& marks) {
+    const auto task = read_task(text, "t", marks);
+    return task ? "accepted" : to_string(task.error());
+  };
+  constexpr std::string_view kScrew = R"({"phases": [{"fromMark": "screw"}]})";
+  EXPECT_THAT(said(kScrew, kMarks),
+              AllOf(HasSubstr("t.phases[0].fromMark"), HasSubstr("'stand', 'lift', 'down'")));
+  EXPECT_THAT(said(kScrew, {}), HasSubstr("it has none"));
+  EXPECT_THAT(said(R"({"phases": [{"toMark": "lift"}]})", kMarks), HasSubstr("fromMark"));
+  EXPECT_THAT(said(R"({"phases": [{"fromMark": "lift", "toSeconds": 3}]})", kMarks),
+              HasSubstr("not by both"));
+  EXPECT_THAT(said(R"({"phases": [{"fromMark": 3}]})", kMarks), HasSubstr("name of a mark"));
+  EXPECT_THAT(said(R"({"phases": [{"fromMark": "lift"}]})", {{{9.0, "lift"}}, 8.0}),
+              HasSubstr("outside the frames"));
+}
+
 TEST(TaskFile, ReachesNotBeyondTheRecording) {
   const auto task =
       read_task(R"({"phases": [{"name": "lift", "fromSeconds": 4, "toSeconds": 9}]})", "t");

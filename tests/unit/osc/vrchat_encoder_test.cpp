@@ -51,6 +51,23 @@ TEST(VrChat, TrackersHaveSlimeVrsNumbers) {
   }
 }
 
+TEST(VrChat, ATrackerCanBeAThingInThePersonsHands) {
+  const outlet::TrackerBody body = asymmetric_pose();
+  outlet::TrackerProp driver{"driver", 0, {}};
+  driver.pose.position = {0.1, 1.2, 0.3};
+  driver.pose.orientation = about_up(30);
+  driver.pose.tracked = true;
+  const Vectors held = read(body, {true, {{8, "driver"}}, {&driver}});
+  ASSERT_EQ(held.size(), 18u);
+  EXPECT_THAT(held.at("/tracking/trackers/8/position"),
+              VectorNear(Eigen::Vector3d(0.1, 1.2, -0.3), 1e-5));
+  EXPECT_THAT(held.at("/tracking/trackers/8/rotation"),
+              VectorNear(Eigen::Vector3d(0, -30, 0), 1e-4));
+  const Vectors empty_handed = read(body, {true, {{8, "driver"}}, {}});
+  EXPECT_EQ(empty_handed.size(), 16u);
+  EXPECT_FALSE(empty_handed.contains("/tracking/trackers/8/position")) << "no elbow instead";
+}
+
 TEST(VrChat, AnglesTurnTheTPoseIntoThePose) {
   const outlet::TrackerBody body = asymmetric_pose();
   const Vectors all = read(body);

@@ -70,6 +70,26 @@ TEST(FrameBetween, MixesVelocitiesAndStatesTheLargerVariance) {
   EXPECT_FALSE(joint_of(quarter(a, b)).velocity);
 }
 
+TEST(FrameBetween, MixesHandsThatBothHaveAndThingsThatOnePersonHolds) {
+  FrameResource a = frame_at(milliseconds(0), 1.0);
+  FrameResource b = frame_at(milliseconds(40), 3.0);
+  a.bodies[0].left_hand = HandPoints{{}, 0.01};
+  b.bodies[0].left_hand = HandPoints{{}, 0.04};
+  b.bodies[0].left_hand->points[20] = {0.4, 0.0, 0.0};
+  a.bodies[0].right_hand = HandPoints{};
+  a.props = {{"box", 3, {0, 0, 0}}, {"driver", 3, {0, 0, 0}}};
+  b.props = {{"driver", 4, {1, 0, 0}}, {"box", 3, {1, 0, 0}}};
+  const FrameResource mixed = quarter(a, b);
+  ASSERT_TRUE(mixed.bodies[0].left_hand);
+  EXPECT_NEAR(mixed.bodies[0].left_hand->points[20].x(), 0.1, 1e-12);
+  EXPECT_EQ(mixed.bodies[0].left_hand->variance, 0.04);
+  EXPECT_FALSE(mixed.bodies[0].right_hand) << "only one frame has it";
+  ASSERT_EQ(mixed.props.size(), 1U) << "the other went from hand to hand";
+  EXPECT_EQ(mixed.props[0].name, "box");
+  EXPECT_EQ(mixed.props[0].holder, 3U);
+  EXPECT_NEAR(mixed.props[0].position.x(), 0.25, 1e-12);
+}
+
 TEST(FrameBetween, AtTheFramesThemselvesItIsThese) {
   const FrameResource a = frame_at(milliseconds(0), 1.0);
   const FrameResource b = frame_at(milliseconds(40), 3.0);

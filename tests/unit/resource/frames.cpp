@@ -17,11 +17,6 @@ using rdf::Term;
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// True if both are missing, or equal except for the last bits, which decimals do not preserve.
-bool same(const std::optional<double>& a, const std::optional<double>& b) {
-  return a.has_value() == b.has_value() && std::abs(a.value_or(0.0) - b.value_or(0.0)) < 1e-9;
-}
-
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : random_(seed) {}
@@ -69,6 +64,26 @@ Shares random_shares(Dice& dice, std::uint64_t contributors) {
   return tally.shares();
 }
 
+HandPoints random_hand(Dice& dice) {
+  HandPoints hand;
+  for (Eigen::Vector3d& point : hand.points)
+    for (int i = 0; i < 3; ++i) point[i] = rounded(dice.between(-5, 5), 1e-4);
+  if (dice.chance(0.5)) hand.variance = rounded(dice.between(0, 0.01), 1e-8);
+  return hand;
+}
+
+PropResource random_prop(Dice& dice, std::string name) {
+  PropResource prop{std::move(name)};
+  for (int i = 0; i < 3; ++i) prop.position[i] = rounded(dice.between(-5, 5), 1e-4);
+  // of length one although it has five decimals
+  prop.orientation = dice.chance(0.5) ? Eigen::Quaterniond(0.6, 0.0, -0.8, 0.0)
+                                      : Eigen::Quaterniond(0.0, 0.28, 0.0, 0.96);
+  if (dice.chance(0.7)) prop.holder = dice.number(1'000);
+  if (dice.chance(0.7)) prop.place_sigma = rounded(dice.between(0, 0.3), 1e-4);
+  if (dice.chance(0.7)) prop.turn_sigma_degrees = rounded(dice.between(0, 40), 0.1);
+  return prop;
+}
+
 JointResource random_joint(Dice& dice, const FrameResource& frame) {
   JointResource joint;
   if (dice.chance(0.2)) return joint;
@@ -97,12 +112,6 @@ JointResource random_joint(Dice& dice, const FrameResource& frame) {
   return joint;
 }
 
-std::string decimals(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value == 0.0 ? 0.0 : value);
-  return text;
-}
-
 /// Adds triples with the same subject.
 struct About {
   Graph& graph;
@@ -129,6 +138,44 @@ struct About {
   }
 };
 
+void add_list(About& about, const std::string& property, const std::vector<double>& values,
+              int digits) {
+  const std::string cell = "list" + std::to_string(about.graph.size()) + "cell";
+  about.say(property, rdf::blank(cell + "0"));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Term here = rdf::blank(cell + std::to_string(i));
+    const bool last = i + 1 == values.size();
+    const Term next = last ? rdf::iri(rdf::rdf("nil")) : rdf::blank(cell + std::to_string(i + 1));
+    about.graph.push_back({here, rdf::iri(rdf::rdf("first")),
+                           rdf::literal(decimals(values[i], digits), rdf::xsd("decimal"))});
+    about.graph.push_back({here, rdf::iri(rdf::rdf("rest")), next});
+  }
+}
+
+void add_hand(About& about, const std::string& name, const std::optional<HandPoints>& hand) {
+  if (!hand) return;
+  std::vector<double> values;
+  for (const Eigen::Vector3d& point : hand->points)
+    for (int i = 0; i < 3; ++i) values.push_back(point[i]);
+  add_list(about, name, values, 4);
+  if (hand->variance) about.decimal(name + "Variance", *hand->variance, 8);
+}
+
+void add_prop(Graph& graph, const std::string& iri, const PropResource& prop) {
+  About about{graph, rdf::iri(iri)};
+  about.type("HeldProp");
+  about.say("propName", rdf::literal(prop.name));
+  if (prop.holder) about.integer("heldBy", std::to_string(*prop.holder));
+  constexpr std::array kAxes{"x", "y", "z"};
+  for (int i = 0; i < 3; ++i)
+    about.decimal(kAxes[static_cast<std::size_t>(i)], prop.position[i], 4);
+  constexpr std::array kTurns{"qx", "qy", "qz", "qw"};
+  for (int i = 0; i < 4; ++i)
+    about.decimal(kTurns[static_cast<std::size_t>(i)], prop.orientation.coeffs()[i], 5);
+  if (prop.place_sigma) about.decimal("placeSigma", *prop.place_sigma, 4);
+  if (prop.turn_sigma_degrees) about.decimal("turnSigmaDegrees", *prop.turn_sigma_degrees, 1);
+}
+
 /// An RDF list of the shares, by sensor id, unless one sensor has all.
 void add_shares(About& about, const FrameResource& frame, const JointResource& joint) {
   std::map<std::string, double> shares;
@@ -136,17 +183,9 @@ void add_shares(About& about, const FrameResource& frame, const JointResource& j
     if ((joint.contributors >> i & 1U) != 0) shares[frame.sensors[i]] = joint.shares.of(i);
   }
   if (!joint.shares.known() || shares.size() < 2) return;
-  const std::string cell = "list" + std::to_string(about.graph.size()) + "cell";
-  std::size_t at = 0;
-  about.say("shares", rdf::blank(cell + "0"));
-  for (const auto& [sensor, share] : shares) {
-    const Term here = rdf::blank(cell + std::to_string(at));
-    const bool last = ++at == shares.size();
-    const Term next = last ? rdf::iri(rdf::rdf("nil")) : rdf::blank(cell + std::to_string(at));
-    about.graph.push_back(
-        {here, rdf::iri(rdf::rdf("first")), rdf::literal(decimals(share, 2), rdf::xsd("decimal"))});
-    about.graph.push_back({here, rdf::iri(rdf::rdf("rest")), next});
-  }
+  std::vector<double> values;
+  for (const auto& [sensor, share] : shares) values.push_back(share);
+  add_list(about, "shares", values, 2);
 }
 
 /// Of a joint or a body.
@@ -158,14 +197,6 @@ void add_velocity(About& about, const Owner& owner) {
     about.decimal("vz", owner.velocity->z(), 4);
   }
   if (owner.velocity_variance) about.decimal("velocityVariance", *owner.velocity_variance, 6);
-}
-
-template <class Owner>
-std::string velocity_of(const Owner& owner) {
-  if (!owner.velocity) return " still";
-  std::string text;
-  for (int i = 0; i < 3; ++i) text += " " + decimals((*owner.velocity)[i], 4);
-  return text + " " + decimals(owner.velocity_variance.value_or(-1), 6);
 }
 
 void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri, std::size_t index,
@@ -203,24 +234,6 @@ void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri,
   if (joint.bone_sigma) about.decimal("boneSigma", *joint.bone_sigma, 4);
 }
 
-std::string text_of(const JointResource& joint) {
-  std::string text = std::to_string(static_cast<int>(joint.state));
-  for (int i = 0; i < 3; ++i) text += " " + decimals(joint.position[i], 6);
-  for (int i = 0; i < 4; ++i) text += " " + decimals(joint.orientation.coeffs()[i], 7);
-  text += joint.measurement == Measurement::Ray ? " ray" : " point";
-  for (std::size_t i = 0; joint.covariance.known() && i < Covariance::kTerms; ++i)
-    text += " " + decimals(joint.covariance.term(i), 8);
-  for (std::size_t i = 0; joint.orientation_covariance.known() && i < Covariance::kTerms; ++i)
-    text += " o" + decimals(joint.orientation_covariance.term(i), 8);
-  std::string shares = joint.shares.known() ? " s" : "";
-  for (std::size_t i = 0; joint.shares.known() && i < kMaxSensors; ++i)
-    shares += " " + decimals(joint.shares.of(i), 4);
-  return text + " v" + decimals(joint.variance.value_or(-1), 10) + " c" +
-         std::to_string(joint.contributors) + shares + " a" + decimals(joint.age.value_or(-1), 6) +
-         velocity_of(joint) + " b" + decimals(joint.bone_length.value_or(-1), 4) +
-         decimals(joint.bone_sigma.value_or(-1), 4);
-}
-
 }  // namespace
 
 FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
@@ -249,8 +262,12 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
     for (JointResource& joint : body.joints) joint = random_joint(dice, frame);
+    if (dice.chance(0.3)) body.left_hand = random_hand(dice);
+    if (dice.chance(0.3)) body.right_hand = random_hand(dice);
     frame.bodies.push_back(body);
   }
+  if (kind.fused && dice.chance(0.5)) frame.props.push_back(random_prop(dice, "box"));
+  if (kind.fused && dice.chance(0.3)) frame.props.push_back(random_prop(dice, "screw-driver_2"));
   return frame;
 }
 
@@ -281,6 +298,8 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     if (body.method) skeleton.say("fusionMethod", rdf::literal(*body.method));
     if (body.stature) skeleton.decimal("stature", *body.stature, 4);
     if (body.stature_sigma) skeleton.decimal("statureSigma", *body.stature_sigma, 4);
+    add_hand(skeleton, "leftHand", body.left_hand);
+    add_hand(skeleton, "rightHand", body.right_hand);
     skeleton.times(body.captured);
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::string joint = iri + "-" + std::string(kJointNames[i]);
@@ -288,37 +307,11 @@ rdf::Graph expected_graph(const FrameResource& frame) {
       add_joint(graph, frame, joint, i, body.joints[i]);
     }
   }
-  return graph;
-}
-
-std::string difference(const FrameResource& a, const FrameResource& b) {
-  if (a.sequence != b.sequence) return "sequence";
-  if (a.captured != b.captured) return "captured";
-  if (a.source != b.source) return "source";
-  if (a.space != b.space) return "space";
-  if (a.sensors != b.sensors) return "sensors";
-  if (a.registration_version != b.registration_version) return "version of the registration";
-  if (a.bodies.size() != b.bodies.size()) return "number of bodies";
-  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
-    if (a.bodies[i].id != b.bodies[i].id) return "body id";
-    if (a.bodies[i].slot != b.bodies[i].slot) return "slot";
-    if (!same(a.bodies[i].sides_confidence, b.bodies[i].sides_confidence))
-      return "confidence of sides";
-    if (!same(a.bodies[i].carried_for, b.bodies[i].carried_for)) return "carried for";
-    if (!same(a.bodies[i].smoothed_over, b.bodies[i].smoothed_over)) return "smoothed over";
-    if (!same(a.bodies[i].stature, b.bodies[i].stature) ||
-        !same(a.bodies[i].stature_sigma, b.bodies[i].stature_sigma))
-      return "stature";
-    if (a.bodies[i].method != b.bodies[i].method) return "method";
-    if (velocity_of(a.bodies[i]) != velocity_of(b.bodies[i])) return "velocity of a body";
-    if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
-    for (std::size_t j = 0; j < kJointCount; ++j) {
-      const std::string left = text_of(a.bodies[i].joints[j]);
-      const std::string right = text_of(b.bodies[i].joints[j]);
-      if (left != right) return std::string(kJointNames[j]) + ": " + left + " | " + right;
-    }
+  for (const PropResource& prop : frame.props) {
+    about.say("heldProp", rdf::iri(own + "#prop-" + prop.name));
+    add_prop(graph, own + "#prop-" + prop.name, prop);
   }
-  return {};
+  return graph;
 }
 
 }  // namespace chorus::resource

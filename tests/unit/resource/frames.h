@@ -20,6 +20,9 @@ struct FrameKind {
 /// The triples of the compact profile, written out one by one from the specification.
 [[nodiscard]] rdf::Graph expected_graph(const FrameResource& frame);
 
+/// As on the wire; -0 is 0.
+[[nodiscard]] std::string decimals(double value, int digits);
+
 /// The first difference; empty when they are equal.
 [[nodiscard]] std::string difference(const FrameResource& a, const FrameResource& b);
 

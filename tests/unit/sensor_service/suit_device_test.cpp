@@ -1,17 +1,21 @@
 // The device `suit`: frames from poses, and the network stream over loopback.
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include <gtest/gtest.h>
 
+#include "common/hand/hand_json.h"
 #include "common/net/asio.h"
 #include "common/suit/mxtp_datagram.h"
 #include "services/sensor/device/suit/served_suit.h"
 #include "services/sensor/device/suit/suit_clock.h"
 #include "services/sensor/device/suit/suit_frames.h"
+#include "services/sensor/device/suit/suit_gloves.h"
 #include "services/sensor/device/suit/suit_receiver.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/suit/mxtp_bytes.h"
 
 namespace chorus::suit {
@@ -86,6 +90,69 @@ TEST(SuitFrames, TakeTheSuitsOwnPlaceIfAskedTo) {
   ASSERT_TRUE(frame && !frame->bodies.empty());
   EXPECT_THAT(frame->bodies.front().skeleton[JointId::SpineBase].position,
               chorus::testing::VectorNear(Eigen::Vector3d(5, 1, 5), 1e-9));
+}
+
+/// Files of a straight right hand that points along +z, as `chorus scan` and a glove's program
+/// write them.
+struct GloveFolder {
+  chorus::testing::TemporaryFolder folder;
+
+  std::string put(const std::string& name, const std::string& text) const {
+    const std::string file = (folder.path() / name).string();
+    std::ofstream(file) << text;
+    return file;
+  }
+  [[nodiscard]] GloveFiles files() const {
+    hand::Skeleton skeleton;
+    skeleton.palm_radius = 0.04;
+    skeleton.palm = {0.0, 0.05, 0.0};
+    skeleton.widths.fill(0.016);
+    for (std::size_t f = 0; f < hand::kFingers; ++f)
+      for (std::size_t i = 0; i < hand::kFingerJoints; ++i)
+        skeleton.joints[hand::hand_joint(f, i)] = {0.02 * (2.0 - static_cast<double>(f)),
+                                                   0.08 + 0.03 * static_cast<double>(i), 0.0};
+    hand::Pose pose;
+    pose.turn = Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX());
+    return {put("hand.json", hand::scan_json({}, skeleton, {})),
+            put("take.bvh", hand::bvh_of(skeleton, std::vector{pose}, 30.0))};
+  }
+};
+
+TEST(SuitGloves, AreHandsOnTheSuitsWrists) {
+  const GloveFolder folder;
+  SuitSettings settings;
+  settings.gloves = {folder.files()};
+  auto gloves = SuitGloves::open(settings);
+  ASSERT_THAT(gloves, IsOk());
+  SuitFrames frames(chorus::testing::sensor_id("s1"), settings);
+  const SuitInstant instant = standing(0.0);
+  auto body = frames.next(instant)->bodies.front();
+  body.hands = gloves->hands(instant, 0.0, body.skeleton);
+  ASSERT_TRUE(body.hands && body.hands->right);
+  EXPECT_FALSE(body.hands->left);
+  const Joint& wrist = body.skeleton[JointId::WristRight];
+  EXPECT_THAT(body.hands->right->wrist(), chorus::testing::VectorNear(wrist.position, 1e-12));
+  EXPECT_NEAR(body.hands->right->variance.value(), wrist.covariance.matrix().trace() / 3, 1e-12);
+  const Eigen::Vector3d tip = body.hands->right->points[hand::hand_joint(2, 3)];
+  EXPECT_NEAR((tip - wrist.position).norm(), 0.17, 0.001);
+  body.skeleton[JointId::ElbowRight] = {};
+  EXPECT_FALSE(gloves->hands(instant, 0.0, body.skeleton)) << "no forearm";
+}
+
+TEST(SuitGloves, ThatCannotBeReadAreRefusedByName) {
+  const GloveFolder folder;
+  const auto error = [](const GloveFiles& files, int times = 1) {
+    SuitSettings settings;
+    settings.gloves.assign(static_cast<std::size_t>(times), files);
+    const auto gloves = SuitGloves::open(settings);
+    return gloves ? "opened" : to_string(gloves.error());
+  };
+  const GloveFiles good = folder.files();
+  EXPECT_EQ(error(good), "opened");
+  EXPECT_NE(error(good, 2).find("two right hands"), std::string::npos);
+  EXPECT_NE(error({good.hand, ""}).find("gloves.take"), std::string::npos);
+  EXPECT_NE(error({"no.json", good.take}).find("gloves.hand"), std::string::npos);
+  EXPECT_NE(error({good.hand, good.hand}).find("gloves.take"), std::string::npos);
 }
 
 TEST(SuitFrames, AreScaledToTheStature) {

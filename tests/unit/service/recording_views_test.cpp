@@ -38,9 +38,16 @@ class Looked : public ::testing::Test {
     options.files_of =
         [this](const std::string& name) -> Result<std::vector<std::filesystem::path>> {
       if (name == "walk") return std::vector{folder_ / "walk/walk.mcap"};
+      if (name == "running") return fail(ErrorCode::Unavailable, name, "is being written");
       return fail(ErrorCode::NotFound, name, "there is no recording of this name");
     };
     options.folder = folder_.path();
+    options.mark_running = [this](const std::string& name,
+                                  const std::string& text) -> Result<std::optional<double>> {
+      if (name != "running") return std::nullopt;
+      said_ = text;
+      return 3.25;
+    };
     options.made = [this](const record::RecordingReport& report) { made_.set_value(report); };
     return options;
   }
@@ -69,6 +76,7 @@ class Looked : public ::testing::Test {
   }
 
   testing::TemporaryFolder folder_;
+  std::string said_;  ///< The text of the last mark of a running recording.
   std::promise<record::RecordingReport> made_;
   RecordingViews views_;
   http::Router router_;
@@ -103,6 +111,21 @@ TEST_F(Looked, MarksAreKeptInOrderAndTakenAway) {
   const std::string id = std::to_string(all[0].at("id").get<int>());
   EXPECT_EQ(json::parse(ask("/recordings/walk/marks/" + id, http::Method::Delete)).size(), 1u);
   EXPECT_THAT(ask("/recordings/walk/marks/" + id, http::Method::Delete), HasSubstr("no such mark"));
+}
+
+TEST_F(Looked, ARunningRecordingIsMarkedAtThePresent) {
+  std::filesystem::create_directory(folder_ / "running");
+  const auto mark = [&](const char* name, const char* body) {
+    return ask(std::string("/recordings/") + name + "/marks", http::Method::Post, body);
+  };
+  const json all = json::parse(mark("running", R"({"text": "takes the drill"})"));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].at("seconds"), 3.25);
+  EXPECT_EQ(said_, "takes the drill");
+  EXPECT_EQ(stored_marks(folder_ / "running/marks.json")->at(0).text, "takes the drill");
+  EXPECT_THAT(mark("running", R"({"seconds": 1, "text": "x"})"), HasSubstr("leave `seconds` out"));
+  EXPECT_THAT(mark("walk", R"({"text": "x"})"), HasSubstr("say where the mark is"));
+  EXPECT_THAT(mark("none", R"({"text": "x"})"), HasSubstr("no recording of this name"));
 }
 
 TEST_F(Looked, MarksThatCannotBeReadStayAsTheyAre) {

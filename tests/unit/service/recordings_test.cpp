@@ -9,6 +9,8 @@
 
 #include "common/http/client.h"
 #include "common/http/server.h"
+#include "common/record/cell_reader.h"
+#include "common/record/marks.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::service {
@@ -85,6 +87,33 @@ TEST(Recordings, RunsOneAtATimeAndOnlyWhatWasAskedFor) {
   EXPECT_EQ(again.error().code, ErrorCode::Conflict);
   EXPECT_THAT(recordings.metrics_text(), HasSubstr("\nchorus_recording_frames_total 10\n"));
   EXPECT_THAT(recordings.metrics_text(), HasSubstr("\nchorus_recording_active 1\n"));
+}
+
+TEST(Recordings, MarksAreKeptInTheFilesOfTheOneThatRuns) {
+  const chorus::testing::TemporaryFolder folder;
+  Recordings recordings(options_in((folder / "rec").string()));
+  EXPECT_EQ(recordings.mark("walk", "x").error().code, ErrorCode::NotFound);
+  ASSERT_TRUE(recordings.start({"walk", Duration{0}, true, true}));
+  const auto recorder = recordings.recorder(Stream::Any);
+  for (int i = 0; i < 3; ++i) recorder->offer(raw(i));
+  const auto at = recordings.mark("walk", "takes the \"drill\"");
+  ASSERT_TRUE(at && *at);
+  EXPECT_GE(**at, 0.0);
+  ASSERT_TRUE(recordings.mark("walk", "puts it down"));
+  ASSERT_TRUE(recordings.stop("walk"));
+  ASSERT_TRUE(recorder->wait(std::chrono::seconds(20)));
+  EXPECT_EQ(recorder->report().frames, 3u) << "a mark is no frame";
+  EXPECT_FALSE(recordings.mark("walk", "x").value()) << "it has ended";
+  const auto files = recordings.files_of("walk");
+  ASSERT_TRUE(files);
+  const auto marks = record::marks_in(*files);
+  ASSERT_TRUE(marks) << to_string(marks.error());
+  ASSERT_EQ(marks->size(), 2u);
+  EXPECT_EQ((*marks)[0].text, "takes the \"drill\"");
+  EXPECT_NEAR(seconds((*marks)[0].at - recorder->report().started), **at, 1e-6);
+  const auto cell = record::read_cell(*files, {});
+  ASSERT_TRUE(cell) << to_string(cell.error());
+  EXPECT_EQ(cell->sensors.at(0).frames.size(), 3u) << "readers of frames pass over marks";
 }
 
 TEST(Recordings, ANameThatIsTakenAsksForAnotherAndDoesNotSayWhereFilesAre) {

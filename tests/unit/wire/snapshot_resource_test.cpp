@@ -44,6 +44,30 @@ Snapshot snapshot(std::uint64_t sequence, double x) {
   return s;
 }
 
+TEST(SnapshotResource, HasTheHandsAndWhatTheyHold) {
+  Snapshot s = snapshot(42, 0.5);
+  EXPECT_FALSE(to_resource(s).bodies[0].left_hand);
+  HandPoints hand;
+  hand.points[20] = {1.0, 2.0, 3.0};
+  hand.variance = 0.01;
+  s.bodies[0].hands = shared({std::nullopt, hand});
+  HeldThing box{"box", PersonId{7}, {JointId::HandRight}};
+  box.world_from_thing.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  box.sigma = 0.02;
+  box.turn_sigma = 0.5;
+  s.held = {box, {"driver", PersonId{7}, {}}};
+  const auto frame = to_resource(s);
+  EXPECT_FALSE(frame.bodies[0].left_hand);
+  ASSERT_TRUE(frame.bodies[0].right_hand);
+  EXPECT_EQ(frame.bodies[0].right_hand->points[20], Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_EQ(frame.bodies[0].right_hand->variance, 0.01);
+  ASSERT_EQ(frame.props.size(), 2u);
+  EXPECT_EQ(frame.props[0].position, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(frame.props[0].place_sigma, 0.02);
+  EXPECT_NEAR(frame.props[0].turn_sigma_degrees.value(), 28.648, 1e-3);
+  EXPECT_FALSE(frame.props[1].place_sigma) << "not known";
+}
+
 TEST(SnapshotResource, SaysWorldSpaceSensorsAndContributors) {
   const auto frame = to_resource(snapshot(42, 0.5));
   EXPECT_EQ(frame.sequence, 42u);

@@ -43,6 +43,9 @@ BodyFrame body_of(const SeenJoints& hand, Timestamp captured) {
   put(left ? JointId::HandLeft : JointId::HandRight, 0.5 * (at[0] + at[hand_joint(2, 0)]), 0.0);
   put(left ? JointId::HandTipLeft : JointId::HandTipRight, at[hand_joint(2, 3)], kFingerSigma);
   put(left ? JointId::ThumbLeft : JointId::ThumbRight, at[hand_joint(0, 3)], kFingerSigma);
+  Hands hands;
+  (left ? hands.left : hands.right) = HandPoints{at, hand.covariance.trace() / 3.0};
+  out.hands = shared(std::move(hands));
   return out;
 }
 

@@ -19,7 +19,8 @@ struct SeenJoints {
 [[nodiscard]] SeenJoints joints_in_sensor(const hand::Skeleton& skeleton, const PlacedHand& placed);
 
 /// A body of which the wrist, the middle of the hand, the middle finger's tip and the thumb's are
-/// known, with the covariance of the wrist and, beyond it, that of the fingers' angles.
+/// known, with the covariance of the wrist and, beyond it, that of the fingers' angles; and all 21
+/// joints as a hand of the body.
 [[nodiscard]] BodyFrame body_of(const SeenJoints& hand, Timestamp captured);
 
 /// {"sensor", "captured", "space", "hands": [{"side", "layout", "joints", "covariance"}]}; `hand`:

@@ -11,6 +11,7 @@
 #include "services/sensor/device/positioner/picture_eye.h"
 #include "services/sensor/device/positioner/places_file.h"
 #include "services/sensor/device/positioner/positioner_settings.h"
+#include "services/sensor/device/suit/suit_gloves.h"
 #include "services/sensor/device/suit/suit_source.h"
 #include "services/sensor/host_clock.h"
 
@@ -41,6 +42,7 @@ struct PositionerParts {
   PositionerSettings settings;
   std::shared_ptr<const Clock> clock;
   std::unique_ptr<suit::SuitSource> worn;
+  suit::SuitGloves gloves = {};
   std::vector<std::unique_ptr<PlacedCamera>> cameras;
 };
 
@@ -158,6 +160,8 @@ void Positioner::step(const suit::SuitInstant& instant, bool anew, const Sink& s
     if (last_ && !anew && seconds(place->captured - *last_) < kNearly * period) return;
     last_ = place->captured;
     capture.frame = frame_of(*place);
+    for (BodyFrame& body : capture.frame.bodies)
+      body.hands = parts_.gloves.hands(shifted, place->tracked.position.heading, body.skeleton);
     capture.begins_anew = anew;
     capture.color = std::exchange(picture_, {});
   }
@@ -225,6 +229,9 @@ Result<std::unique_ptr<FrameSource>> make_positioner(ConfigReader& section,
   auto worn = suit::open_suit(parts.settings.suit, parts.clock);
   if (!worn) return pass(worn);
   parts.worn = std::move(*worn);
+  auto gloves = suit::SuitGloves::open(parts.settings.suit);
+  if (!gloves) return pass(gloves);
+  parts.gloves = std::move(*gloves);
   for (const PositionerCamera& camera : parts.settings.cameras) {
     auto one = make_placed(camera, *places, parts.settings, context);
     if (!one) return pass(one);

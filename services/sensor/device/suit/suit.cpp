@@ -3,20 +3,26 @@
 #include <optional>
 #include <utility>
 
+#include "services/sensor/device/suit/suit_gloves.h"
 #include "services/sensor/device/suit/suit_source.h"
 #include "services/sensor/host_clock.h"
 
 namespace chorus::suit {
 namespace {
 
+std::shared_ptr<const Clock> clock_of(const sensor_service::DeviceContext& context) {
+  return std::make_shared<sensor_service::ErringClock>(context.time.world, context.time.host);
+}
+
 class Suit final : public FrameSource {
  public:
-  Suit(SuitSettings settings, SensorId sensor, std::shared_ptr<const Clock> clock,
-       std::unique_ptr<SuitSource> source)
+  Suit(SuitSettings settings, const sensor_service::DeviceContext& context,
+       std::unique_ptr<SuitSource> source, SuitGloves gloves)
       : settings_(std::move(settings)),
-        sensor_(std::move(sensor)),
-        clock_(std::move(clock)),
-        source_(std::move(source)) {}
+        sensor_(context.sensor),
+        clock_(clock_of(context)),
+        source_(std::move(source)),
+        gloves_(std::move(gloves)) {}
 
   [[nodiscard]] DeviceDescription describe() const override {
     DeviceDescription device;
@@ -36,6 +42,7 @@ class Suit final : public FrameSource {
   SensorId sensor_;
   std::shared_ptr<const Clock> clock_;
   std::unique_ptr<SuitSource> source_;
+  SuitGloves gloves_;
 };
 
 Result<void> Suit::run(std::stop_token stop, const Sink& sink) {
@@ -47,6 +54,7 @@ Result<void> Suit::run(std::stop_token stop, const Sink& sink) {
     begins = begins || anew;
     auto frame = frames->next(instant);
     if (!frame) return;
+    for (BodyFrame& body : frame->bodies) body.hands = gloves_.hands(instant, 0.0, body.skeleton);
     frame->sequence = ++sequence;
     frame->received = clock_->now();
     sink({std::move(*frame), begins});
@@ -59,11 +67,12 @@ Result<void> Suit::run(std::stop_token stop, const Sink& sink) {
 Result<std::unique_ptr<FrameSource>> make_suit(ConfigReader& section,
                                                const sensor_service::DeviceContext& context) {
   SuitSettings settings = read_suit_settings(section);
-  auto clock = std::make_shared<sensor_service::ErringClock>(context.time.world, context.time.host);
-  auto source = open_suit(settings, clock);
+  auto gloves = SuitGloves::open(settings);
+  if (!gloves) return pass(gloves);
+  auto source = open_suit(settings, clock_of(context));
   if (!source) return pass(source);
-  return std::make_unique<Suit>(std::move(settings), context.sensor, std::move(clock),
-                                std::move(*source));
+  return std::make_unique<Suit>(std::move(settings), context, std::move(*source),
+                                std::move(*gloves));
 }
 
 }  // namespace chorus::suit

@@ -25,6 +25,15 @@ SuitSettings read_suit_settings(ConfigReader& section) {
   section.read("walk", settings.walk);
   section.read_ms("latency_ms", settings.latency, Duration{0}, std::chrono::seconds(1));
   section.read("max_rate_hz", settings.max_rate_hz, 1.0, 240.0);
+  for (ConfigReader& item : section.items("gloves")) {
+    GloveFiles glove;
+    item.read("hand", glove.hand);
+    item.read("take", glove.take);
+    if (glove.hand.empty())
+      item.complain("hand",
+                    "is missing: the .json that `chorus scan hand.png --out hand.bvh` writes");
+    settings.gloves.push_back(std::move(glove));
+  }
   return settings;
 }
 

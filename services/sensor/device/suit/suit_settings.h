@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/config_reader.h"
 #include "common/base/duration.h"
@@ -11,6 +12,12 @@
 namespace chorus::suit {
 
 enum class Transport { Udp, Tcp };
+
+/// A glove that is worn with the suit.
+struct GloveFiles {
+  std::string hand = {};  ///< The .json that `chorus scan` wrote.
+  std::string take = {};  ///< How the hand is held: a .bvh; empty: the suit's own file.
+};
 
 struct SuitSettings {
   std::string file = {};  ///< A .mvnx or .bvh file; empty: the network stream.
@@ -26,6 +33,7 @@ struct SuitSettings {
   bool walk = true;      ///< False: takes the place that the suit's own program states.
   Duration latency = std::chrono::milliseconds(20);  ///< From motion to arrival.
   double max_rate_hz = 60.0;
+  std::vector<GloveFiles> gloves = {};  ///< At most one for each hand.
 };
 
 /// Reads the section; the reader's finish() reports mistakes.
