@@ -78,7 +78,7 @@ std::optional<Doubt> doubt_of(const Track& track, const Repeatability& repeatabi
 
 /// What is remembered of a track that ends: if its person probably changed, the one before.
 Missing missing_of(const Track& track, const std::optional<Doubt>& doubt) {
-  if (!doubt || doubt->odds >= 0) return {track.id, track.seen, track.build.whole()};
+  if (!doubt || doubt->against_new() >= 0) return {track.id, track.seen, track.build.whole()};
   return {track.id, track.build.all()[doubt->cut - 1].end, track.build.before(doubt->cut)};
 }
 
@@ -140,7 +140,8 @@ std::vector<Known> known_people(std::vector<Question>& questions,
 /// Log odds that the person in question is the known one, against somebody new.
 double odds_of(const Question& question, const Known& known, const Repeatability& repeatability,
                const WornPeople& worn) {
-  if (question.own && known.id == track_of(question).id) return question.doubt->odds;
+  const double carried = question.doubt ? question.doubt->carried : 0.0;
+  if (question.own && known.id == track_of(question).id) return question.doubt->odds + carried;
   const Duration late = question.doubt ? kExchange : Duration{0};
   if (known.seen > question.since + late || !can_be_missing(known.build)) return kNever;
   const double odds = likeness(question.build, known.build, repeatability);
@@ -153,7 +154,7 @@ double odds_of(const Question& question, const Known& known, const Repeatability
       sensors == worn.end()
           ? 0.0
           : unlike_worn(question.candidate->sights, sensors->second).value_or(0.0);
-  return odds + (expected ? kExpected : 0.0) - kWornOdds * unlike;
+  return odds + carried + (expected ? kExpected : 0.0) - kWornOdds * unlike;
 }
 
 /// The log odds of all pairs, row by row.
@@ -235,7 +236,7 @@ void withhold(const Question& question, const CostTable& table, std::size_t row)
     if (i != question.own) best = std::max(best, -table.at(row, i));
   }
   track_of(question).withheld = is_glance(question.build) && !is_looked_at(question.build) &&
-                                question.doubt->odds < best + kUnlikely;
+                                -table.at(row, *question.own) < best + kUnlikely;
 }
 
 void add_missing(Missing missing, Tracks& tracks) {

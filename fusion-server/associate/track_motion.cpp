@@ -107,6 +107,12 @@ void cut(Track& track, const std::vector<Footprint>& now, Timestamp instant) {
   }
 }
 
+std::vector<std::uint64_t> bodies_of(const std::vector<PlacedView>& sights) {
+  std::vector<std::uint64_t> bodies;
+  for (const PlacedView& each : sights) bodies.push_back(key_of(each.view.sensor, each.view.body));
+  return bodies;
+}
+
 /// Moves a track across the rays of the one camera that shows it, as far as its joints are off them
 /// in the mean; it goes on along them more and more slowly.
 void shift_across(Candidate& candidate, const SensorView& view, double elapsed) {
@@ -178,7 +184,7 @@ void update(Candidate& candidate, Timestamp instant) {
   if (track.hits == 0) track.found = instant;
   const Spans spans = spans_of(candidate.sights, track.joints);
   const double lasted = track.hits == 0 ? 0.0 : std::clamp(elapsed, 0.0, kLongest);
-  track.build.add(spans, instant, lasted);
+  track.build.add(spans, instant, lasted, bodies_of(candidate.sights));
   track.core = *found;
   track.error = mean.error();
   track.seen = track.placed = instant;

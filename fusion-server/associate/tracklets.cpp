@@ -1,7 +1,9 @@
 #include "fusion-server/associate/tracklets.h"
 
 #include <algorithm>
-#include <limits>
+#include <functional>
+#include <string>
+#include <utility>
 
 namespace chorus::associate {
 namespace {
@@ -12,25 +14,81 @@ constexpr double kShortestTracklet = 0.2;  // [s] in view; a shorter one is not 
 // [s] in view before a cut from which the build before it can be compared.
 constexpr double kKnown = 0.5;
 
+/// In how much of the tracklet each of its bodies was in view.
+double share_of(const Carrier& carrier, const Tracklet& tracklet) {
+  return tracklet.time > 0 ? std::min(1.0, carrier.time / tracklet.time) : 1.0;
+}
+
+/// How many bodies go on from one tracklet to the other.
+double bodies_in_both(const Tracklet& one, const Tracklet& other) {
+  double count = 0.0;
+  for (const Carrier& each : one.carriers) {
+    const auto same = std::ranges::find(other.carriers, each.body, &Carrier::body);
+    if (same != other.carriers.end())
+      count += std::min(share_of(each, one), share_of(*same, other));
+  }
+  return count;
+}
+
+void add_carriers(Tracklet& tracklet, std::span<const std::uint64_t> bodies, double elapsed) {
+  tracklet.time += elapsed;
+  for (const std::uint64_t body : bodies) {
+    const auto known = std::ranges::find(tracklet.carriers, body, &Carrier::body);
+    if (known == tracklet.carriers.end()) {
+      tracklet.carriers.push_back({body, elapsed});
+    } else {
+      known->time += elapsed;
+    }
+  }
+}
+
 }  // namespace
+
+std::uint64_t key_of(const SensorId& sensor, BodyId body) {
+  constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15ULL;  // mixes both well
+  return std::hash<std::string>{}(sensor.str()) ^ (kOdd * (body.value + 1));
+}
 
 void Tracklets::cut(double continuity) {
   if (tracklets_.empty()) return;
   Tracklet& last = tracklets_.back();
   if (tracklets_.size() > 1 && sight_of(last.build) < kShortestTracklet) {
     last.continuity = std::min(last.continuity, continuity);
+    last.by_time = false;
   } else {
     next_ = std::min(continuity, next_.value_or(continuity));
   }
 }
 
-void Tracklets::add(const Spans& spans, Timestamp instant, double elapsed) {
-  if (!tracklets_.empty() && sight_of(tracklets_.back().build) >= kLongestTracklet) cut(kUnbroken);
-  if (tracklets_.empty() || next_) {
-    tracklets_.push_back({instant, instant, next_.value_or(kUnbroken)});
-    next_.reset();
-  }
+/// A change within a tracklet leaves bodies of both people in it, so those before and after it
+/// count, too.
+double Tracklets::carried(std::size_t cut) const {
+  const Tracklet& here = tracklets_[cut];
+  if (!here.by_time || cut + 3 < tracklets_.size()) return here.carried;
+  const Tracklet& before = tracklets_[cut - 1];
+  double bodies = bodies_in_both(before, here);
+  if (cut + 1 < tracklets_.size())
+    bodies = std::min(bodies, bodies_in_both(before, tracklets_[cut + 1]));
+  return kUnbroken * (std::max(1.0, bodies) - 1.0);
+}
+
+/// Begins a tracklet.  What carried the person over the third last cut is known by now.
+void Tracklets::begin(Timestamp instant) {
+  const double continuity = next_.value_or(kUnbroken);
+  tracklets_.push_back({instant, instant, continuity, !next_});
+  next_.reset();
+  if (tracklets_.size() < 4) return;
+  const std::size_t known = tracklets_.size() - 3;
+  tracklets_[known].carried = carried(known);
+  tracklets_[known - 1].carriers.clear();
+}
+
+void Tracklets::add(const Spans& spans, Timestamp instant, double elapsed,
+                    std::span<const std::uint64_t> bodies) {
+  const bool full = !tracklets_.empty() && sight_of(tracklets_.back().build) >= kLongestTracklet;
+  if (tracklets_.empty() || full || next_) begin(instant);
   tracklets_.back().build.add(spans, elapsed);
+  add_carriers(tracklets_.back(), bodies, elapsed);
   tracklets_.back().end = instant;
   if (tracklets_.size() <= kMostTracklets) return;
   tracklets_[1].build = before(2);
@@ -39,8 +97,11 @@ void Tracklets::add(const Spans& spans, Timestamp instant, double elapsed) {
 }
 
 void Tracklets::precede(const Build& known, Timestamp seen, double continuity) {
-  if (!tracklets_.empty()) tracklets_.front().continuity = continuity;
-  tracklets_.insert(tracklets_.begin(), {seen, seen, kUnbroken, known});
+  if (!tracklets_.empty()) {
+    tracklets_.front().continuity = continuity;
+    tracklets_.front().by_time = false;
+  }
+  tracklets_.insert(tracklets_.begin(), {seen, seen, kUnbroken, true, 0.0, known});
 }
 
 std::optional<Doubt> Tracklets::doubt(const Repeatability& repeatability) const {
@@ -56,7 +117,7 @@ std::optional<Doubt> Tracklets::doubt(const Repeatability& repeatability) const 
     if (sight_of(before) < kKnown || !(sight_of(after[cut]) > 0)) continue;
     const double odds =
         tracklets_[cut].continuity + likeness(stated(before), stated(after[cut]), repeatability);
-    if (!most || odds < most->odds) most = {cut, odds};
+    if (!most || odds < most->odds) most = {cut, odds, carried(cut)};
   }
   return most;
 }

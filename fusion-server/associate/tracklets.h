@@ -6,9 +6,15 @@
 // tracklet in view for a second is cut, too.  For each cut, the builds before and after it are
 // compared, at every instant: a likelihood ratio test for a change at one of several known times.
 // So it does not matter when the change is noticed: the track can be split where it happened.
+//
+// A sensor may go over to somebody else without giving the body another id.  Several sensors do so
+// at one time if two people pass each other, but hardly to somebody whom no sensor has seen before:
+// for that, the prior log odds are kUnbroken for each body that shows the person before and after a
+// cut.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,13 +24,25 @@
 
 namespace chorus::associate {
 
+/// A sensor's body that shows the person.
+struct Carrier {
+  std::uint64_t body = 0;  ///< Of sensor and body id: key_of().
+  double time = 0.0;       ///< How long in view [s].
+};
+
+[[nodiscard]] std::uint64_t key_of(const SensorId& sensor, BodyId body);
+
 /// Sight of one track in which nothing suggests a change of the person.
 struct Tracklet {
   Timestamp begin;  ///< Its first instant in view.
   Timestamp end;    ///< Its last one.
   /// Prior log odds that the person is the one of the tracklet before.
   double continuity = 0.0;
+  bool by_time = true;   ///< True if only the time has made the cut before it.
+  double carried = 0.0;  ///< Doubt::carried of that cut, once it is known.
   Build build = {};
+  double time = 0.0;                   ///< In view [s].
+  std::vector<Carrier> carriers = {};  ///< Kept of the newest three tracklets.
 };
 
 /// A cut and the log odds that the person after it is the one before it, by the builds and
@@ -32,6 +50,10 @@ struct Tracklet {
 struct Doubt {
   std::size_t cut = 0;  ///< Index of the first tracklet after it.
   double odds = 0.0;
+  /// What is added to the log odds against somebody new: the bodies that go on.
+  double carried = 0.0;
+
+  [[nodiscard]] double against_new() const { return odds + carried; }
 };
 
 class Tracklets {
@@ -42,8 +64,10 @@ class Tracklets {
   /// Makes a cut before the next add().  A tracklet that was hardly in view is not cut again, but
   /// gets the lower of the two continuities.
   void cut(double continuity);
-  /// Adds the lengths of one instant that lasts for `elapsed` [s].
-  void add(const Spans& spans, Timestamp instant, double elapsed);
+  /// Adds the lengths of one instant that lasts for `elapsed` [s], at which `bodies` (key_of())
+  /// show the person.
+  void add(const Spans& spans, Timestamp instant, double elapsed,
+           std::span<const std::uint64_t> bodies = {});
   /// Puts what is known of a person, last seen at `seen`, before the first tracklet.
   void precede(const Build& known, Timestamp seen, double continuity);
 
@@ -59,8 +83,12 @@ class Tracklets {
   void keep_after(std::size_t cut);
 
  private:
+  [[nodiscard]] double carried(std::size_t cut) const;
+  void begin(Timestamp instant);
+
   std::vector<Tracklet> tracklets_;
-  std::optional<double> next_;  ///< Continuity of a tracklet that the next add() begins.
+  /// Continuity of a tracklet that the next add() begins.
+  std::optional<double> next_;
 };
 
 }  // namespace chorus::associate

@@ -30,11 +30,11 @@ struct Sight {
   Tracklets tracklets = {};
   Timestamp instant = kStart;
 
-  void see(double size, double time) {
+  void see(double size, double time, const std::vector<std::uint64_t>& bodies = {}) {
     const Spans spans = spans_of_size(size);
     for (const Timestamp begun = instant; seconds(instant - begun) < time;) {
       instant += kFrameInterval;
-      tracklets.add(spans, instant, seconds(kFrameInterval));
+      tracklets.add(spans, instant, seconds(kFrameInterval), bodies);
     }
   }
   [[nodiscard]] double odds() const {
@@ -77,6 +77,37 @@ TEST(Tracklets, AreCutWhereAChangeIsLikely) {
   EXPECT_GT(uncut.odds(), 0.0);
   const auto doubt = cut.tracklets.doubt(kRepeated);
   EXPECT_EQ(cut.tracklets.all()[doubt->cut].begin, changed + kFrameInterval);
+}
+
+TEST(Tracklets, OfManyBodiesThatGoOnHardlyBecomeSomebodyNew) {
+  Sight sight;
+  sight.see(1.0, 5.0, {1, 2, 3, 4});
+  for (const double after : {0.5, 1.0, 2.0, 4.0}) {
+    sight.see(1.04, after, {1, 2, 3, 4});
+    const auto doubt = sight.tracklets.doubt(kRepeated);
+    ASSERT_TRUE(doubt);
+    EXPECT_NEAR(doubt->carried, 3.0 * Tracklets::kUnbroken, 0.1) << after;
+    EXPECT_EQ(doubt->against_new(), doubt->odds + doubt->carried);
+  }
+}
+
+TEST(Tracklets, OfOneBodyThatGoesOnAreCarriedByItAlone) {
+  Sight sight;
+  sight.see(1.0, 5.5, {1, 2, 3, 4});
+  sight.see(1.08, 2.5, {1, 7, 8, 9});  // within a tracklet, three sensors have new bodies
+  const auto doubt = sight.tracklets.doubt(kRepeated);
+  ASSERT_TRUE(doubt);
+  EXPECT_LT(doubt->carried, 0.5 * Tracklets::kUnbroken);
+}
+
+TEST(Tracklets, OfNewBodiesAreCarriedByNone) {
+  Sight sight;
+  sight.see(1.0, 5.0, {1, 2, 3, 4});
+  sight.tracklets.cut(1.5);
+  sight.see(1.08, 2.0, {5, 6, 7, 8});
+  const auto doubt = sight.tracklets.doubt(kRepeated);
+  ASSERT_TRUE(doubt);
+  EXPECT_EQ(doubt->carried, 0.0);
 }
 
 TEST(Tracklets, HardlyInViewAreNotCutAgain) {
