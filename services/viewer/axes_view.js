@@ -2,6 +2,7 @@
 // them, long and thin with a knob (Baak et al., Figs. 2 and 6).  Red, green, blue: x, y along the bone, z ahead.
 import * as THREE from 'three';
 
+import { limbAxesOf } from './limb_axes.js';
 import { BONES, Instances, at, seen } from './skeleton_view.js';
 
 const COLOURS = [0xff5d5d, 0x5fe08a, 0x5fa8ff].map((hex) => new THREE.Color(hex));
@@ -25,12 +26,12 @@ export class LimbAxesView {
     for (const mesh of this.object.children) mesh.renderOrder = 1;
   }
 
-  /// `axes`: limbAxesOf() of judged.js.  Returns how many limbs have them drawn.
-  show(bodies, axes) {
+  /// `evaluation`: the answer of /evaluation, or null for none.  Returns how many limbs have axes drawn.
+  show(bodies, evaluation) {
     this.rods.begin();
     this.knobs.begin();
     const joints = new Map(bodies.map((body) => [Number(body.bodyId), body.joints]));
-    const drawn = axes.filter((limb) => this.showLimb(joints.get(limb.bodyId), limb));
+    const drawn = limbAxesOf(evaluation).filter((limb) => this.showLimb(joints.get(limb.bodyId), limb));
     this.rods.end();
     this.knobs.end();
     return drawn.length;

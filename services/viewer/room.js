@@ -2,7 +2,6 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
-import { LimbAxesView } from './axes_view.js';
 import { framing, roomOf } from './framing.js';
 import { EllipsoidView, FusedView, RawView, TrailView, frustum } from './skeleton_view.js';
 
@@ -45,11 +44,10 @@ export class Room {
     this.fused = new FusedView();
     this.trails = new TrailView();
     this.ellipsoids = new EllipsoidView();
-    this.axes = new LimbAxesView();
     this.places = [];
     this.followed = null;
     this.light();
-    this.scene.add(this.fused.object, this.trails.object, this.ellipsoids.object, this.axes.object);
+    this.scene.add(this.fused.object, this.trails.object, this.ellipsoids.object);
     this.paintGround('dark');
     this.view('room');
   }

@@ -10,7 +10,7 @@ import { watchOrigin } from './origin.js';
 import { Player } from './player.js';
 import { Resource, clock, follow as followForEver, link } from './poll.js';
 import { Readout } from './readout.js';
-import { judgedBones, limbAxesOf } from './judged.js';
+import { judgedBones } from './judged.js';
 import { askFor, requested, takeToken, tokenInUse } from './request.js';
 import { Room } from './room.js';
 import { stepOf } from './setup.js';
@@ -318,10 +318,25 @@ shown.where = (name) => {
   return joint && readout.toScreen(joint);
 };
 
+let limbAxes = null; // loaded when somebody wants them
+let limbAxesAsked = false;
+
+async function loadLimbAxes() {
+  limbAxesAsked = true;
+  try {
+    const { LimbAxesView } = await import('./axes_view.js');
+    limbAxes = new LimbAxesView();
+    room.scene.add(limbAxes.object);
+  } catch { // the server does not answer
+    setTimeout(() => { limbAxesAsked = false; }, 1000);
+  }
+}
+
 /// The axes of judged limbs in both worlds, while somebody wants them; a recording has none.
 function showLimbAxes() {
   const wanted = known.switches.axes && !known.playback && known.evaluation;
-  shown.limbAxes = room.axes.show(wanted ? known.frame?.bodies ?? [] : [], wanted ? limbAxesOf(known.evaluation) : []);
+  if (wanted && !limbAxesAsked) loadLimbAxes();
+  if (limbAxes) shown.limbAxes = limbAxes.show(known.frame?.bodies ?? [], wanted ? known.evaluation : null);
 }
 
 /// Ellipsoids and read-out of the newest frame, while somebody wants them.

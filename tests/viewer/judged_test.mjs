@@ -2,7 +2,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { COLOURS, bonesOf, judgedBones, judgedLines, limbAxesOf } from '../../services/viewer/judged.js';
+import { COLOURS, bonesOf, judgedBones, judgedLines } from '../../services/viewer/judged.js';
+import { limbAxesOf } from '../../services/viewer/limb_axes.js';
 
 const evaluation = { limbs: [
   { bodyId: 3, limb: 'Chest', state: 'good', comment: 'chest agrees' },

@@ -1,6 +1,5 @@
 // The whole page beside the scene: top, sensors, people, and one drawer at a time.
 import { Guarded, Later, html } from './html.js';
-import { Keys, Token } from './dialogs.js';
 import { Events } from './events.js';
 import { FirstRun } from './first_run.js';
 import { Judged } from './judged.js';
@@ -21,6 +20,8 @@ const LATER = {
   record: () => import('./record.js').then(({ Record }) => Record),
   work: () => import('./work.js').then(({ Work }) => Work),
   hall: () => import('./hall.js').then(({ Hall }) => Hall),
+  keys: () => import('./dialogs.js').then(({ Keys }) => Keys),
+  token: () => import('./dialogs.js').then(({ Token }) => Token),
   phone: () => import('./phone.js').then(({ Phone }) => Phone),
 };
 
@@ -46,9 +47,9 @@ function Drawer({ open, known, act }) {
 }
 
 function Dialogs({ known, act }) {
-  if (known.asking) return html`<${Token} reason=${known.asking.reason} onToken=${known.asking.answer} />`;
-  if (known.dialog === 'keys') return html`<${Keys} onClose=${act.onClose} />`;
-  if (known.dialog === 'phone') return html`<${Later} load=${LATER.phone} href=${location.href} token=${act.token()} onClose=${act.onClose} />`;
+  if (known.asking) return html`<${Later} key="token" load=${LATER.token} reason=${known.asking.reason} onToken=${known.asking.answer} />`;
+  if (known.dialog === 'keys') return html`<${Later} key="keys" load=${LATER.keys} onClose=${act.onClose} />`;
+  if (known.dialog === 'phone') return html`<${Later} key="phone" load=${LATER.phone} href=${location.href} token=${act.token()} onClose=${act.onClose} />`;
   return null;
 }
 
