@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/body/located.h"
+
 namespace chorus::worn {
 namespace {
 
@@ -11,7 +13,8 @@ constexpr double kLook = 120.0;  // [s]: calibrations improve for 60 s, limbs re
 
 void FirstPass::note(const Wear& wear, const std::vector<FusedBody>& bodies, Timestamp instant) {
   for (const FusedBody& body : bodies) {
-    if (const auto place = middle_of(body)) seen_.try_emplace(body.id, FirstSight{instant, *place});
+    if (const auto place = middle_of(points_of(body.skeleton)))
+      seen_.try_emplace(body.id, FirstSight{instant, *place});
   }
   std::set<SensorId> worn;
   for (const Wear::Worn& each : wear.worn()) {

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 
+#include "common/body/located.h"
 #include "common/evaluation/limb_frame.h"
 
 namespace chorus::worn {
 namespace {
 
 constexpr double kWearerGone = 5.0;  // [s] for which nobody has seen the wearer
-constexpr double kRenamedWithin =
-    0.5;                              // [s] from the wearer's last sight to a newcomer's first one
+// [s] from the wearer's last sight to a newcomer's first one.
+constexpr double kRenamedWithin = 0.5;
 constexpr double kRenamedNear = 0.4;  // [m] between both: nobody else can have come so near
 constexpr double kSameSight = 0.5;    // [m] between two passes' sights of one person
 constexpr double kSlipIsNews = 60.0;  // [s] for which a slip is told
@@ -35,19 +36,6 @@ std::optional<inertial::Limb> limb_of(const inertial::InertialReading& reading) 
 }
 
 }  // namespace
-
-std::optional<Eigen::Vector3d> middle_of(const FusedBody& body) {
-  const Joint& middle = body.skeleton[JointId::SpineBase];
-  if (middle.seen()) return middle.position;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  for (const Joint& joint : body.skeleton.joints) {
-    if (!joint.seen()) continue;
-    sum += joint.position;
-    count += 1.0;
-  }
-  return count > 0.0 ? std::optional<Eigen::Vector3d>(sum / count) : std::nullopt;
-}
 
 void Wear::configure(const WornConfig& config, const std::set<SensorId>& sources) {
   if (!(config == config_)) sources_.clear();
@@ -142,14 +130,14 @@ void Wear::follow_wearer(Source& source, const std::vector<FusedBody>& bodies, d
   const bool there = std::ranges::find(bodies, *source.wearer, &FusedBody::id) != bodies.end();
   if (!there && source.place && time >= source.seen && time - source.seen <= kRenamedWithin) {
     for (const FusedBody& body : bodies) {
-      const auto place = middle_of(body);
+      const auto place = middle_of(points_of(body.skeleton));
       if (!place || std::ranges::find(source.beside, body.id) != source.beside.end()) continue;
       if ((*place - *source.place).norm() <= kRenamedNear) source.wearer = body.id;
     }
   }
   const auto wearer = std::ranges::find(bodies, *source.wearer, &FusedBody::id);
   if (wearer == bodies.end()) return;
-  source.place = middle_of(*wearer);
+  source.place = middle_of(points_of(wearer->skeleton));
   source.beside.clear();
   for (const FusedBody& body : bodies) source.beside.push_back(body.id);
 }
@@ -203,7 +191,7 @@ void Wear::begin(const std::vector<FusedBody>& bodies, Timestamp instant) {
     const Beginning beginning = std::move(beginnings_.extract(known).mapped());
     const auto body = std::ranges::find(bodies, beginning.wearer, &FusedBody::id);
     if (source.wearer || body == bodies.end()) continue;
-    const auto place = middle_of(*body);
+    const auto place = middle_of(points_of(body->skeleton));
     if (!place || (*place - beginning.seen.place).norm() > kSameSight) continue;
     source.wearer = beginning.wearer;
     for (const auto& [name, first] : beginning.sensors)

@@ -22,9 +22,6 @@
 
 namespace chorus::worn {
 
-/// Where a body is: its middle, or the mean of what is seen of it [m]; none where nothing is.
-[[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const FusedBody& body);
-
 class Wear {
  public:
   /// Forgets sources that are not followed any more, and everything when it is switched off.
