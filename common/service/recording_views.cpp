@@ -193,7 +193,8 @@ Result<fs::path> RecordingViews::marks_file(const std::string& name) const {
 }
 
 Result<http::DocumentPtr> RecordingViews::marks(const std::string& name) {
-  if (const auto files = options_.files_of(name); !files) return pass(files);
+  const auto files = options_.files_of(name);  // Unavailable: it still runs, and can be marked
+  if (!files && files.error().code != ErrorCode::Unavailable) return pass(files);
   const auto file = marks_file(name);
   if (!file) return pass(file);
   const std::scoped_lock lock(mutex_);

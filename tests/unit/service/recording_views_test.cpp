@@ -123,6 +123,8 @@ TEST_F(Looked, ARunningRecordingIsMarkedAtThePresent) {
   EXPECT_EQ(all[0].at("seconds"), 3.25);
   EXPECT_EQ(said_, "takes the drill");
   EXPECT_EQ(stored_marks(folder_ / "running/marks.json")->at(0).text, "takes the drill");
+  EXPECT_EQ(json::parse(ask("/recordings/running/marks")), all) << "readable while it runs";
+  EXPECT_THAT(ask("/recordings/none/marks"), HasSubstr("no recording of this name"));
   EXPECT_THAT(mark("running", R"({"seconds": 1, "text": "x"})"), HasSubstr("leave `seconds` out"));
   EXPECT_THAT(mark("walk", R"({"text": "x"})"), HasSubstr("say where the mark is"));
   EXPECT_THAT(mark("none", R"({"text": "x"})"), HasSubstr("no recording of this name"));
