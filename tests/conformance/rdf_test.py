@@ -19,11 +19,14 @@ CH = "https://w3id.org/chorus-tracking/ns#"
 
 
 def all_turtle():
+    """Everything is fetched before anything is read: a reader takes seconds on a busy machine, in which a frame's own address expires."""
+    answers = []
     for base in URLS.values():
         paths = PATHS + (FUSION_PATHS if base == URLS["fusion"] else [])
         location = get(base + "/frame").headers["Content-Location"].lstrip("/")
-        for path in paths + [f"/{location}", f"/{location}?profile=arvida"]:
-            yield base + path, get(base + path, accept="text/turtle")
+        for path in [f"/{location}", f"/{location}?profile=arvida"] + paths:
+            answers.append((base + path, get(base + path, accept="text/turtle")))
+    return answers
 
 
 class Readers(unittest.TestCase):
