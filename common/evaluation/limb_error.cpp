@@ -16,16 +16,22 @@ constexpr double kLeastTau = deg(15.0);
 
 }  // namespace
 
-LimbError limb_error(const inertial::SensorCalibration& calibration, const OrientationPair& pair) {
-  const Eigen::Quaterniond off = pair.tracked.world_from_limb.conjugate() *
-                                 inertial::predicted_limb(calibration, pair.inertial_from_sensor);
+LimbError error_between(const Eigen::Quaterniond& limb, const Eigen::Quaterniond& other,
+                        bool twist_seen) {
+  const Eigen::Quaterniond off = limb.conjugate() * other;
   LimbError out;
   const Eigen::Vector3d up = off * Eigen::Vector3d::UnitY();
   out.swing = std::atan2(std::hypot(up.x(), up.z()), up.y());
-  out.twist_seen = pair.tracked.twist_seen;
-  out.angle = out.twist_seen ? log_map(off).norm() : out.swing;
-  if (out.twist_seen) out.twist = std::abs(wrap_angle(2.0 * std::atan2(off.y(), off.w())));
+  out.twist_seen = twist_seen;
+  out.angle = twist_seen ? log_map(off).norm() : out.swing;
+  if (twist_seen) out.twist = std::abs(wrap_angle(2.0 * std::atan2(off.y(), off.w())));
   return out;
+}
+
+LimbError limb_error(const inertial::SensorCalibration& calibration, const OrientationPair& pair) {
+  return error_between(pair.tracked.world_from_limb,
+                       inertial::predicted_limb(calibration, pair.inertial_from_sensor),
+                       pair.tracked.twist_seen);
 }
 
 ErrorTrack error_track(const inertial::SensorCalibration& calibration,

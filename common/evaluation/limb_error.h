@@ -24,6 +24,10 @@ struct LimbError {
   bool twist_seen = true;
 };
 
+/// Of `other` against `limb`; the twist counts if `twist_seen`.
+[[nodiscard]] LimbError error_between(const Eigen::Quaterniond& limb,
+                                      const Eigen::Quaterniond& other, bool twist_seen);
+
 [[nodiscard]] LimbError limb_error(const inertial::SensorCalibration& calibration,
                                    const OrientationPair& pair);
 

@@ -20,6 +20,10 @@ PATIENCE_S = 60
 BIN = Path(os.environ.get("CHORUS_BIN", ROOT / "build/dev/bin"))
 GUIDE = ROOT / "docs/guide/inertial.md"
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
+TRC_WITHOUT_NAMES = "\n".join((
+    "PathFileType\t4\t(X/Y/Z)\tother.trc", "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+    "100\t100\t2\t2\tmm\t100\t1\t2", "Frame#\tTime\tAlpha\t\t\tBeta\t\t", "\t\tX1\tY1\tZ1\tX2\tY2\tZ2", "",
+    "1\t0.00\t1\t2\t3\t4\t5\t6", "2\t0.01\t1\t2\t3\t4\t5\t6", ""))
 LENGTH, WRONG = 20.0, (14.0, 16.0)
 SENSORS = {  # column of the table: (from, to, hinge, other), heading [rad], mount (w, x, y, z)
     "femur_l_imu": (("HipLeft", "KneeLeft", "KneeLeft", "AnkleLeft"), 0.7, (0.5, 0.5, 0.5, 0.5)),
@@ -109,6 +113,22 @@ def write_tracking(file, wrong):
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+def write_reference(folder, from_s=3.0, speed=1.0):
+    """vicon.c3d: the truth, begun later, in a world that is turned and elsewhere."""
+    lines = []
+    for i in range(int((LENGTH - 3) * 100)):
+        joints = body(from_s + speed * i / 100)
+        ns = str(1500000000000000000 + i * 10_000_000)
+        placed = {name: {"x": round(0.8 * p[0] + 0.6 * p[2] + 2, 4), "y": round(p[1], 4), "z": round(0.8 * p[2] - 0.6 * p[0] - 1, 4),
+                         "state": "Tracked"} for name, p in joints.items()}
+        lines.append(json.dumps({"@type": "Frame", "sequence": i + 1, "capturedNanoseconds": ns, "source": "fusion",
+                                 "space": "WorldSpace", "sensors": ["v"],
+                                 "bodies": [{"bodyId": 1, "capturedNanoseconds": ns, "joints": placed}]}))
+    (folder / "vicon.ndjson").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    subprocess.run([BIN / "chorus", "export", "vicon.ndjson", "--format", "c3d", "--out", "vicon.c3d"], cwd=folder, check=True,
+                   capture_output=True)
+
+
 def write_sensors(file):
     z_up = conj((0.5, -0.5, -0.5, -0.5))
     rows = ["DataRate=100.000000", "DataType=Quaternion", "version=3", "endheader", "\t".join(["time", *SENSORS])]
@@ -141,6 +161,7 @@ class InertialGuide(unittest.TestCase):
             write_tracking(folder / "walk.ndjson", wrong=True)
             write_tracking(folder / "calm.ndjson", wrong=False)
             write_sensors(folder / "suit.sto")
+            write_reference(folder)
             (folder / "ann.csv").write_text("limb,begin_s,end_s\nShankLeft,14,16\n", encoding="utf-8")
             (folder / "bob.csv").write_text("limb,begin_s,end_s\nShankLeft,14.2,15.8\n", encoding="utf-8")
             for line in lines:
@@ -155,6 +176,31 @@ class InertialGuide(unittest.TestCase):
             whole = json.loads((folder / "whole/evaluation.json").read_text(encoding="utf-8"))
             self.assertTrue(whole["subject"]["judged"].startswith("0.0 s"), whole["subject"])
             self.assertIn("made from the take up to", json.dumps(whole))
+            self.referee(json.loads((folder / "refereed/evaluation.json").read_text(encoding="utf-8")), folder)
+            self.refusals(folder, paths)
+
+    def referee(self, report, folder):
+        figures = {f["key"]: f.get("value") for section in report["sections"] for f in section["figures"]}
+        self.assertEqual(figures["left_shank.sensor_right"], 100)
+        self.assertEqual(figures["left_shank.tracker_right"], 0)
+        for limb in ("left_thigh", "left_shank", "right_thigh", "right_shank", "right_upper_arm"):
+            self.assertLess(figures[f"{limb}.tracker_error"], 3, limb)
+            self.assertLess(figures[f"{limb}.sensor_error"], 6, limb)
+        self.assertIn("the tracker errs in 1, the sensor in 0, both in 0", report["verdict"])
+        table = (folder / "refereed/evaluation.csv").read_text(encoding="utf-8")
+        self.assertIn("left_shank.sensor_error", table)
+        self.assertIn("Who is right", (folder / "refereed/evaluation.html").read_text(encoding="utf-8"))
+
+    def refusals(self, folder, paths):
+        """A reference that cannot serve is refused, with what to do."""
+        (folder / "other.trc").write_text(TRC_WITHOUT_NAMES, encoding="utf-8")
+        write_reference(folder, speed=0.0)  # somebody who stands
+        for reference, said in (("vicon.c3d", "do not move alike"), ("other.trc", "other.joints.txt lists the file's names"), ("none.c3d", "none.c3d")):
+            done = subprocess.run(["chorus", "evaluate", "--tracking", "walk.ndjson", "--inertial", "suit.sto", "--reference", reference,
+                                   "--most", "100", "--out", "refused"], cwd=folder, env=paths, capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(said, done.stderr)
+        self.assertTrue((folder / "refused/other.joints.txt").exists())
 
     def judge(self, report):
         figures = {f["key"]: f for section in report["sections"] for f in section["figures"]}

@@ -1,6 +1,4 @@
 // chorus compare A B: two recordings of one motion, joint by joint.
-#include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -8,21 +6,14 @@
 #include <CLI/CLI.hpp>
 
 #include "common/comparison/comparison_report.h"
-#include "common/importers/motion_file.h"
 #include "common/report/report_files.h"
-#include "services/ctl/convert/fused_samples.h"
+#include "services/ctl/evaluate/compared_source.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
 
 namespace chorus::ctl {
 namespace {
-
-constexpr std::pair<std::string_view, importers::MotionFormat> kMotionFiles[]{
-    {".c3d", importers::MotionFormat::C3d},
-    {".trc", importers::MotionFormat::Trc},
-    {".bvh", importers::MotionFormat::Bvh},
-    {".mvnx", importers::MotionFormat::Mvnx}};
 
 struct CompareArguments {
   std::string a;
@@ -37,56 +28,12 @@ struct CompareArguments {
   bool other_world = false;
 };
 
-struct ComparedSource {
-  comparison::People people;
-  std::vector<std::string> notes;
-};
-
-std::optional<importers::MotionFormat> motion_format(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& [name, format] : kMotionFiles)
-    if (name == ending) return format;
-  return std::nullopt;
-}
-
-Result<ComparedSource> read_motion(const std::string& file, importers::MotionFormat format) {
-  const auto motion = importers::read_motion_file(file, format);
-  if (!motion) return pass(motion);
-  ComparedSource out;
-  const auto& frames = motion->recording.frames;
-  for (const importers::TruthFrame& each : motion->truth) {
-    if (each.index >= frames.size()) continue;
-    const double time = seconds(frames[each.index].captured.time_since_epoch());
-    out.people[each.person].push_back({time, each.skeleton});
-  }
-  for (const auto& [name, text] : motion->recording.notes)
-    if (name.starts_with("damage")) out.notes.push_back(file + ": " + text);
-  return out;
-}
-
-Result<ComparedSource> read_compared(const std::string& source, const CompareArguments& arguments) {
-  if (const auto format = motion_format(source)) return read_motion(source, *format);
-  auto frames = read_fused_frames(
-      source, std::chrono::milliseconds(static_cast<int>(1e3 * arguments.seconds)));
-  if (!frames) return pass(frames);
-  ComparedSource out;
-  out.notes = std::move(frames->notes);
-  for (exporters::FusedSample& sample : frames->samples)
-    out.people[sample.person.value].push_back(
-        {seconds(sample.instant.time_since_epoch()), sample.skeleton});
-  for (auto& [id, track] : out.people)
-    std::ranges::stable_sort(track, {}, &comparison::Moment::time);
-  return out;
-}
-
 Result<int> run_compare(const CompareArguments& arguments) {
   for (const std::string& file : arguments.out)
     if (auto ok = report::may_write_report(file); !ok) return pass(ok);
-  auto a = read_compared(arguments.a, arguments);
+  auto a = read_compared(arguments.a, arguments.seconds);
   if (!a) return pass(a);
-  auto b = read_compared(arguments.b, arguments);
+  auto b = read_compared(arguments.b, arguments.seconds);
   if (!b) return pass(b);
   comparison::CompareOptions options;
   options.same_clock = arguments.same_clock;

@@ -9,6 +9,7 @@
 
 #include "common/base/duration.h"
 #include "common/base/file.h"
+#include "common/base/median.h"
 #include "common/base/units.h"
 #include "common/evaluation/judge.h"
 #include "common/evaluation/limb_frame.h"
@@ -16,6 +17,7 @@
 #include "services/ctl/convert/fused_samples.h"
 #include "services/ctl/evaluate/evaluation_report.h"
 #include "services/ctl/evaluate/inertial_files.h"
+#include "services/ctl/evaluate/reference_take.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
@@ -26,7 +28,7 @@ namespace {
 constexpr std::uintmax_t kMostAnnotationBytes = 16u << 20;
 
 struct EvaluateArguments {
-  std::string tracking, calibration, out = "evaluation";
+  std::string tracking, calibration, reference, reference_joints, out = "evaluation";
   std::vector<std::string> inertial, calibration_inertial, annotations, limbs;
   std::optional<std::uint64_t> person;
   double tau_deg = to_deg(evaluation::kPaperTau);
@@ -91,25 +93,25 @@ evaluation::JudgeOptions options_of(const EvaluateArguments& arguments) {
 struct Loaded {
   evaluation::TrackedBody body;
   std::vector<evaluation::JudgeSensor> sensors;
+  comparison::Track joints;  ///< Of the same person, over the same time.
 };
 
 using People = std::map<std::uint64_t, evaluation::TrackedBody>;
 
 /// The person named, the only one, or the one whom the sensors fit.
-Result<evaluation::TrackedBody> chosen(People people,
-                                       const std::vector<evaluation::JudgeSensor>& sensors,
-                                       const EvaluateArguments& arguments) {
+Result<std::uint64_t> wearer_of(const People& people,
+                                const std::vector<evaluation::JudgeSensor>& sensors,
+                                const EvaluateArguments& arguments) {
   if (arguments.person) {
-    const auto found = people.find(*arguments.person);
-    if (found != people.end()) return std::move(found->second);
+    if (people.contains(*arguments.person)) return *arguments.person;
     return fail(ErrorCode::NotFound, "--person", "is not in the recording");
   }
-  if (people.size() == 1) return std::move(people.begin()->second);
+  if (people.size() == 1) return people.begin()->first;
   std::vector<std::uint64_t> ids;
   std::vector<evaluation::TrackedBody> bodies;
-  for (auto& [id, body] : people) {
+  for (const auto& [id, body] : people) {
     ids.push_back(id);
-    bodies.push_back(std::move(body));
+    bodies.push_back(body);
   }
   const auto wearer = evaluation::wearer_among(bodies, sensors, options_of(arguments));
   if (!wearer)
@@ -119,7 +121,17 @@ Result<evaluation::TrackedBody> chosen(People people,
                             ids.size(), wearer.error().message));
   std::cerr << fmt::format("note: of {} people, person {} wears the sensors\n", ids.size(),
                            ids[*wearer]);
-  return std::move(bodies[*wearer]);
+  return ids[*wearer];
+}
+
+/// The joints of one person over seconds after the first frame, in order of time.
+comparison::Track joints_of(const Samples& samples, std::uint64_t person) {
+  comparison::Track out;
+  for (const auto& sample : samples)
+    if (sample.person.value == person)
+      out.push_back({seconds(sample.instant - samples.front().instant), sample.skeleton});
+  std::ranges::stable_sort(out, {}, &comparison::Moment::time);
+  return out;
 }
 
 Result<Loaded> load(const std::string& tracking, const std::vector<std::string>& files,
@@ -136,14 +148,21 @@ Result<Loaded> load(const std::string& tracking, const std::vector<std::string>&
   for (const std::string& note : inertial::heading_notes(*logs))
     std::cerr << "note: " << note << '\n';
   auto sensors = sensors_of(*logs, origin_of(*logs, frames->samples));
-  auto body = chosen(people_of(frames->samples, arguments.stated), sensors, arguments);
-  if (!body) return pass(body);
-  return Loaded{std::move(*body), std::move(sensors)};
+  People people = people_of(frames->samples, arguments.stated);
+  const auto wearer = wearer_of(people, sensors, arguments);
+  if (!wearer) return pass(wearer);
+  return Loaded{std::move(people[*wearer]), std::move(sensors),
+                joints_of(frames->samples, *wearer)};
 }
 
 Result<EvaluationInputs> inputs_of(const EvaluateArguments& arguments) {
-  EvaluationInputs out{arguments.tracking,     arguments.inertial,    deg(arguments.tau_deg),
-                       arguments.most_percent, arguments.annotations, {}};
+  EvaluationInputs out{arguments.tracking,
+                       arguments.inertial,
+                       deg(arguments.tau_deg),
+                       arguments.most_percent,
+                       arguments.annotations,
+                       {},
+                       {}};
   for (const std::string& file : arguments.annotations) {
     const auto text = read_file(file, kMostAnnotationBytes);
     if (!text) return pass(text);
@@ -166,8 +185,50 @@ void print_limbs(const evaluation::Judgement& found) {
   for (const Error& error : found.refused) std::cout << "not judged: " << to_string(error) << '\n';
 }
 
+/// Errors of tracker and sensors against --reference; nothing without it.
+Result<std::optional<RefereedTake>> refereed_take(const EvaluateArguments& arguments,
+                                                  const Loaded& take,
+                                                  const evaluation::Judgement& found) {
+  if (arguments.reference.empty()) return std::nullopt;
+  const auto reference =
+      read_reference({arguments.reference, arguments.reference_joints, arguments.out}, take.joints);
+  if (!reference) return pass(reference);
+  for (const std::string& note : reference->notes) std::cerr << "note: " << note << '\n';
+  RefereedTake out{arguments.reference, reference->shift, reference->joints, reference->rms,
+                   evaluation::refereed(found, take.body, take.sensors, reference->body,
+                                        deg(arguments.tau_deg))};
+  if (out.limbs.empty())
+    return fail(ErrorCode::NotFound, arguments.reference,
+                "shows none of the limbs that are judged, while they are judged");
+  std::vector<double> apart;
+  for (const auto& limb : out.limbs) apart.push_back(to_deg(limb.tracker_spread.median));
+  if (const double middle = median(std::move(apart)); middle > arguments.tau_deg)
+    return fail(
+        ErrorCode::Conflict, arguments.reference,
+        fmt::format("its limbs are {:.0f} degrees from the tracker's in the median: does it "
+                    "show the same motion?",
+                    middle));
+  return out;
+}
+
+void print_reference(const RefereedTake& reference) {
+  std::vector<std::vector<std::string>> rows{
+      {"limb", "tracker off deg", "sensor off deg", "disagree", "tracker errs", "sensor errs"}};
+  for (const auto& limb : reference.limbs) {
+    const auto count = [&](evaluation::Right right) {
+      return std::to_string(
+          std::ranges::count(limb.segments, right, &evaluation::RefereedSegment::right));
+    };
+    rows.push_back({std::string(words_for(limb.limb)), shown(to_deg(limb.tracker_spread.median), 1),
+                    shown(to_deg(limb.sensor_spread.median), 1),
+                    std::to_string(limb.segments.size()), count(evaluation::Right::Sensor),
+                    count(evaluation::Right::Tracker)});
+  }
+  std::cout << table(rows) << reference_verdict(reference) << '\n';
+}
+
 Result<int> run_evaluate(const EvaluateArguments& arguments) {
-  const auto inputs = inputs_of(arguments);
+  auto inputs = inputs_of(arguments);
   if (!inputs) return pass(inputs);
   const evaluation::JudgeOptions options = options_of(arguments);
   std::vector<inertial::SensorCalibration> calibrations;
@@ -182,17 +243,33 @@ Result<int> run_evaluate(const EvaluateArguments& arguments) {
   if (!take) return pass(take);
   const auto found = evaluation::judge_tracking(take->body, take->sensors, options, calibrations);
   if (!found) return pass(found);
+  auto reference = refereed_take(arguments, *take, *found);
+  if (!reference) return pass(reference);
+  inputs->reference = std::move(*reference);
   const report::Report report = evaluation_report(*found, *inputs);
   if (auto ok = report::write_reports(report, arguments.out, "evaluation"); !ok) return pass(ok);
   if (arguments.json)
     std::cout << report::json_of(report) << '\n';
   else
     print_limbs(*found);
+  if (inputs->reference && !arguments.json) print_reference(*inputs->reference);
   std::cerr << "wrote " << arguments.out << "/evaluation.html, .json and .csv\n";
   const bool good = std::ranges::all_of(found->limbs, [&](const auto& limb) {
     return error_percent(limb) <= arguments.most_percent;
   });
   return good ? kExitOk : kExitFailed;
+}
+
+void add_reference_options(CLI::App& options, EvaluateArguments& arguments) {
+  auto* const reference = options.add_option(
+      "--reference", arguments.reference,
+      "Optical markers or joints of the same take (C3D, TRC, or fused frames of another tracker): "
+      "says who errs where tracker and sensor disagree");
+  options
+      .add_option("--reference-joints", arguments.reference_joints,
+                  "Lines such as \"HipLeft = LASI, LPSI\": points of the reference's joints, where "
+                  "names do not say")
+      ->needs(reference);
 }
 
 }  // namespace
@@ -221,6 +298,7 @@ Run add_evaluate(CLI::App& options) {
       .add_option("--annotations", arguments->annotations,
                   "Files of annotators: limb,begin_s,end_s")
       ->expected(1, 2);
+  add_reference_options(options, *arguments);
   options.add_option(
       "--person", arguments->person,
       "Who wears the sensors, of several people; else it is found from the movement");

@@ -254,7 +254,9 @@ report::Report evaluation_report(const evaluation::Judgement& found,
     distances.plots.push_back(distance_plot(limb, inputs.tau));
     rates.plots.push_back(rate_plot(limb));
   }
-  out.sections = {std::move(limbs), std::move(distances)};
+  out.sections = {std::move(limbs)};
+  if (inputs.reference) out.sections.push_back(reference_section(*inputs.reference, inputs.tau));
+  out.sections.push_back(std::move(distances));
   if (!inputs.annotations.empty()) out.sections.push_back(annotation_section(found, inputs));
   out.sections.push_back(std::move(rates));
   if (!found.refused.empty()) out.sections.push_back(refusals(found));
@@ -265,6 +267,7 @@ report::Report evaluation_report(const evaluation::Judgement& found,
       bad += (bad.empty() ? "" : ", ") + std::string(words_for(limb.limb));
   out.verdict = bad.empty() ? "No limb is in error for longer than allowed."
                             : "In error for too long: " + bad + ".";
+  if (inputs.reference) out.verdict += " " + reference_verdict(*inputs.reference);
   return out;
 }
 

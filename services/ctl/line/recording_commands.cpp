@@ -144,6 +144,7 @@ constexpr std::array kRecordingCommands{
         "  chorus evaluate --tracking fused.ndjson --inertial MT_*.txt --limb 00B40C48=ShankLeft\n"
         "  chorus evaluate --tracking walk.mcap --inertial walk.mcap     both were recorded\n"
         "  chorus evaluate --tracking walk.mcap --inertial suit.mvnx --annotations a1.csv a2.csv\n"
+        "  chorus evaluate --tracking walk.mcap --inertial suit.sto --reference vicon.c3d\n"
         "Writes OUT/evaluation.html, .json and .csv: Baak et al.'s distances, scores and figures.\n"
         "Exit code 0: no limb is in error for longer than --most; 1: one is, or why not judged.",
         &add_evaluate},
