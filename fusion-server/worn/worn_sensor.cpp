@@ -150,7 +150,9 @@ void WornSensor::calibrate(double time, const WornConfig& config) {
     if (!fit_) refusal_ = refusal;
     return;
   }
-  if (fit_ && sigma >= direction_sigma_) return;
+  // Both in the poses of these pairs: one that was made while the limb hardly moved knew its
+  // direction in those poses alone.
+  if (fit_ && sigma >= direction_sigma_of(corrected(time), pairs)) return;
   direction_sigma_ = sigma;
   found->calibration.sensor = name_;
   found->calibration.limb = limb_;

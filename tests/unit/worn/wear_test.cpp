@@ -272,5 +272,34 @@ TEST(Wear, ASourceThatIsNotFollowedAndOneThatIsSwitchedOffSayNothing) {
   EXPECT_TRUE(world.wear.reports(walker::at(8.0)).empty());
 }
 
+/// Heading [rad] that a sensor with the heading 0.7 is found to have at 40 s: its limb is upright
+/// at first, so that any heading goes with some mount; from 6 s on it leans, and is seen worse.
+double heading_of_who_stood_first(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> error;
+  WornSensor sensor("s", inertial::Limb::Pelvis);
+  const WornConfig config;
+  for (int i = 0; i < 600; ++i) {
+    const double time = i / 15.0;
+    const double tilt = time < 6.0 ? 0.01 : 0.1;
+    const double size = time < 6.0 ? deg(2) : deg(8);
+    const Eigen::Quaterniond limb =
+        about_y(0.5 * std::sin(0.9 * time)) *
+        exp_map({tilt * std::sin(2.1 * time), 0, tilt * std::cos(1.3 * time)});
+    const Eigen::Quaterniond seen =
+        limb * exp_map(size * Eigen::Vector3d(error(random), error(random), error(random)));
+    const Eigen::Matrix3d stated = size * size * Eigen::Matrix3d::Identity();
+    sensor.learn(time, {seen, stated, true}, about_y(-0.7) * limb * exp_map({0.3, -1.1, 0.6}),
+                 config);
+    if (sensor.wants_calibration(time)) sensor.calibrate(time, config);
+  }
+  return sensor.fit() ? sensor.heading() : 99.0;
+}
+
+TEST(WornSensor, IsCalibratedBetterOnceItsLimbMoves) {
+  for (const std::uint64_t seed : {1, 2, 3})
+    EXPECT_NEAR(heading_of_who_stood_first(seed), 0.7, deg(15)) << seed;
+}
+
 }  // namespace
 }  // namespace chorus::worn
