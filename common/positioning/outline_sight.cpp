@@ -15,18 +15,23 @@ namespace {
 constexpr double kSearchSigma = 0.15;
 constexpr double kSearchHeightSigma = 0.05;
 constexpr int kHeadings = 12;  // Tried when none is known.
+// A person who is followed is so near to where they are expected: the filter errs by less, and
+// somebody who runs takes a step of this length from one picture to the next [m].
+constexpr double kFollowed = 0.25;
 
 class OutlineSight final : public PictureSight {
  public:
-  OutlineSight(SightCamera camera, silhouette::Evidence evidence, const SightSettings& settings)
-      : camera_(std::move(camera)), evidence_(std::move(evidence)), settings_(settings) {}
+  OutlineSight(SightCamera camera, silhouette::EvidenceSource source, const SightSettings& settings)
+      : camera_(std::move(camera)), source_(std::move(source)), settings_(settings) {}
 
   [[nodiscard]] std::optional<SightedPlace> searched(const ExpectedBody& last) const override {
     const Skeleton<WorldSpace> body = placed(last.pose, last.heading, last.place);
-    const auto found = silhouette::search(view(body), settings_.search);
+    const auto region = region_of(body, settings_.search.shifts * settings_.search.shift);
+    const Evidence evidence = region ? source_.within(*region) : source_.whole();
+    const auto found = silhouette::search(view(body, evidence), settings_.search);
     if (!found) return std::nullopt;
     SightedPlace out{last.place + found->shift, Eigen::Matrix3d::Zero(), last.heading,
-                     found->energy / evidence_.scale(), found->ambiguous};
+                     found->energy / evidence.scale(), found->ambiguous};
     out.covariance.diagonal() << kSearchSigma * kSearchSigma,
         kSearchHeightSigma * kSearchHeightSigma, kSearchSigma * kSearchSigma;
     return out;
@@ -34,7 +39,8 @@ class OutlineSight final : public PictureSight {
 
   [[nodiscard]] std::optional<SightedPlace> outlined(const ExpectedBody& expected) const override {
     const Skeleton<WorldSpace> body = placed(expected.pose, expected.heading, expected.place);
-    const auto fit = silhouette::fit_outline(view(body), settings_.outline);
+    auto fit = followed(body);
+    if (!fit) fit = silhouette::fit_outline(view(body, source_.whole()), settings_.outline);
     if (!fit) return std::nullopt;
     return SightedPlace{expected.place + fit->shift, fit->covariance, expected.heading,
                         fit->mean_px, fit->ambiguous};
@@ -44,12 +50,14 @@ class OutlineSight final : public PictureSight {
                                                      std::optional<double> heading,
                                                      double height) const override {
     std::optional<SightedPlace> best;
+    const Evidence evidence = source_.whole();
     const int tries = heading ? 1 : kHeadings;
     for (int i = 0; i < tries; ++i) {
       const double turn = heading ? *heading : wrap_angle(2.0 * std::numbers::pi * i / kHeadings);
       const Eigen::Vector3d origin(0.0, height, 0.0);
       const Skeleton<WorldSpace> body = placed(pose, turn, origin);
-      const auto fit = silhouette::find_on_floor(view(body), settings_.floor, settings_.outline);
+      const auto fit =
+          silhouette::find_on_floor(view(body, evidence), settings_.floor, settings_.outline);
       if (!fit || (best && best->misfit_px <= fit->mean_px)) continue;
       best = {origin + fit->shift, fit->covariance, turn, fit->mean_px, fit->ambiguous};
     }
@@ -57,12 +65,35 @@ class OutlineSight final : public PictureSight {
   }
 
  private:
-  [[nodiscard]] silhouette::SearchView view(const Skeleton<WorldSpace>& body) const {
-    return {body, camera_.shape, camera_.world_from_sensor, camera_.lens, evidence_};
+  using Evidence = silhouette::Evidence;
+
+  [[nodiscard]] silhouette::SearchView view(const Skeleton<WorldSpace>& body,
+                                            const Evidence& evidence) const {
+    return {body, camera_.shape, camera_.world_from_sensor, camera_.lens, evidence};
+  }
+
+  [[nodiscard]] std::optional<silhouette::Region> region_of(const Skeleton<WorldSpace>& body,
+                                                            double reach) const {
+    if (!settings_.regions) return std::nullopt;
+    return silhouette::region_around(
+        {body, camera_.shape, camera_.world_from_sensor, camera_.lens, Evidence{}}, reach);
+  }
+
+  /// The fit within a region of interest; none when the person is not there or leaves it.
+  [[nodiscard]] std::optional<silhouette::OutlineFit> followed(
+      const Skeleton<WorldSpace>& body) const {
+    const auto region = region_of(body, kFollowed);
+    if (!region) return std::nullopt;
+    silhouette::OutlineSettings settings = settings_.outline;
+    settings.reach = 0.0;
+    auto fit = silhouette::fit_outline(view(body, source_.within(*region)), settings);
+    const bool left = fit && fit->shift.head<3>().cwiseAbs().maxCoeff() > kFollowed;
+    if (!fit || left || fit->mean_px > settings.lost_px) return std::nullopt;
+    return fit;
   }
 
   SightCamera camera_;
-  silhouette::Evidence evidence_;
+  silhouette::EvidenceSource source_;
   SightSettings settings_;
 };
 
@@ -81,9 +112,9 @@ Intrinsics sight_lens(const Intrinsics& lens) {
 }
 
 std::shared_ptr<const PictureSight> outline_sight(const SightCamera& camera,
-                                                  silhouette::Evidence evidence,
+                                                  silhouette::EvidenceSource source,
                                                   const SightSettings& settings) {
-  return std::make_shared<OutlineSight>(camera, std::move(evidence), settings);
+  return std::make_shared<OutlineSight>(camera, std::move(source), settings);
 }
 
 }  // namespace chorus::positioning

@@ -20,6 +20,9 @@ struct SightSettings {
   silhouette::SearchSettings search{};
   silhouette::OutlineSettings outline{};
   silhouette::FloorSearch floor{};
+  /// The field is made of a region of interest around the expected body, and of the whole picture
+  /// only while nobody is there.
+  bool regions = true;
 };
 
 /// What is the same for all pictures of one camera.
@@ -30,7 +33,7 @@ struct SightCamera {
 };
 
 [[nodiscard]] std::shared_ptr<const PictureSight> outline_sight(const SightCamera& camera,
-                                                                silhouette::Evidence evidence,
+                                                                silhouette::EvidenceSource source,
                                                                 const SightSettings& settings = {});
 
 }  // namespace chorus::positioning

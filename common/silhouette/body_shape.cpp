@@ -152,6 +152,16 @@ std::vector<FlatCapsule> flat_capsules(const Skeleton<WorldSpace>& body,
   return out;
 }
 
+Eigen::AlignedBox2d box_of(std::span<const FlatCapsule> capsules) {
+  Eigen::AlignedBox2d out;
+  for (const FlatCapsule& capsule : capsules) {
+    const Eigen::Vector2d a(capsule.a_radius, capsule.a_radius);
+    const Eigen::Vector2d b(capsule.b_radius, capsule.b_radius);
+    out.extend(capsule.a - a).extend(capsule.a + a).extend(capsule.b - b).extend(capsule.b + b);
+  }
+  return out;
+}
+
 double distance(const FlatCapsule& capsule, const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d along = capsule.b - capsule.a;
   const double length = along.norm();

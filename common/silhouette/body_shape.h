@@ -44,6 +44,9 @@ struct FlatCapsule {
                                                      const Eigen::Isometry3d& world_from_sensor,
                                                      const Intrinsics& camera);
 
+/// The part of a picture that the capsules cover [px]; empty without capsules.
+[[nodiscard]] Eigen::AlignedBox2d box_of(std::span<const FlatCapsule> capsules);
+
 /// Signed distance of a pixel from the outline of a capsule, negative inside [px].
 [[nodiscard]] double distance(const FlatCapsule& capsule, const Eigen::Vector2d& pixel);
 

@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kMostPictures = 64;
 constexpr double kCannyLow = 50.0;  // On a mask, whose edges are as steep as can be.
 constexpr double kCannyHigh = 150.0;
+constexpr double kFilters = 14.0;  // Reach of blur, opening, closing and Canny together [px].
 
 /// One thread while it lives.
 class OneThread {
@@ -55,19 +56,16 @@ void clean(cv::Mat& mask) {
 }
 
 /// Pixels that differ by more than the threshold and more than others do.
-cv::Mat differing(const cv::Mat& picture, const cv::Mat& background,
-                  const EvidenceSettings& settings) {
-  cv::Mat difference;
-  cv::absdiff(picture, background, difference);
-  cv::GaussianBlur(difference, difference, {5, 5}, 1.0);
+cv::Mat differing(const cv::Mat& difference, double common, const EvidenceSettings& settings) {
+  cv::Mat smooth;
+  cv::GaussianBlur(difference, smooth, {5, 5}, 1.0);
   cv::Mat mask;
   if (settings.surroundings > 1) {
-    cv::adaptiveThreshold(difference, mask, 255.0, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY,
+    cv::adaptiveThreshold(smooth, mask, 255.0, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY,
                           settings.surroundings | 1, -settings.threshold);
   } else {
     // A change of light changes everything alike: its mean is taken off.
-    const double common = cv::mean(difference)[0];
-    cv::threshold(difference, mask, std::max(settings.threshold, 1.5 * common), 255.0,
+    cv::threshold(smooth, mask, std::max(settings.threshold, 1.5 * common), 255.0,
                   cv::THRESH_BINARY);
   }
   clean(mask);
@@ -87,6 +85,8 @@ cv::Mat distances_from_edges(const cv::Mat& mask, double farthest) {
 }  // namespace
 
 double Evidence::at(int column, int row) const {
+  column -= origin_.x();
+  row -= origin_.y();
   if (column < 0 || row < 0 || column >= field_->cols || row >= field_->rows) return farthest_;
   return static_cast<double>(field_->at<float>(row, column));
 }
@@ -115,8 +115,10 @@ Eigen::Vector2d Evidence::slope(const Eigen::Vector2d& pixel) const {
 }
 
 bool Evidence::is_foreground(const Eigen::Vector2d& pixel) const {
-  const auto column = static_cast<int>(std::lround((pixel.x() + 0.5) * scale_ - 0.5));
-  const auto row = static_cast<int>(std::lround((pixel.y() + 0.5) * scale_ - 0.5));
+  constexpr double kMost = 1e6;
+  if (!(std::abs(pixel.x()) < kMost && std::abs(pixel.y()) < kMost)) return false;
+  const int column = static_cast<int>(std::lround((pixel.x() + 0.5) * scale_ - 0.5)) - origin_.x();
+  const int row = static_cast<int>(std::lround((pixel.y() + 0.5) * scale_ - 0.5)) - origin_.y();
   if (column < 0 || row < 0 || column >= mask_->cols || row >= mask_->rows) return false;
   return mask_->at<std::uint8_t>(row, column) != 0;
 }
@@ -150,35 +152,68 @@ void Background::learn(const cv::Mat& picture) {
   stride_ *= 2;
 }
 
-cv::Mat Background::mask_of(const cv::Mat& grey) {
+std::optional<EvidenceSource> Background::evidence(const cv::Mat& picture) {
+  if (learned_ == 0 || picture.empty()) return std::nullopt;
+  const OneThread one;
+  const cv::Mat grey = small_grey(picture, settings_.scale);
+  if (std::pair(grey.cols, grey.rows) != size_) return std::nullopt;
+  EvidenceSource out(settings_);
   if (settings_.model == BackgroundModel::Mixtures) {
     cv::Mat mask;
     mixtures_->apply(grey, mask, 0.0);  // Nothing is learned: the person may be there.
     cv::threshold(mask, mask, 200.0, 255.0, cv::THRESH_BINARY);  // Shadows are 127.
     clean(mask);
-    return mask;
+    out.mask_ = std::make_shared<const cv::Mat>(std::move(mask));
+    return out;
   }
   if (!median_) median_ = std::make_shared<const cv::Mat>(median_of(pictures_));
-  return differing(grey, *median_, settings_);
+  cv::Mat difference;
+  cv::absdiff(grey, *median_, difference);
+  out.common_ = cv::mean(difference)[0];
+  out.difference_ = std::make_shared<const cv::Mat>(std::move(difference));
+  return out;
 }
 
-std::optional<Evidence> Background::evidence(const cv::Mat& picture) {
-  if (learned_ == 0 || picture.empty()) return std::nullopt;
-  const OneThread one;
-  const cv::Mat grey = small_grey(picture, settings_.scale);
-  if (std::pair(grey.cols, grey.rows) != size_) return std::nullopt;
-  return evidence_of_mask(mask_of(grey), settings_.scale, settings_);
+Evidence EvidenceSource::whole() const {
+  const cv::Mat& all = mask_ ? *mask_ : *difference_;
+  return cut(0, 0, all.cols, all.rows);
 }
 
-Evidence evidence_of_mask(const cv::Mat& mask, double scale, const EvidenceSettings& settings) {
+Evidence EvidenceSource::within(const Region& region) const {
+  if (region.isEmpty() || !region.min().allFinite() || !region.max().allFinite()) return whole();
+  // Edges outside count as far as the field reaches, and pixels as far as the filters do.
+  const double beyond = settings_.farthest + kFilters + settings_.surroundings / 2.0;
+  const cv::Mat& all = mask_ ? *mask_ : *difference_;
+  const auto in = [&](double pixel, double by, int most) {
+    return static_cast<int>(std::clamp(pixel * settings_.scale + by, 0.0, 1.0 * most));
+  };
+  return cut(in(region.min().x(), -beyond, all.cols), in(region.min().y(), -beyond, all.rows),
+             in(region.max().x(), beyond + 1.0, all.cols),
+             in(region.max().y(), beyond + 1.0, all.rows));
+}
+
+Evidence EvidenceSource::cut(int left, int top, int right, int bottom) const {
   const OneThread one;
+  const cv::Rect part(left, top, right - left, bottom - top);
+  if (part.empty()) return whole();
   Evidence out;
-  out.scale_ = scale;
-  out.farthest_ = settings.farthest;
-  out.mask_ = std::make_shared<const cv::Mat>(mask.clone());
-  out.field_ = std::make_shared<const cv::Mat>(distances_from_edges(mask, settings.farthest));
+  out.origin_ = {left, top};
+  out.scale_ = settings_.scale;
+  out.farthest_ = settings_.farthest;
+  const cv::Mat mask =
+      mask_ ? (*mask_)(part).clone() : differing((*difference_)(part).clone(), common_, settings_);
+  out.field_ = std::make_shared<const cv::Mat>(distances_from_edges(mask, settings_.farthest));
   out.foreground_ = static_cast<double>(cv::countNonZero(mask)) /
                     static_cast<double>(std::max<std::size_t>(1, mask.total()));
+  out.mask_ = std::make_shared<const cv::Mat>(mask);
+  return out;
+}
+
+EvidenceSource evidence_of_mask(const cv::Mat& mask, double scale,
+                                const EvidenceSettings& settings) {
+  EvidenceSource out(settings);
+  out.settings_.scale = scale;
+  out.mask_ = std::make_shared<const cv::Mat>(mask.clone());
   return out;
 }
 

@@ -19,12 +19,6 @@ struct Tried {
   double cost;
 };
 
-Skeleton<WorldSpace> shifted(const Skeleton<WorldSpace>& body, const Eigen::Vector3d& by) {
-  Skeleton<WorldSpace> out = body;
-  for (Joint& joint : out.joints) joint.position += by;
-  return out;
-}
-
 bool hips_are_seen(const SearchView& view, const Eigen::Vector3d& hips) {
   const Eigen::Vector3d in_camera =
       camera_from_sensor_axes() * (view.world_from_sensor.inverse() * hips);

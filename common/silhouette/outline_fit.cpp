@@ -21,16 +21,10 @@ constexpr double kInwards = 4.0;  // How far inside the region is asked [px].
 constexpr double kAlike = 8.0;
 constexpr double kLeastNoise = 2.0;  // Of an edge [px].
 
-Skeleton<WorldSpace> moved(const Skeleton<WorldSpace>& body, const Eigen::Vector3d& by) {
-  Skeleton<WorldSpace> out = body;
-  for (Joint& joint : out.joints) joint.position += by;
-  return out;
-}
-
 std::vector<OutlinePoint> outline_at(const SearchView& view, const Eigen::Vector3d& shift,
                                      double spacing) {
   const auto capsules =
-      flat_capsules(moved(view.body, shift), view.shape, view.world_from_sensor, view.camera);
+      flat_capsules(shifted(view.body, shift), view.shape, view.world_from_sensor, view.camera);
   std::vector<OutlinePoint> out = outline_of(capsules, spacing);
   std::erase_if(out, [&](const OutlinePoint& point) {
     return point.pixel.x() < 0.0 || point.pixel.y() < 0.0 ||
@@ -175,7 +169,8 @@ std::optional<OutlineFit> fit_outline(const SearchView& view, const OutlineSetti
   out.shift = refined(view, out.shift, settings);
   auto outline = outline_at(view, out.shift, settings.spacing_px);
   out.mean_px = mean_distance(outline, view.evidence);
-  if (outline.size() < kFewestPoints || out.mean_px > settings.lost_px) {
+  const bool lost = outline.size() < kFewestPoints || out.mean_px > settings.lost_px;
+  if (lost && settings.reach > 0.0) {
     const auto [start, ambiguous] = coarse(view, settings);
     const Eigen::Vector3d other = refined(view, start, settings);
     const auto other_outline = outline_at(view, other, settings.spacing_px);

@@ -19,7 +19,7 @@ struct OutlineSettings {
   bool over_floor = true;  ///< Only along x and z; the height is the suit's.
   /// Mean distance above which the start is searched on a grid [px].
   double lost_px = 9.0;
-  double reach = 0.6;  ///< Of that grid [m].
+  double reach = 0.6;  ///< Of that grid; 0: there is none [m].
 };
 
 struct OutlineFit {

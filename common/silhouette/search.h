@@ -26,6 +26,10 @@ struct SearchView {
   const Evidence& evidence;
 };
 
+/// The body elsewhere.
+[[nodiscard]] Skeleton<WorldSpace> shifted(const Skeleton<WorldSpace>& body,
+                                           const Eigen::Vector3d& by);
+
 struct SearchResult {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< Over the floor [m].
   double energy = 0.0;                              ///< Eq. 2 of the best [px of the field].
@@ -37,6 +41,10 @@ struct SearchResult {
 /// picture.  (One that is empty never wins.)
 [[nodiscard]] std::optional<SearchResult> search(const SearchView& view,
                                                  const SearchSettings& settings = {});
+
+/// The region in which `search` may look: the body shifted by `reach` metres to all sides.  None
+/// when a part of the body would be behind the camera.
+[[nodiscard]] std::optional<Region> region_around(const SearchView& view, double reach);
 
 /// Eq. 2 for one position: the mean distance along the silhouette; none if it is empty.
 [[nodiscard]] std::optional<double> energy(std::span<const FlatCapsule> capsules,

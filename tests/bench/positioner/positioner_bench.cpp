@@ -21,6 +21,9 @@ constexpr std::array kPositionerCases{
     PositionerCase{"occlusion", &rendered_occlusion, false},
     PositionerCase{"light", &rendered_light, false},
     PositionerCase{"two-cameras", &rendered_two_cameras, false},
+    PositionerCase{"shape", &shape_gain, false},
+    PositionerCase{"speed", &sight_speed, false},
+    PositionerCase{"pets", &pets_walkers, false},
     PositionerCase{"four-views", &four_views_pixels, false},
 };
 

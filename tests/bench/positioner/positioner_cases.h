@@ -16,6 +16,15 @@ namespace chorus::bench {
 [[nodiscard]] Result<void> rendered_light(Report& report);
 [[nodiscard]] Result<void> rendered_two_cameras(Report& report);
 
+/// What a body that is exactly right would gain over capsules.
+[[nodiscard]] Result<void> shape_gain(Report& report);
+
+/// Time of a picture, in a region of interest and whole.
+[[nodiscard]] Result<void> sight_speed(Report& report);
+
+/// People in PETS 2009 S2.L1, 20 to 30 m away, with a template gait; CHORUS_PETS names its folder.
+[[nodiscard]] Result<void> pets_walkers(Report& report);
+
 /// Four real cameras from their pixels, each alone; needs the runner.
 [[nodiscard]] Result<void> four_views_pixels(Report& report);
 

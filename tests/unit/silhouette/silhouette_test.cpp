@@ -57,7 +57,8 @@ struct Scene {
   Skeleton<WorldSpace> truth = chorus::testing::t_pose_person({0.2, 0.0, 0.1});
   std::vector<ShapedBone> shape = usual_shape(1.75);
   Background background = empty_room();
-  std::optional<Evidence> evidence = background.evidence(picture_of(&truth, 99));
+  EvidenceSource source = background.evidence(picture_of(&truth, 99)).value();
+  std::optional<Evidence> evidence = source.whole();
 
   [[nodiscard]] Skeleton<WorldSpace> off_by(const Eigen::Vector3d& by) const {
     Skeleton<WorldSpace> body = truth;
@@ -65,6 +66,10 @@ struct Scene {
     return body;
   }
 };
+
+SearchView view_of(const Scene& scene, const Skeleton<WorldSpace>& body) {
+  return {body, scene.shape, kPlace, kCamera, *scene.evidence};
+}
 
 TEST(BodyShape, PointsOfTheOutlineAreOnItAndNoneIsInside) {
   const Scene scene;
@@ -108,7 +113,7 @@ TEST(Evidence, IsTheSameWithAnyNumberOfThreads) {
   const auto field_with = [&](int threads) {
     cv::setNumThreads(threads);
     Background background = empty_room();
-    return background.evidence(picture)->field().clone();
+    return background.evidence(picture)->whole().field().clone();
   };
   const cv::Mat one = field_with(1);
   for (const int threads : {2, 3, 8})
@@ -133,8 +138,9 @@ TEST(Evidence, FromMixturesLeavesShadowsOut) {
   cv::Mat picture = picture_of(&scene.truth, 50);
   cv::Mat shaded = picture(cv::Rect(20, 380, 120, 80));
   shaded *= 0.7;  // A shadow on the floor.
-  const auto evidence = background.evidence(picture);
-  ASSERT_TRUE(evidence);
+  const auto source = background.evidence(picture);
+  ASSERT_TRUE(source);
+  const std::optional evidence = source->whole();
   EXPECT_FALSE(evidence->is_foreground({80, 420}));
   const Eigen::Vector3d chest = scene.truth[JointId::SpineMid].position;
   const auto pixel = pixel_of(camera_from_sensor_axes() * (kPlace.inverse() * chest), kCamera);
@@ -154,17 +160,69 @@ TEST(Evidence, WithAThresholdOfTheSurroundingsStandsAChangeOfLightOnOneSide) {
   cv::Mat picture = picture_of(nullptr, 20);
   cv::Mat lit = picture(cv::Rect(0, 0, 200, 480));
   lit += cv::Scalar(30);  // A lamp lights a third of the room.
-  EXPECT_LT(near.evidence(picture)->foreground(), 0.4 * far.evidence(picture)->foreground());
+  EXPECT_LT(near.evidence(picture)->whole().foreground(),
+            0.4 * far.evidence(picture)->whole().foreground());
 }
 
 TEST(Evidence, OfAMaskIsThatMask) {
   cv::Mat mask = cv::Mat::zeros(90, 160, CV_8U);
   cv::rectangle(mask, {40, 20, 30, 50}, cv::Scalar(255), cv::FILLED);
-  const Evidence evidence = evidence_of_mask(mask, 0.25);
+  const Evidence evidence = evidence_of_mask(mask, 0.25).whole();
   EXPECT_TRUE(evidence.is_foreground({4.0 * 55, 4.0 * 45}));
   EXPECT_FALSE(evidence.is_foreground({4.0 * 20, 4.0 * 45}));
   EXPECT_LT(evidence.distance({4.0 * 40, 4.0 * 45}), 6.0);
   EXPECT_NEAR(evidence.foreground(), 1500.0 / (90 * 160), 1e-9);
+}
+
+TEST(Evidence, OfARegionIsThatOfTheWholePicture) {
+  const Scene scene;
+  const auto same = [&](const EvidenceSource& source, const Region& region) {
+    const Evidence whole = source.whole();
+    const Evidence part = source.within(region);
+    for (double y = region.min().y(); y <= region.max().y(); y += 3.7) {
+      for (double x = region.min().x(); x <= region.max().x(); x += 3.7) {
+        ASSERT_NEAR(part.distance({x, y}), whole.distance({x, y}), 1e-6) << x << ' ' << y;
+        ASSERT_EQ(part.is_foreground({x, y}), whole.is_foreground({x, y})) << x << ' ' << y;
+      }
+    }
+    EXPECT_LT(part.field().total(), whole.field().total());
+  };
+  EvidenceSettings adapting;
+  adapting.surroundings = 51;
+  Background room(adapting);
+  for (std::uint64_t seed = 1; seed <= 9; ++seed) room.learn(picture_of(nullptr, seed));
+  for (const Region& region : {Region(Eigen::Vector2d(300, 150), Eigen::Vector2d(420, 300)),
+                               Region(Eigen::Vector2d(-50, -80), Eigen::Vector2d(200, 500)),
+                               Region(Eigen::Vector2d(500, 300), Eigen::Vector2d(5000, 460))}) {
+    same(scene.source, region);
+    same(room.evidence(picture_of(&scene.truth, 99)).value(), region);
+  }
+}
+
+TEST(Evidence, OfNoRegionIsThatOfTheWholePicture) {
+  const Scene scene;
+  const double all = static_cast<double>(scene.evidence->field().total());
+  const double nan = std::nan("");
+  for (const Region& region :
+       {Region(), Region(Eigen::Vector2d(9000, 10), Eigen::Vector2d(9100, 20)),
+        Region(Eigen::Vector2d(nan, 10), Eigen::Vector2d(90, 20))})
+    EXPECT_EQ(static_cast<double>(scene.source.within(region).field().total()), all);
+}
+
+TEST(Search, IsTheSameInItsRegion) {
+  const Scene scene;
+  const auto body = scene.off_by({0.2, 0.0, 0.1});
+  const auto region = region_around(view_of(scene, body), 0.3);
+  ASSERT_TRUE(region);
+  const Evidence part = scene.source.within(*region);
+  ASSERT_LT(part.field().total(), 4 * scene.evidence->field().total() / 5);
+  const auto there = search({body, scene.shape, kPlace, kCamera, part});
+  const auto whole = search(view_of(scene, body));
+  ASSERT_TRUE(there && whole);
+  EXPECT_EQ(there->shift, whole->shift);
+  EXPECT_NEAR(there->energy, whole->energy, 1e-6);
+  EXPECT_EQ(there->ambiguous, whole->ambiguous);
+  EXPECT_FALSE(region_around(view_of(scene, scene.off_by({0.0, 0.0, 4.4})), 0.3));
 }
 
 TEST(Background, KeepsPicturesSpreadOverAllThatItSaw) {
@@ -173,12 +231,8 @@ TEST(Background, KeepsPicturesSpreadOverAllThatItSaw) {
   for (int i = 0; i < 230; ++i)
     background.learn(cv::Mat(8, 8, CV_8U, cv::Scalar(i < 100 ? 50 : 200)));
   cv::Mat light(8, 8, CV_8U, cv::Scalar(200));
-  EXPECT_EQ(background.evidence(light)->foreground(), 0.0);
+  EXPECT_EQ(background.evidence(light)->whole().foreground(), 0.0);
   EXPECT_EQ(background.learned(), 230u);
-}
-
-SearchView view_of(const Scene& scene, const Skeleton<WorldSpace>& body) {
-  return {body, scene.shape, kPlace, kCamera, *scene.evidence};
 }
 
 TEST(Search, FindsTheShiftAmongTheTwentyFive) {
@@ -231,13 +285,13 @@ TEST(FloorSearch, FindsThePersonWithoutAStart) {
 
 TEST(FloorSearch, WhereNobodyIsFindsNobody) {
   Scene scene;
-  scene.evidence = scene.background.evidence(picture_of(nullptr, 77));
+  scene.evidence = scene.background.evidence(picture_of(nullptr, 77)).value().whole();
   EXPECT_FALSE(find_on_floor(view_of(scene, scene.truth)));
 }
 
 TEST(OutlineFit, WhereNobodyIsAnswersNothing) {
   Scene scene;
-  scene.evidence = scene.background.evidence(picture_of(nullptr, 77));
+  scene.evidence = scene.background.evidence(picture_of(nullptr, 77)).value().whole();
   ASSERT_TRUE(scene.evidence);
   EXPECT_FALSE(fit_outline(view_of(scene, scene.truth)));
 }

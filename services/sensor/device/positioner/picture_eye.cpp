@@ -56,7 +56,8 @@ class OutlineEye final : public PictureEye {
   }
 
  private:
-  [[nodiscard]] std::optional<silhouette::Evidence> evidence_of(const camera::LookedAt& looked) {
+  [[nodiscard]] std::optional<silhouette::EvidenceSource> evidence_of(
+      const camera::LookedAt& looked) {
     if (looked.mask && settings_.background != EyeBackground::Mixtures) {
       const camera::PersonMask& mask = *looked.mask;
       const cv::Mat cells(mask.size.height, mask.size.width, CV_8U,
