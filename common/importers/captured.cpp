@@ -11,6 +11,7 @@
 #include "common/importers/text_rows.h"
 #include "common/motion/bvh.h"
 #include "common/motion/c3d.h"
+#include "common/motion/htr.h"
 #include "common/motion/mvnx.h"
 #include "common/motion/stature.h"
 #include "common/motion/trc.h"
@@ -147,6 +148,17 @@ Result<Captured> captured_bvh(const std::string& text, const std::string& origin
   return out;
 }
 
+Result<Captured> captured_htr(const std::string& text, const std::string& origin,
+                              const ImportOptions& options) {
+  const auto htr = motion::parse_htr(text, origin);
+  if (!htr) return pass(htr);
+  auto motion = motion::motion_from_bvh(*htr, options.joints);
+  if (!motion) return without_joints(motion.error(), origin);
+  Captured out{"Motion Analysis HTR", {std::move(*motion)}, {1}};
+  out.damage = htr->notes;
+  return out;
+}
+
 Result<Captured> captured_mvnx(const std::string& text, const std::string& origin,
                                const ImportOptions& options) {
   const auto mvnx = motion::parse_mvnx(text, origin);
@@ -168,10 +180,11 @@ Result<Captured> captured_mvnx(const std::string& text, const std::string& origi
 }
 
 using Reader = Result<Captured> (*)(const std::string&, const std::string&, const ImportOptions&);
-constexpr std::array<std::pair<MotionFormat, Reader>, 4> kMotionReaders{
+constexpr std::array<std::pair<MotionFormat, Reader>, 5> kMotionReaders{
     {{MotionFormat::C3d, &captured_c3d},
      {MotionFormat::Trc, &captured_trc},
      {MotionFormat::Bvh, &captured_bvh},
+     {MotionFormat::Htr, &captured_htr},
      {MotionFormat::Mvnx, &captured_mvnx}}};
 
 /// The names of points or joints in a file.
@@ -185,6 +198,9 @@ Result<std::vector<std::string>> names_in_file(const std::string& text, const st
   }
   if (format == MotionFormat::Bvh) {
     return motion::parse_bvh(text, origin).map([](const auto& bvh) { return names_in(bvh); });
+  }
+  if (format == MotionFormat::Htr) {
+    return motion::parse_htr(text, origin).map([](const auto& htr) { return names_in(htr); });
   }
   return fail(ErrorCode::Unsupported, origin, "has segments of fixed names");
 }
@@ -205,8 +221,9 @@ Result<std::string> joint_template(const std::filesystem::path& file, MotionForm
   if (!bytes) return pass(bytes);
   const auto names = names_in_file(*bytes, file.string(), format);
   if (!names) return pass(names);
-  const auto dialect =
-      format == MotionFormat::Bvh ? motion::Dialect::Joints : motion::Dialect::JointsAndMarkers;
+  const auto dialect = format == MotionFormat::Bvh || format == MotionFormat::Htr
+                           ? motion::Dialect::Joints
+                           : motion::Dialect::JointsAndMarkers;
   return motion::joint_choice_template(*names, motion::joint_sources(*names, dialect));
 }
 

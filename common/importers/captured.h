@@ -13,7 +13,7 @@
 
 namespace chorus::importers {
 
-enum class MotionFormat { C3d, Trc, Bvh, Mvnx };
+enum class MotionFormat { C3d, Trc, Bvh, Htr, Mvnx };
 
 /// What every reader returns; all persons have the same number of frames.
 struct Captured {

@@ -55,6 +55,7 @@ constexpr std::array<ReaderRow, kFormats.size()> kReaders{{
     {FileFormat::C3d, nullptr, &import_motion<MotionFormat::C3d>},
     {FileFormat::Trc, nullptr, &import_motion<MotionFormat::Trc>},
     {FileFormat::Bvh, nullptr, &import_motion<MotionFormat::Bvh>},
+    {FileFormat::Htr, nullptr, &import_motion<MotionFormat::Htr>},
     {FileFormat::Mvnx, nullptr, &import_motion<MotionFormat::Mvnx>},
     {FileFormat::Csv, &read_joint_csv, nullptr, 1.0},
     {FileFormat::Ndjson, &read_frame_lines},

@@ -27,6 +27,7 @@ enum class FileFormat {
   C3d,
   Trc,
   Bvh,
+  Htr,
   Mvnx,
   Csv,
   Ndjson,
@@ -39,7 +40,7 @@ struct FormatRow {
   std::string_view reads;  ///< One line for --help.
 };
 
-inline constexpr std::array<FormatRow, 12> kFormats{{
+inline constexpr std::array<FormatRow, 13> kFormats{{
     {FileFormat::Labanotation, "labanotation",
      "LabanotationSuite csv, Kinect v2 with capture times"},
     {FileFormat::Ntu, "ntu", "NTU RGB+D .skeleton, Kinect v2, 30 Hz assumed"},
@@ -49,6 +50,7 @@ inline constexpr std::array<FormatRow, 12> kFormats{{
     {FileFormat::C3d, "c3d", "C3D, points named as joints, joint centres or markers; as truth"},
     {FileFormat::Trc, "trc", "TRC of OpenSim, Pose2Sim and others, named points; as truth"},
     {FileFormat::Bvh, "bvh", "Biovision BVH, the usual joint names; as truth"},
+    {FileFormat::Htr, "htr", "Motion Analysis HTR, the usual joint names; as truth"},
     {FileFormat::Mvnx, "mvnx", "Xsens MVN XML; as truth"},
     {FileFormat::Csv, "csv", "joints in columns, also those that chorus export writes"},
     {FileFormat::Ndjson, "ndjson", "/frame documents in lines, also those that chorus fuse writes"},
@@ -67,8 +69,8 @@ struct ImportedSet {
 };
 
 /// Reads a set of files.  Usually each input is one sensor.  For pose2sim the only input is the
-/// folder.  For c3d, bvh and mvnx, and for a single csv or ndjson file without a floor, the only
-/// input is a file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs
+/// folder.  For c3d, bvh, htr and mvnx, and for a single csv or ndjson file without a floor, the
+/// only input is a file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs
 /// would be the same sensor or have the same numbers, and people of an impossible size.  The notes
 /// of every recording say when the set begins and how long it lasts (set_origin, set_period_ns), so
 /// that several replays stay in step when they loop.  If files count from the start of one sensor,

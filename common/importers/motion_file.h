@@ -1,4 +1,4 @@
-// Recorded human motion as truth: turns C3D, TRC, BVH and MVNX files (common/motion) into a
+// Recorded human motion as truth: turns C3D, TRC, BVH, HTR and MVNX files (common/motion) into a
 // recording of an ideal sensor.
 //
 // The sensor's space is the world of the file: +y up, floor y = 0, extrinsics identity.  So motion

@@ -1,8 +1,11 @@
 #include "common/suit/suit_file.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "common/base/file.h"
+#include "common/motion/htr.h"
 #include "common/motion/mvnx.h"
 
 namespace chorus::suit {
@@ -11,21 +14,26 @@ namespace {
 constexpr double kShortest = 0.5;  // [m]
 constexpr double kTallest = 2.5;   // [m]
 
-Result<motion::Motion> motion_in(const std::filesystem::path& file,
-                                 const SuitFileOptions& options) {
+Result<motion::Motion> motion_in(const std::filesystem::path& file, const SuitFileOptions& options,
+                                 std::vector<std::string>& notes) {
   const std::string ending = file.extension().string();
   const bool mvnx = ending == ".mvnx" || ending == ".MVNX";
-  if (!mvnx && ending != ".bvh" && ending != ".BVH")
+  const bool htr = ending == ".htr" || ending == ".HTR";
+  if (!mvnx && !htr && ending != ".bvh" && ending != ".BVH")
     return fail(ErrorCode::Unsupported, file.string(),
-                "a suit's take is a .bvh or .mvnx file; export one from the suit's program");
+                "a suit's take is a .bvh, .htr or .mvnx file; export one from the suit's program");
   const auto text = read_file(file, motion::kMaxMvnxBytes);
   if (!text) return pass(text);
   if (mvnx) {
     const auto parsed = motion::parse_mvnx(*text, file.string());
     return parsed ? motion::motion_from_mvnx(*parsed) : pass(parsed);
   }
-  const auto parsed = motion::parse_bvh(*text, file.string(), options.metres_per_unit);
-  return parsed ? motion::motion_from_bvh(*parsed) : pass(parsed);
+  const auto parsed = htr ? motion::parse_htr(*text, file.string())
+                          : motion::parse_bvh(*text, file.string(), options.metres_per_unit);
+  if (!parsed) return pass(parsed);
+  for (const std::string& note : parsed->notes)
+    notes.push_back(file.filename().string() + " " + note);
+  return motion::motion_from_bvh(*parsed);
 }
 
 Result<void> check_size(const std::filesystem::path& file, const SuitTake& take) {
@@ -52,7 +60,8 @@ Result<void> check_size(const std::filesystem::path& file, const SuitTake& take)
 }  // namespace
 
 Result<SuitTake> read_suit_file(const std::filesystem::path& file, const SuitFileOptions& options) {
-  const auto motion = motion_in(file, options);
+  std::vector<std::string> notes;
+  const auto motion = motion_in(file, options, notes);
   if (!motion) return pass(motion);
   auto take = take_of(*motion, options.stature);
   if (!take) {
@@ -61,6 +70,7 @@ Result<SuitTake> read_suit_file(const std::filesystem::path& file, const SuitFil
     return tl::unexpected<Error>(std::move(error));
   }
   if (const auto ok = check_size(file, *take); !ok) return pass(ok);
+  take->notes = std::move(notes);
   return take;
 }
 

@@ -1,6 +1,7 @@
 // What an inertial suit knows: the pose of a person without a place.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/base/duration.h"
@@ -26,6 +27,7 @@ struct SuitTake {
   std::vector<SuitPose> poses;
   /// Where the suit's own program says SpineBase was, y up [m]; as many as poses.
   std::vector<Eigen::Vector3d> claimed;
+  std::vector<std::string> notes = {};  ///< What of the file was salvaged.
 };
 
 /// The pose of a body, without its place.  Joints that are not seen stay so; without SpineBase none

@@ -55,10 +55,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kCameraFo
      {"mmpose", "MMPose's predictions in JSON: a file a video, or a folder of pictures, as rays"},
      {"alphapose", "AlphaPose's results in JSON, a file a video, as rays"},
      {"coco", "landmarks in COCO's form (results or annotations), a file a video, as rays"}}};
-constexpr std::array<std::pair<std::string_view, importers::MotionFormat>, 3> kNamedPoints{
+constexpr std::array<std::pair<std::string_view, importers::MotionFormat>, 4> kNamedPoints{
     {{"c3d", importers::MotionFormat::C3d},
      {"trc", importers::MotionFormat::Trc},
-     {"bvh", importers::MotionFormat::Bvh}}};
+     {"bvh", importers::MotionFormat::Bvh},
+     {"htr", importers::MotionFormat::Htr}}};
 constexpr std::array<std::pair<std::string_view, importers::Clocks>, 3> kClocks{
     {{"one", importers::Clocks::One},
      {"own", importers::Clocks::Own},

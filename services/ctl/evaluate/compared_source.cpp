@@ -13,6 +13,7 @@ constexpr std::pair<std::string_view, importers::MotionFormat> kMotionFiles[]{
     {".c3d", importers::MotionFormat::C3d},
     {".trc", importers::MotionFormat::Trc},
     {".bvh", importers::MotionFormat::Bvh},
+    {".htr", importers::MotionFormat::Htr},
     {".mvnx", importers::MotionFormat::Mvnx}};
 
 }  // namespace

@@ -1,10 +1,11 @@
-// Reads any bytes as C3D, BVH or MVNX: no crash, no endless loop, no NaN or infinity.
+// Reads any bytes as C3D, BVH, HTR or MVNX: no crash, no endless loop, no NaN or infinity.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 #include "common/motion/bvh.h"
 #include "common/motion/c3d.h"
+#include "common/motion/htr.h"
 #include "common/motion/mvnx.h"
 
 namespace {
@@ -36,6 +37,13 @@ void read_bvh(std::string_view bytes) {
   if (motion) check(*motion);
 }
 
+void read_htr(std::string_view bytes) {
+  const auto htr = chorus::motion::parse_htr(bytes, "fuzz");
+  if (!htr) return;
+  const auto motion = chorus::motion::motion_from_bvh(*htr);
+  if (motion) check(*motion);
+}
+
 void read_mvnx(std::string_view bytes) {
   const auto mvnx = chorus::motion::parse_mvnx(bytes, "fuzz");
   if (!mvnx) return;
@@ -50,6 +58,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   // A valid file's first bytes tell its format; all readers must refuse everything else.
   if (text.starts_with("HIERARCHY")) {
     read_bvh(text);
+  } else if (text.starts_with('[')) {
+    read_htr(text);
   } else if (text.starts_with('<')) {
     read_mvnx(text);
   } else {

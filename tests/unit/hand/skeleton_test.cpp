@@ -7,7 +7,9 @@
 #include "common/hand/anthropometry.h"
 #include "common/hand/bvh.h"
 #include "common/hand/hand_json.h"
+#include "common/hand/htr.h"
 #include "common/motion/bvh.h"
+#include "common/motion/htr.h"
 #include "tests/support/hands/hand_scene.h"
 #include "tests/support/matchers.h"
 
@@ -51,6 +53,27 @@ TEST(ASkeleton, LiesInTheAxesOfItsPalmWhicheverSideIsSeen) {
     EXPECT_GT(hand.side == Side::Right ? thumb : -thumb, 0.03) << "seed " << seed;
   }
   EXPECT_TRUE(left && back) << "the seeds show both";
+}
+
+TEST(ASkeleton, AsHtrHasEveryJointWhereItIs) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto hand = drawn(seed);
+    const Skeleton skeleton = skeleton_of(shape_of(hand), 1.0 / hand.pixels_per_mm);
+    const auto htr = motion::parse_htr(htr_of(skeleton), "hand.htr");
+    ASSERT_TRUE(htr) << to_string(htr.error());
+    const auto places = motion::joint_positions(*htr, 0);
+    const std::string side = skeleton.side == Side::Left ? "Left" : "Right";
+    for (std::size_t j = 0; j < kHandJoints; ++j) {
+      const bool tip = j > 0 && j % kFingerJoints == 0;
+      const std::string name = side + std::string(layout::kHandTable[tip ? j - 1 : j].bone);
+      const auto found = std::find_if(htr->joints.begin(), htr->joints.end(), [&](const auto& one) {
+        return one.name == name + (tip ? " End" : "");
+      });
+      ASSERT_NE(found, htr->joints.end()) << name;
+      const auto at = static_cast<std::size_t>(found - htr->joints.begin());
+      EXPECT_LT((places[at] - skeleton.joints[j]).norm(), 2e-6) << name;
+    }
+  }
 }
 
 TEST(ASkeleton, WithoutAScaleIsRelative) {

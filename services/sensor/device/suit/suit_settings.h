@@ -20,7 +20,7 @@ struct GloveFiles {
 };
 
 struct SuitSettings {
-  std::string file = {};  ///< A .mvnx or .bvh file; empty: the network stream.
+  std::string file = {};  ///< A .mvnx, .htr or .bvh file; empty: the network stream.
   /// Another Chorus service that serves the suit; none: file or stream.
   std::optional<client::FollowedService> service = {};
   bool loop = true;  ///< A file starts again at its end.
