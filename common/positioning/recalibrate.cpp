@@ -21,6 +21,11 @@ constexpr int kPasses = 6;
 // What is expected of a bone: ten degrees and as much of its length.
 constexpr double kPriorShare = 0.17;
 constexpr double kPriorLeast = 0.02;  // [m]
+// A landmark's constant offset from its joint, per axis: what is left between BlazePose and Vicon's
+// own pose in TotalCapture, which no suit's error explains (docs/benchmarks/positioner.md) [m].
+constexpr double kLandmarkOffset = 0.0125;
+// Chi-square of three numbers, 95 %: a bone that landmarks' offsets may explain stays as it is.
+constexpr double kTold = 7.81;
 constexpr std::size_t kUnknowns = 3 * kJointCount;
 
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
@@ -39,6 +44,7 @@ struct BodySight {
   std::array<Eigen::Matrix3d, kJointCount> turn;  ///< world_from_segment.
   std::array<bool, kJointCount> turned{};
   std::vector<MarkRay> rays;
+  std::size_t camera = 0;
 };
 
 Eigen::Matrix<double, 2, 3> two_across(const Eigen::Vector3d& ray) {
@@ -89,7 +95,8 @@ SeenMarks seen_marks(const BodyFrame& body, const CameraTake& camera, const Plac
 std::vector<BodySight> sights_of(std::span<const CameraTake> cameras,
                                  const std::vector<Placed>& placed, Timestamp start) {
   std::vector<BodySight> out;
-  for (const CameraTake& camera : cameras) {
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    const CameraTake& camera = cameras[c];
     double last = -kEvery;
     for (const SensorFrame& frame : camera.frames) {
       const Duration at = frame.captured - start;
@@ -104,6 +111,7 @@ std::vector<BodySight> sights_of(std::span<const CameraTake> cameras,
       }
       if (best.rays.empty()) continue;
       sight.rays = std::move(best.rays);
+      sight.camera = c;
       out.push_back(std::move(sight));
       last = seconds(at);
     }
@@ -179,6 +187,9 @@ std::array<Eigen::Vector3d, kJointCount> bones_of(const std::vector<BodySight>& 
   return bones;
 }
 
+/// What is expected of a bone of this length, per axis [m].
+double prior_sigma(double length) { return std::max(kPriorShare * length, kPriorLeast); }
+
 struct Solved {
   Unknowns added;
   BoneMatrix covariance;
@@ -194,7 +205,7 @@ Solved solved(const std::vector<BodySight>& sights,
     for (const BodySight& sight : sights) add(sight, added, a, b);
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
       const double length = bones[static_cast<std::size_t>(i / 3)].norm();
-      const double sigma = std::max(kPriorShare * length, kPriorLeast);
+      const double sigma = prior_sigma(length);
       a(i, i) += 1.0 / (sigma * sigma);
       b[i] -= added[i] / (sigma * sigma);
     }
@@ -203,6 +214,52 @@ Solved solved(const std::vector<BodySight>& sights,
     covariance = solver.solve(BoneMatrix::Identity());
   }
   return {added, covariance};
+}
+
+/// How far cameras (or quarters of the take of a single one) disagree on each bone, as the
+/// covariance of their mean [m^2]: a network guesses limbs that it does not see, from each side
+/// otherwise.
+std::array<Eigen::Matrix3d, kJointCount> disagreement(
+    const std::vector<BodySight>& sights, std::size_t cameras,
+    const std::array<Eigen::Vector3d, kJointCount>& bones) {
+  constexpr std::size_t kQuarters = 4;
+  const std::size_t groups = cameras > 1 ? cameras : kQuarters;
+  std::vector<std::vector<BodySight>> parts(groups);
+  for (std::size_t i = 0; i < sights.size(); ++i)
+    parts[cameras > 1 ? sights[i].camera : i * groups / sights.size()].push_back(sights[i]);
+  std::erase_if(parts, [](const auto& part) { return part.empty(); });
+  std::vector<Unknowns> each;
+  for (const auto& part : parts) each.push_back(solved(part, bones).added);
+  std::array<Eigen::Matrix3d, kJointCount> out;
+  out.fill(Eigen::Matrix3d::Zero());
+  if (each.size() < 2) return out;
+  const auto count = static_cast<double>(each.size());
+  Unknowns mean = Unknowns::Zero();
+  for (const Unknowns& one : each) mean += one / count;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    for (const Unknowns& one : each) {
+      const Eigen::Vector3d off = (one - mean).segment<3>(static_cast<Eigen::Index>(3 * j));
+      out[j] += off * off.transpose() / (count * (count - 1.0));
+    }
+  }
+  return out;
+}
+
+struct BoneChange {
+  Eigen::Vector3d added = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// What is left of a change when landmarks at both ends of the bone lie beside their joints.
+BoneChange beyond_offsets(const Eigen::Vector3d& added, const Eigen::Matrix3d& covariance,
+                          double length) {
+  const Eigen::Matrix3d offsets = 2.0 * std::pow(kLandmarkOffset, 2) * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d seen = covariance + offsets;
+  const Eigen::Matrix3d prior = std::pow(prior_sigma(length), 2) * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d gain = prior * (prior + seen).inverse();
+  BoneChange out{gain * added, gain * seen};
+  if (added.dot(seen.ldlt().solve(added)) < kTold) out.added.setZero();
+  return out;
 }
 
 BoneFound found_of(JointId end, const Eigen::Vector3d& bone, const Eigen::Vector3d& added,
@@ -239,14 +296,18 @@ Result<Recalibration> recalibrate(std::span<const CameraTake> cameras,
   Recalibration out;
   out.pictures = sights.size();
   out.before = median_angle(sights, Unknowns::Zero());
-  out.after = median_angle(sights, added);
+  const auto apart = disagreement(sights, cameras.size(), bones);
+  Unknowns kept = Unknowns::Zero();
   for (const Bone& bone : kBones) {
     if (!known(bone)) continue;
     const auto k = static_cast<Eigen::Index>(3 * index_of(bone.child));
-    out.added[index_of(bone.child)] = added.segment<3>(k);
-    out.bones.push_back(found_of(bone.child, bones[index_of(bone.child)], added.segment<3>(k),
-                                 covariance.block<3, 3>(k, k)));
+    const Eigen::Vector3d& before = bones[index_of(bone.child)];
+    const Eigen::Matrix3d seen = covariance.block<3, 3>(k, k) + apart[index_of(bone.child)];
+    const BoneChange change = beyond_offsets(added.segment<3>(k), seen, before.norm());
+    kept.segment<3>(k) = out.added[index_of(bone.child)] = change.added;
+    out.bones.push_back(found_of(bone.child, before, change.added, change.covariance));
   }
+  out.after = median_angle(sights, kept);
   return out;
 }
 

@@ -7,7 +7,9 @@
 // with the suit's joints s and orientations q, and the place P and heading h of the take.  All d
 // are solved at once from the landmarks' rays by least squares with Huber's loss and a prior of
 // zero, where each picture's place is free within kPlaceSigma.  Landmarks that lie beside the
-// joints by a constant of their own cannot be told from bones of another length.
+// joints by a constant of their own cannot be told from bones of another length or direction: what
+// such offsets may explain, or on which cameras disagree, stays as the suit has it; the rest is
+// changed by less than what is seen, and the sigmas count both.
 //
 // A file without segments' rotations (BVH) has the orientations of motion/motion.h, made of bones:
 // a turn about a bone is not seen in them.

@@ -176,6 +176,20 @@ ClockFit clock_of(std::span<const CameraTake> cameras, const suit::SuitTake& sui
   return stated;
 }
 
+/// Whether the suit's take has a pose for this time of its own, or one that is as good.
+bool has_pose(const suit::SuitTake& suit, double at) {
+  constexpr double kNearly = 0.1;  // [s]
+  return at > seconds(suit.poses.front().time) - kNearly &&
+         at < seconds(suit.poses.back().time) + kNearly;
+}
+
+double median_misfit(const TakeResult& result) {
+  std::vector<double> misfits;
+  for (const Placed& one : result.placed)
+    if (one.online.misfit > 0.0) misfits.push_back(one.online.misfit);
+  return misfits.empty() ? 0.0 : median(std::move(misfits));
+}
+
 /// Refuses a suit's take that has no pose for most of the cameras' time: it would stand still.
 Result<void> overlap(const Span& span, const suit::SuitTake& suit, const TakeSettings& settings,
                      const ClockFit& clock) {
@@ -216,10 +230,12 @@ Result<void> check(const TakeResult& result, std::span<const CameraTake> cameras
     for (const SensorFrame& frame : camera.frames) somebody += frame.bodies.empty() ? 0 : 1;
   }
   if (somebody > 0)
-    return fail(ErrorCode::InvalidArgument, name,
-                fmt::format("somebody is in {} pictures, but nobody moves as the suit says: "
-                            "another person, another take, or clocks farther apart than was tried",
-                            somebody));
+    return fail(
+        ErrorCode::InvalidArgument, name,
+        fmt::format("somebody is in {} pictures, but nobody moves as the suit says: "
+                    "another person, another take, clocks farther apart than was tried, or a "
+                    "file whose upward axis is not y",
+                    somebody));
   return fail(ErrorCode::InvalidArgument, name,
               !looked ? "nobody is seen in any picture"
                       : "nobody is seen in any picture whose outline is the suit's; is the room "
@@ -241,6 +257,7 @@ ClockFit fit_clock(std::span<const CameraTake> cameras, const suit::SuitTake& su
   out.offset = best.offset;
   out.misfit = best.misfit;
   out.sigma = settings.farthest_s;
+  out.at_edge = std::abs(rough.offset) > settings.farthest_s - 1.5 * kCoarse;
   out.found = best.misfit < kTelling * median_of(coarse) && best.misfit < kLargestMisfit;
   if (out.found) sharpen(fine, pictures.size(), out);
   out.heading = heading_at(pictures, suit, settings, out.found ? out.offset : 0.0);
@@ -269,6 +286,10 @@ Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::S
     instant.pose.time = now - settings.start;
     result.pictures += instant.looks.size();
     ++result.instants;
+    if (!has_pose(suit, at)) {
+      ++result.without_suit;
+      continue;
+    }
     const auto tracked = tracker.next(instant);
     if (progress) progress(seconds(now - span->first) / seconds(span->last - span->first + period));
     if (!tracked) continue;
@@ -279,6 +300,7 @@ Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::S
   result.strangers = tracker.strangers();
   if (const auto ok = check(result, cameras); !ok) return pass(ok);
   smooth(steps, tracking.method, result);
+  result.misfit = median_misfit(result);
   const Position end = result.placed.back().smooth;
   result.heading = end.heading;
   result.heading_sigma = end.heading_sigma;

@@ -30,6 +30,8 @@ struct ClockFit {
   double misfit = 0.0;   ///< Of the best offset [standard deviations].
   bool found = false;    ///< False: no offset fits better than others.
   double heading = 0.0;  ///< Of the suit, at which most pictures fit [rad].
+  /// The best offset is the largest that was tried, so that a still larger one may fit better.
+  bool at_edge = false;
 };
 
 struct TakeSettings {
@@ -49,8 +51,11 @@ struct Placed {
 
 struct TakeResult {
   ClockFit clock;
-  std::vector<Placed> placed;  ///< From the first picture in which the person was seen.
-  std::size_t instants = 0;    ///< That were asked for.
+  std::vector<Placed> placed;    ///< From the first picture in which the person was seen.
+  std::size_t instants = 0;      ///< That were asked for.
+  std::size_t without_suit = 0;  ///< Instants of which the suit's take has no pose; left out.
+  /// Of the landmarks, the median over the instants that a camera saw [standard deviations].
+  double misfit = 0.0;
   std::size_t pictures = 0;
   std::uint64_t strangers = 0;
   std::size_t ambiguous = 0;  ///< Instants at which another place fitted a picture as well.
@@ -65,9 +70,9 @@ struct TakeResult {
                                  const TakeSettings& settings);
 
 /// InvalidArgument, by name: no camera saw anybody, nobody whose pose is the suit's, a suit's take
-/// that does not cover the cameras' time.  Smoothed: by the filter's own smoother; of `silhouettes`
-/// by the paper's Gaussian (paper_smoothing.h); of `suit` not at all.  `progress` is called with
-/// the share that is done.
+/// that does not cover half of the cameras' time.  Smoothed: by the filter's own smoother; of
+/// `silhouettes` by the paper's Gaussian (paper_smoothing.h); of `suit` not at all.  `progress` is
+/// called with the share that is done.
 [[nodiscard]] Result<TakeResult> place_take(std::span<const CameraTake> cameras,
                                             const suit::SuitTake& suit,
                                             const TakeSettings& settings,

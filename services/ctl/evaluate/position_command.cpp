@@ -130,11 +130,23 @@ std::vector<std::string> notes_of(positioning::Recalibration found) {
                   "(median), {:.2f} before",
                   found.pictures, to_deg(found.after), to_deg(found.before))};
   std::ranges::stable_sort(found.bones, std::ranges::greater{}, &positioning::BoneFound::turn);
-  for (const positioning::BoneFound& bone : found.bones)
+  std::string left;
+  for (const positioning::BoneFound& bone : found.bones) {
+    if (found.added[index_of(bone.end)].isZero()) {
+      left += fmt::format("{}{} ({:.0f} degrees)", left.empty() ? "" : ", ", name_of(bone.end),
+                          2.0 * to_deg(bone.turn_sigma));
+      continue;
+    }
     notes.push_back(fmt::format(
         "bone to {}: turned by {:.1f} degrees (sigma {:.1f}), {:+.1f} % longer (sigma {:.1f})",
         name_of(bone.end), to_deg(bone.turn), to_deg(bone.turn_sigma), 100.0 * (bone.stretch - 1.0),
         100.0 * bone.stretch_sigma));
+  }
+  if (!left.empty())
+    notes.push_back(
+        "bones as the suit has them, because landmarks beside their joints may look "
+        "like a turn of as much as this: " +
+        left);
   return notes;
 }
 
@@ -181,6 +193,7 @@ Result<int> run_position(PositionArguments arguments) {
   if (!result) return pass(result);
   auto found = recalibrate_take(arguments, *cameras, settings->start, *result);
   if (!found) return pass(found);
+  notes->insert(notes->end(), suit->notes.begin(), suit->notes.end());
   notes->insert(notes->end(), cameras->notes.begin(), cameras->notes.end());
   notes->insert(notes->end(), found->begin(), found->end());
   const PositionReport report{{{"suit", inputs->suit.filename().string()},
@@ -205,8 +218,9 @@ Result<int> run_position(PositionArguments arguments) {
 Run add_position(CLI::App& options) {
   const auto arguments = std::make_shared<PositionArguments>();
   options
-      .add_option("input", arguments->inputs,
-                  "Videos (or recordings of cameras, .mcap), and the suit's take (.bvh, .mvnx)")
+      .add_option(
+          "input", arguments->inputs,
+          "Videos (or recordings of cameras, .mcap), and the suit's take (.bvh, .htr, .mvnx)")
       ->required();
   options
       .add_option("--place", arguments->places,

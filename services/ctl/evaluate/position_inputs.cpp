@@ -25,7 +25,8 @@ constexpr std::uintmax_t kMaxPlacesFile = 1u << 22;
 
 bool is_suit(const fs::path& file) {
   const std::string ending = file.extension().string();
-  return ending == ".bvh" || ending == ".BVH" || ending == ".mvnx" || ending == ".MVNX";
+  return ending == ".bvh" || ending == ".BVH" || ending == ".mvnx" || ending == ".MVNX" ||
+         ending == ".htr" || ending == ".HTR";
 }
 
 /// What one input gives before its place is known.
@@ -156,7 +157,7 @@ Result<PositionInputs> sorted_inputs(const std::vector<std::string>& given) {
   }
   if (out.suit.empty())
     return fail(ErrorCode::InvalidArgument, "input",
-                "a take of the suit is missing: a .bvh or .mvnx file");
+                "a take of the suit is missing: a .bvh, .htr or .mvnx file");
   if (out.videos.empty() && out.recordings.empty())
     return fail(ErrorCode::InvalidArgument, "input",
                 "a video is missing, or a camera's recording (.mcap)");

@@ -21,6 +21,10 @@ using report::Plot;
 
 constexpr double kHiddenFor = 0.3;  // Without a camera for longer, somebody counts as hidden [s].
 
+// Medians of misfit over right takes and over wrong ones are apart by this
+// (docs/benchmarks/positioner.md, "bad input").
+constexpr double kLargestUsualMisfit = 1.1;
+
 double hidden_share(const positioning::TakeResult& result) {
   const auto hidden =
       std::count_if(result.placed.begin(), result.placed.end(),
@@ -281,6 +285,8 @@ std::vector<std::string> distrusted_in(const PositionReport& take) {
       0.1 * static_cast<double>(take.result.placed.size()))
     out.emplace_back(
         "The outline: in more than a tenth of the pictures another place fitted as well.");
+  const std::vector<std::string> doubts = doubts_of(take.result);
+  out.insert(out.end(), doubts.begin(), doubts.end());
   out.insert(out.end(), take.notes.begin(), take.notes.end());
   return out;
 }
@@ -309,6 +315,24 @@ report::Report position_report(const PositionReport& take) {
   return out;
 }
 
+std::vector<std::string> doubts_of(const positioning::TakeResult& result) {
+  std::vector<std::string> out;
+  if (result.clock.found && result.clock.at_edge)
+    out.emplace_back(
+        "the suit's clock is off by as much as was tried, or by more (--search); or its rate is "
+        "wrong");
+  if (result.without_suit > 0)
+    out.push_back(
+        fmt::format("the suit's take has no pose for {} of {} instants, which were left out",
+                    result.without_suit, result.instants));
+  if (result.misfit > kLargestUsualMisfit)
+    out.push_back(
+        fmt::format("the suit's pose fits what the cameras see badly ({:.1f} standard deviations; "
+                    "usual are less than {:.1f}): is it this person's, of this take?",
+                    result.misfit, kLargestUsualMisfit));
+  return out;
+}
+
 std::string position_text(const PositionReport& take) {
   const positioning::ClockFit& clock = take.result.clock;
   std::string out = fmt::format(
@@ -320,6 +344,10 @@ std::string position_text(const PositionReport& take) {
                      : std::string(
                            "clock of the suit: not found, 0 is used; is there a wave, or "
                            "a step, that both show?\n");
+  if (take.result.misfit > 0.0)
+    out += fmt::format("landmarks fit the suit's pose to {:.2f} standard deviations (median)\n",
+                       take.result.misfit);
+  for (const std::string& doubt : doubts_of(take.result)) out += "doubt: " + doubt + '\n';
   out += fmt::format("heading of the suit: {:.1f} deg; the suit's steps alone end {:.0f} mm away\n",
                      to_deg(take.result.heading), to_mm(drift_of(take)));
   return out;

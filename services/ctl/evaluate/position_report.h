@@ -22,6 +22,9 @@ struct PositionReport {
 
 [[nodiscard]] report::Report position_report(const PositionReport& take);
 
+/// What is probably wrong with a take although it was placed.
+[[nodiscard]] std::vector<std::string> doubts_of(const positioning::TakeResult& result);
+
 /// The same in three or four lines, for the terminal.
 [[nodiscard]] std::string position_text(const PositionReport& take);
 
