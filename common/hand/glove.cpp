@@ -148,7 +148,10 @@ void widen(GlovePlace& place, double radius, const Intrinsics& camera,
   const double facing = std::max(kLeastFacing, place.facing);
   const double by_size = options.size_sigma * depth;
   const double by_edge = kCircleSigma / radius * depth * (1.0 / facing - 1.0);
-  place.covariance += (by_size * by_size + by_edge * by_edge) * sight * sight.transpose();
+  // Finger angles that are some degrees off move the outline's middle, near or far alike.
+  constexpr double kPoseSigma = 0.001;  // [m]
+  place.covariance += (by_size * by_size + by_edge * by_edge) * sight * sight.transpose() +
+                      kPoseSigma * kPoseSigma * Eigen::Matrix3d::Identity();
   if (options.refine) return;
   const double by_circle = kCircleSigma / radius * depth / facing, across = depth / camera.fx * 2.0;
   place.covariance += by_circle * by_circle * sight * sight.transpose() +

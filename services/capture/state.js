@@ -13,7 +13,7 @@ const CAMERA = {
   silent: ['The camera gives no more pictures.', 'This page opens it anew. If that does not help: does another program use it, or is it covered by a privacy switch?'],
 };
 
-const LINK = {
+export const LINK = {
   unreachable: ['The sensor does not answer.', 'Is it running, and is this device in its network? This page tries again every second.'],
   token: ['The sensor wants a token.', 'Enter one of role “control” below: it stands in the configuration of the sensor, under http.tokens.'],
   wrong: ['The token is wrong.', 'Enter one of role “control” of this sensor: it stands in its configuration, under http.tokens.'],

@@ -6,6 +6,7 @@
 #include "services/sensor/device/camera/camera.h"
 #include "services/sensor/device/glove/glove.h"
 #include "services/sensor/device/positioner/picture_eye.h"
+#include "services/sensor/device/scan/photo_scan.h"
 #include "services/sensor/sensor_host.h"
 
 namespace chorus::camera {
@@ -42,6 +43,13 @@ namespace chorus::positioner {
 std::unique_ptr<PictureEye> make_eye(EyeSettings /*settings*/) { return nullptr; }
 
 }  // namespace chorus::positioner
+
+namespace chorus::scan {
+
+/// The same for scans of photos.
+ScanPhoto photo_scan() { return {}; }
+
+}  // namespace chorus::scan
 
 int main(int argc, char** argv) {
   using namespace chorus::sensor_service;

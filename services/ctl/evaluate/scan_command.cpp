@@ -1,4 +1,6 @@
 // chorus scan: a hand's skeleton from scans or photos of an open hand.
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -10,18 +12,22 @@
 
 #include "common/base/units.h"
 #include "common/hand/bvh.h"
-#include "services/ctl/evaluate/hand_scan.h"
+#include "common/hand/htr.h"
 #include "services/ctl/evaluate/photo_files.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
 #include "services/ctl/line/text_file.h"
 #include "services/sensor/device/camera/shipped_runner.h"
+#include "services/sensor/device/scan/hand_scan.h"
 
 namespace chorus::ctl {
 namespace {
 
 namespace fs = std::filesystem;
+using scan::HandScan;
+using scan::ScaleBy;
+using scan::ScannedHand;
 
 struct ScanArguments {
   std::vector<std::string> sources;
@@ -92,16 +98,18 @@ std::string text_of(const ScannedHand& hand) {
   return text;
 }
 
-/// The three files of a hand beside each other: .bvh, .json and .png.
+/// The three files of a hand beside each other: .bvh or .htr, .json and .png.
 Result<void> write_hand(const ScannedHand& hand, const hand::Skeleton& skeleton,
-                        const fs::path& bvh) {
-  if (auto ok = write_text(bvh.string(), hand::bvh_of(skeleton)); !ok) return ok;
-  fs::path file = bvh;
+                        const fs::path& out) {
+  const std::string text =
+      out.extension() == ".htr" ? hand::htr_of(skeleton) : hand::bvh_of(skeleton);
+  if (auto ok = write_text(out.string(), text); !ok) return ok;
+  fs::path file = out;
   const std::string json = hand::scan_json(hand.shape, skeleton, hand.record);
   if (auto ok = write_text(file.replace_extension(".json").string(), json); !ok) return ok;
   std::vector<unsigned char> png;
   if (!cv::imencode(".png", *hand.drawn, png))
-    return fail(ErrorCode::Internal, bvh.string(), "no picture");
+    return fail(ErrorCode::Internal, out.string(), "no picture");
   return write_text(file.replace_extension(".png").string(),
                     {reinterpret_cast<const char*>(png.data()), png.size()});
 }
@@ -136,12 +144,27 @@ Result<Scanned> scan_all(const ScanArguments& arguments, const std::vector<std::
   return out;
 }
 
-bool is_bvh(const std::string& out) { return fs::path(out).extension() == ".bvh"; }
+bool is_skeleton(const std::string& out) {
+  const fs::path ending = fs::path(out).extension();
+  return ending == ".bvh" || ending == ".htr";
+}
+
+/// Files of other programs are not taken for names of folders.
+Result<void> check_out(const std::string& out) {
+  constexpr std::array<std::string_view, 7> kOthers{".sk",   ".fbx", ".glb", ".gltf",
+                                                    ".json", ".png", ".usd"};
+  const std::string ending = fs::path(out).extension().string();
+  if (std::find(kOthers.begin(), kOthers.end(), ending) == kOthers.end()) return {};
+  if (ending == ".sk")
+    return fail(ErrorCode::Unsupported, out,
+                "Synertial does not publish how its .sk files are laid out; write a .bvh or .htr");
+  return fail(ErrorCode::Unsupported, out, "a hand is written as .bvh or .htr, or into a folder");
+}
 
 /// One file for each hand, or one for all pictures of one hand.
 Result<void> write_all(const ScanArguments& arguments, const Scanned& scanned) {
   if (scanned.hands.empty() || arguments.out.empty()) return {};
-  if (is_bvh(arguments.out)) {
+  if (is_skeleton(arguments.out)) {
     std::vector<hand::Skeleton> shots;
     for (const ScannedHand& each : scanned.hands) shots.push_back(each.skeleton);
     const auto skeleton = hand::median_of(shots);
@@ -162,9 +185,10 @@ Result<int> run_scan(const ScanArguments& arguments) {
       (arguments.dpi > 0.0 ? 1 : 0) + (arguments.paper.empty() ? 0 : 1) + (arguments.card ? 1 : 0);
   if (scales > 1)
     return fail(ErrorCode::InvalidArgument, "scale", "say one of --dpi, --paper and --card");
+  if (const auto ok = check_out(arguments.out); !ok) return pass(ok);
   const auto files = photo_files(arguments.sources);
   if (!files) return pass(files);
-  if (is_bvh(arguments.out)) {
+  if (is_skeleton(arguments.out)) {
     if (const auto ok = may_write(arguments.out, {files->begin(), files->end()}); !ok)
       return pass(ok);
     fs::path picture = fs::path(arguments.out).replace_extension(".png");
@@ -179,7 +203,8 @@ Result<int> run_scan(const ScanArguments& arguments) {
   if (const auto ok = write_all(arguments, *scanned); !ok) return pass(ok);
   if (!arguments.json && !arguments.out.empty() && !scanned->hands.empty())
     std::cout << fmt::format(
-        "wrote {}: skeletons (.bvh), lengths (.json), annotated pictures (.png)\n", arguments.out);
+        "wrote {}: skeletons (.bvh, .htr), lengths (.json), annotated pictures (.png)\n",
+        arguments.out);
   if (files->size() > 1)
     std::cerr << fmt::format("{} of {} pictures show a hand\n", scanned->hands.size(),
                              files->size());
@@ -220,8 +245,8 @@ Run add_scan(CLI::App& options) {
                      "Command of another runner that finds hands (proto/runner.md)");
   options.add_option(
       "--out", arguments->out,
-      "hand.bvh: all pictures show one hand, whose median is written; a folder: each "
-      "picture on its own.  Beside each .bvh a .json and an annotated .png");
+      "hand.bvh or hand.htr: all pictures show one hand, whose median is written; a folder: each "
+      "picture on its own, as .bvh.  Beside each a .json and an annotated .png");
   options.add_flag("--json", arguments->json, "Report as JSON, one document for each picture");
   return [arguments] { return run_scan(*arguments); };
 }

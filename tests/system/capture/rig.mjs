@@ -100,7 +100,7 @@ export class Workshop {
       executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
       args: ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-quic',
         '--disable-gpu', `--ignore-certificate-errors-spki-list=${key}`,
-        '--use-fake-device-for-media-stream', `--use-file-for-fake-video-capture=${film}`],
+        '--use-fake-device-for-media-stream', ...(film ? [`--use-file-for-fake-video-capture=${film}`] : [])],
     });
   }
 

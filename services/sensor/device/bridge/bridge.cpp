@@ -6,6 +6,8 @@
 #include "services/sensor/device/bridge/line_server.h"
 #include "services/sensor/device/bridge/push_dialogue.h"
 #include "services/sensor/device/bridge/push_resource.h"
+#include "services/sensor/device/scan/photo_scan.h"
+#include "services/sensor/device/scan/scan_dialogue.h"
 #include "services/sensor/host_clock.h"
 
 namespace chorus::bridge {
@@ -76,6 +78,9 @@ Result<std::unique_ptr<FrameSource>> make_bridge(ConfigReader& section,
     const auto installed = find_capture_page();
     if (!installed) return pass(installed);
     add_capture_routes(context.router, *installed);
+    if (auto scan = scan::photo_scan())
+      context.router.dialogue("/scan",
+                              scan::scan_route(std::make_shared<scan::ScanDesk>(std::move(scan))));
   }
   options.clock =
       std::make_shared<sensor_service::ErringClock>(context.time.world, context.time.host);

@@ -10,8 +10,9 @@
 
 namespace chorus::bridge {
 
-/// Makes the device and adds `/push`, and `/capture/` if configured, to the context's router; the
-/// reader's finish() reports mistakes. NotFound if the files of `/capture/` are missing.
+/// Makes the device and adds `/push`, and `/capture/` with `/scan` if configured, to the context's
+/// router; the reader's finish() reports mistakes. NotFound if the files of `/capture/` are
+/// missing.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_bridge(
     ConfigReader& section, const sensor_service::DeviceContext& context);
 

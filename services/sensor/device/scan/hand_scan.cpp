@@ -1,4 +1,4 @@
-#include "services/ctl/evaluate/hand_scan.h"
+#include "services/sensor/device/scan/hand_scan.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,7 +12,7 @@
 #include "common/hand/drawing.h"
 #include "common/hand/sheet.h"
 
-namespace chorus::ctl {
+namespace chorus::scan {
 namespace {
 
 constexpr std::uintmax_t kMaxScan = 1u << 29;
@@ -124,11 +124,17 @@ void compare_with_file(ScannedHand& hand, const cv::Mat& whole, const std::strin
 
 Result<ScannedHand> scan_hand(const std::string& file, const HandScan& how,
                               camera::HandFinder* finder) {
-  const auto bytes = read_file(file, kMaxScan);
+  auto bytes = read_file(file, kMaxScan);
   if (!bytes) return pass(bytes);
-  const auto picture = camera::read_picture(file);
+  auto picture = camera::read_picture(file);
   if (!picture) return pass(picture);
-  const auto ready = prepared(*picture->pixels, *bytes, how);
+  return scan_picture({file, std::move(*bytes), std::move(*picture)}, how, finder);
+}
+
+Result<ScannedHand> scan_picture(const ScanSource& source, const HandScan& how,
+                                 camera::HandFinder* finder) {
+  const cv::Mat& whole = *source.picture.pixels;
+  const auto ready = prepared(whole, source.bytes, how);
   if (!ready) return pass(ready);
   std::vector<hand::SeenHand> seen;
   if (finder != nullptr && !how.options.paper) {
@@ -139,11 +145,11 @@ Result<ScannedHand> scan_hand(const std::string& file, const HandScan& how,
   }
   auto shape = hand::hand_in(ready->picture, seen, how.options);
   if (!shape)
-    return tl::unexpected<Error>(
-        Error{shape.error().code, file, shape.error().context + ": " + shape.error().message});
+    return tl::unexpected<Error>(Error{shape.error().code, source.name,
+                                       shape.error().context + ": " + shape.error().message});
   ScannedHand out;
   out.skeleton = hand::skeleton_of(*shape, ready->mm_per_pixel);
-  out.record = {std::filesystem::path(file).filename().string(), ready->scale_from,
+  out.record = {std::filesystem::path(source.name).filename().string(), ready->scale_from,
                 ready->mm_per_pixel.value_or(0.0),
                 shape->origin == hand::Origin::Both ? finder->name() : ""};
   out.shape = std::move(*shape);
@@ -151,10 +157,10 @@ Result<ScannedHand> scan_hand(const std::string& file, const HandScan& how,
     out.shape.notes.emplace_back(
         seen.empty() ? "the network sees no hand: the outline alone answers"
                      : "what the network sees does not fit the outline, which alone answers");
-  if (how.scale == ScaleBy::A4) compare_with_file(out, *picture->pixels, *bytes);
+  if (how.scale == ScaleBy::A4) compare_with_file(out, whole, source.bytes);
   if (const auto ok = check_size(out, how); !ok) return pass(ok);
   out.drawn = std::make_shared<const cv::Mat>(hand::drawn(ready->picture, out.shape));
   return out;
 }
 
-}  // namespace chorus::ctl
+}  // namespace chorus::scan

@@ -1,4 +1,4 @@
-// From a picture file to a hand's skeleton.
+// From a picture to a hand's skeleton.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 #include "common/hand/scan.h"
 #include "services/sensor/device/camera/hand_finder.h"
 
-namespace chorus::ctl {
+namespace chorus::scan {
 
 /// What tells the size of the hand.
 enum class ScaleBy { File, Dpi, A4, Card };
@@ -27,8 +27,18 @@ struct ScannedHand {
   std::shared_ptr<const cv::Mat> drawn;  ///< The picture with what was found.
 };
 
+/// A picture as it came, for its density, and decoded.
+struct ScanSource {
+  std::string name;  ///< For messages.
+  std::string bytes;
+  camera::Picture picture;
+};
+
 /// `finder`: null without a network.
+[[nodiscard]] Result<ScannedHand> scan_picture(const ScanSource& source, const HandScan& how,
+                                               camera::HandFinder* finder);
+/// The same of a file.
 [[nodiscard]] Result<ScannedHand> scan_hand(const std::string& file, const HandScan& how,
                                             camera::HandFinder* finder);
 
-}  // namespace chorus::ctl
+}  // namespace chorus::scan
