@@ -1,6 +1,8 @@
 // How long a picture takes, in a region of interest and whole, and whether the places agree.
 #include <ctime>
 
+#include <opencv2/core.hpp>
+
 #include "common/positioning/outline_sight.h"
 #include "common/synthetic/walker.h"
 #include "tests/bench/positioner/positioner_cases.h"
