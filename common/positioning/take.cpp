@@ -220,7 +220,7 @@ void smooth(const std::vector<FilterStep>& steps, Method method, TakeResult& res
     result.placed[i].smooth = all[i];
 }
 
-Result<void> check(const TakeResult& result, std::span<const CameraTake> cameras) {
+Result<void> check(const TakeResult& result, std::span<const CameraTake> cameras, Method method) {
   if (!result.placed.empty()) return {};
   const std::string& name = cameras.front().sensor.str();
   std::size_t somebody = 0;
@@ -237,9 +237,10 @@ Result<void> check(const TakeResult& result, std::span<const CameraTake> cameras
                     "file whose upward axis is not y",
                     somebody));
   return fail(ErrorCode::InvalidArgument, name,
-              !looked ? "nobody is seen in any picture"
-                      : "nobody is seen in any picture whose outline is the suit's; is the room "
-                        "without the person known (--empty-room), and the suit's heading?");
+              !looked || uses_landmarks(method)
+                  ? "nobody is seen in any picture"
+                  : "nobody is seen in any picture whose outline is the suit's; is the room "
+                    "without the person known (--empty-room), and the suit's heading?");
 }
 
 }  // namespace
@@ -298,7 +299,7 @@ Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::S
     if (tracker.filter().begun()) steps.push_back(tracker.filter().step());
   }
   result.strangers = tracker.strangers();
-  if (const auto ok = check(result, cameras); !ok) return pass(ok);
+  if (const auto ok = check(result, cameras, tracking.method); !ok) return pass(ok);
   smooth(steps, tracking.method, result);
   result.misfit = median_misfit(result);
   const Position end = result.placed.back().smooth;

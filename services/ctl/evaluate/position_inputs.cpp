@@ -124,6 +124,23 @@ Result<std::vector<Looked>> all_looked(const PositionInputs& inputs,
   return out;
 }
 
+tl::unexpected<Error> no_place(const std::string& places, const std::string& name) {
+  return fail(ErrorCode::NotFound, places,
+              fmt::format("has no place for {}; `chorus calibrate place --sensor {}` writes it",
+                          name, name));
+}
+
+/// Before a film is looked through, which takes as long as it plays.
+Result<void> check_places(const PositionInputs& inputs, const std::string& places,
+                          const Registration& registration) {
+  for (const fs::path& video : inputs.videos) {
+    const auto sensor = importers::sensor_for(video, {});
+    if (!sensor) return pass(sensor);
+    if (!registration.sensors.contains(*sensor)) return no_place(places, sensor->str());
+  }
+  return {};
+}
+
 /// Adds what the pictures show.
 Result<void> add_sight(const Looked& looked, const PositionArguments& arguments, double stature,
                        CameraTake& camera) {
@@ -202,16 +219,14 @@ Result<PlacedCameras> placed_cameras(const PositionInputs& inputs,
   if (!text) return pass(text);
   const auto registration = wire::read_registration(*text);
   if (!registration) return pass(registration);
+  if (const auto ok = check_places(inputs, arguments.places, *registration); !ok) return pass(ok);
   auto looked = all_looked(inputs, arguments, method);
   if (!looked) return pass(looked);
   PlacedCameras out;
   for (Looked& one : *looked) {
     const std::string name = one.recording.sensor.str();
     const auto known = registration->sensors.find(one.recording.sensor);
-    if (known == registration->sensors.end())
-      return fail(ErrorCode::NotFound, arguments.places,
-                  fmt::format("has no place for {}; `chorus calibrate place --sensor {}` writes it",
-                              name, name));
+    if (known == registration->sensors.end()) return no_place(arguments.places, name);
     CameraTake camera{one.recording.sensor, known->second.world_from_sensor,
                       std::move(one.recording.frames)};
     if (arguments.background == "network" && one.video && !one.masks)

@@ -47,7 +47,12 @@ cv::Mat mesh_mask(const ShapeScene& scene, const Skeleton<WorldSpace>& body, dou
 
 using Masked = std::function<cv::Mat(const Skeleton<WorldSpace>&)>;
 
-PlaceScores shape_scores(const ShapeScene& scene, const suit::SuitTake& suit,
+struct ShapeScores {
+  PlaceScores all;
+  double bias = 0.0;  ///< Mean along the line of sight, away from the camera [m].
+};
+
+ShapeScores shape_scores(const ShapeScene& scene, const suit::SuitTake& suit,
                          const Masked& masked) {
   std::vector<FoundPlace> found;
   std::vector<Eigen::Vector3d> truth;
@@ -64,7 +69,16 @@ PlaceScores shape_scores(const ShapeScene& scene, const suit::SuitTake& suit,
     if (seen) one = {seen->place, seen->covariance};
     found.push_back(one);
   }
-  return scores_of(found, truth, scene.camera.translation());
+  const Eigen::Vector3d eye = scene.camera.translation();
+  ShapeScores out{scores_of(found, truth, eye), 0.0};
+  double count = 0.0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!found[i].place) continue;
+    out.bias += (*found[i].place - truth[i]).dot((truth[i] - eye).normalized());
+    count += 1.0;
+  }
+  out.bias /= std::max(1.0, count);
+  return out;
 }
 
 }  // namespace
@@ -84,7 +98,8 @@ Result<void> shape_gain(Report& report) {
         suit_of(scene.bodies, kShapeRate, {.bone = degrees * 0.01745, .memory = 4.0});
     for (const auto& [name, masked] : bodies) {
       const std::string row = "shape/" + name + (degrees > 0.0 ? "/pose-2deg" : "/pose-right");
-      const PlaceScores scores = shape_scores(scene, suit, masked);
+      const auto [scores, bias] = shape_scores(scene, suit, masked);
+      report.row(row, "bias_mm", 1e3 * bias, "mm");
       report.row(row, "rms_mm", 1e3 * scores.rms, "mm");
       report.row(row, "along_mm", 1e3 * scores.rms_along, "mm");
       report.row(row, "across_mm", 1e3 * scores.rms_across, "mm");

@@ -72,6 +72,22 @@ SpeedResult asked(const SpeedScene& scene, AskSight ask, bool regions) {
   return out;
 }
 
+/// Threshold, Canny and distance transform alone, of one picture [s].
+double field_seconds(const SpeedScene& scene, bool regions) {
+  const double before = processor_seconds();
+  for (std::size_t i = 0; i < scene.sources.size(); ++i) {
+    const silhouette::SearchView view{scene.bodies[i], scene.sight.shape, scene.camera,
+                                      scene.sight.lens, silhouette::Evidence{}};
+    const auto region = silhouette::region_around(view, 0.25);
+    if (regions && region) {
+      (void)scene.sources[i].within(*region);
+    } else {
+      (void)scene.sources[i].whole();
+    }
+  }
+  return (processor_seconds() - before) / static_cast<double>(scene.sources.size());
+}
+
 /// Largest distance of two methods' places; a picture that only one of them answers counts as 1 m.
 double farthest_apart(const SpeedResult& a, const SpeedResult& b) {
   double out = 0.0;
@@ -96,6 +112,10 @@ Result<void> sight_speed(Report& report) {
     report.row("speed/" + name + "-region", "farthest_from_whole_mm",
                1e3 * farthest_apart(part, whole), "mm");
   };
+  const double whole = field_seconds(scene, false);
+  const double part = field_seconds(scene, true);
+  report.row("speed/field-whole", "cpu_ms", 1e3 * whole, "ms");
+  report.row("speed/field-region", "cpu_ms", 1e3 * part, "ms", "whole", part / whole);
   row("silhouettes", &PictureSight::searched);
   row("outline", &PictureSight::outlined);
   report.note("speed: 640 x 480, one thread; the time of whichever build runs this");
