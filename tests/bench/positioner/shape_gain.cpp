@@ -1,5 +1,6 @@
 // How much a better body than capsules could gain at most: `outline` on masks of a person who is
 // drawn with the method's own capsules (a model that is exactly right), and of the judge's mesh.
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "common/positioning/outline_sight.h"
@@ -81,6 +82,26 @@ ShapeScores shape_scores(const ShapeScene& scene, const suit::SuitTake& suit,
   return out;
 }
 
+/// The judge's person and the outline of the method's, side by side for four pictures.
+void draw_shapes(const ShapeScene& scene, const std::string& file) {
+  cv::Mat row;
+  for (std::size_t i = 0; i < scene.bodies.size();
+       i += std::max<std::size_t>(1, scene.bodies.size() / 4)) {
+    cv::Mat drawn;
+    cv::cvtColor(mesh_mask(scene, scene.bodies[i], 1.0) / 3, drawn, cv::COLOR_GRAY2BGR);
+    const auto capsules =
+        silhouette::flat_capsules(scene.bodies[i], scene.sight.shape, scene.camera, kShapeLens);
+    for (const auto& point : silhouette::outline_of(capsules, 2.0))
+      cv::circle(drawn, {static_cast<int>(point.pixel.x()), static_cast<int>(point.pixel.y())}, 1,
+                 cv::Scalar(80, 255, 80), cv::FILLED);
+    if (row.empty())
+      row = drawn;
+    else
+      cv::hconcat(row, drawn, row);
+  }
+  cv::imwrite(file, row);
+}
+
 }  // namespace
 
 Result<void> shape_gain(Report& report) {
@@ -88,6 +109,7 @@ Result<void> shape_gain(Report& report) {
   const synthetic::Walker walker({.seed = report.seed() + 2, .reach = 1.4});
   for (int i = 0; i < (report.quick() ? 6 : 80); ++i)
     scene.bodies.push_back(walker.at(from_seconds(10.0 + i / kShapeRate)));
+  if (!report.plots().empty()) draw_shapes(scene, report.plots() + "/body-shape.png");
   const std::vector<std::pair<std::string, Masked>> bodies{
       {"own-capsules", [&](const auto& body) { return capsule_mask(scene, body, 1.0); }},
       {"capsules-8%-wider", [&](const auto& body) { return capsule_mask(scene, body, 1.08); }},
