@@ -21,6 +21,10 @@ struct WornSensorReport {
   double heading_sigma = 0.0;              ///< [rad]
   std::optional<double> slipped_ago = {};  ///< Time since it last turned on its limb [s].
   double slip = 0.0;                       ///< By how much [rad].
+  /// While other sensors of its source speak: since it last did [s].
+  std::optional<double> silent_for = {};
+  /// What it states of its own error, where that leaves it no say [rad].
+  std::optional<double> overstated = {};
 };
 
 struct WornReport {

@@ -55,6 +55,14 @@ std::vector<std::string> worn_sentences(const WornReport& worn) {
                       "ago{}",
                       limb, to_deg(one.slip), *one.slipped_ago,
                       one.calibrated ? "; it is calibrated again" : ""));
+    if (one.silent_for)
+      all.push_back(fmt::format(
+          "the sensor of the {} has said nothing for {:.0f} s, while others of its suit do", limb,
+          *one.silent_for));
+    if (one.overstated)
+      all.push_back(fmt::format(
+          "the sensor of the {} states an error of {:.0f} degrees itself, so it has no say", limb,
+          to_deg(*one.overstated)));
     if (!one.calibrated && !one.refusal.empty())
       all.push_back(fmt::format("the {} is not calibrated: {}", limb, one.refusal));
   }

@@ -13,6 +13,8 @@ constexpr double kWearerGone = 5.0;  // [s] for which nobody has seen the wearer
 constexpr double kRenamedWithin = 0.5;
 constexpr double kRenamedNear = 0.4;  // [m] between both: nobody else can have come so near
 constexpr double kSameSight = 0.5;    // [m] between two passes' sights of one person
+constexpr double kSilent = 2.0;       // [s] without a word of a sensor while others speak
+constexpr double kNoSay = deg(30);    // stated by a sensor itself, as InertialModel::most_sigma
 constexpr double kSlipIsNews = 60.0;  // [s] for which a slip is told
 // Sides that are less probable teach nothing (as SidesConfig::learn_from): what is learned on wrong
 // sides would go on to say that they are right.
@@ -76,7 +78,7 @@ void Wear::search_wearer(Source& source, const std::vector<inertial::InertialRea
     for (const inertial::InertialReading& reading : readings) {
       const auto limb = limb_of(reading);
       if (!limb) continue;
-      const auto tracked = evaluation::limb_from_joints(alone, *limb);
+        const auto tracked = evaluation::limb_from_joints(alone, *limb);
       if (tracked)
         all.push_back(
             {body.id, reading.sensor, *limb, {time, *tracked, *reading.inertial_from_sensor}});
@@ -104,6 +106,7 @@ void Wear::learn_limbs(Source& source, const std::vector<inertial::InertialReadi
       at = source.sensors.erase(at), at = source.sensors.end();
     if (at == source.sensors.end())
       at = source.sensors.emplace(reading.sensor, WornSensor(reading.sensor, *limb)).first;
+    at->second.hear(time, reading);
     const auto tracked = evaluation::limb_from_joints(alone, *limb);
     if (tracked && knows_sides(body))
       at->second.learn(time, *tracked, *reading.inertial_from_sensor, config_);
@@ -217,8 +220,12 @@ std::vector<WornReport> Wear::reports(Timestamp now) const {
     report.wearer = source.wearer;
     if (!source.wearer) report.reason = source.search.reason();
     report.unplaced = source.unplaced;
+    double newest = 0.0;
+    for (const auto& [name, sensor] : source.sensors) newest = std::max(newest, sensor.heard());
     for (const auto& [name, sensor] : source.sensors) {
       WornSensorReport& one = report.sensors.emplace_back();
+      if (newest - sensor.heard() > kSilent) one.silent_for = time - sensor.heard();
+      if (sensor.stated_sigma() > kNoSay) one.overstated = sensor.stated_sigma();
       one.sensor = name;
       one.limb = sensor.limb();
       one.calibrated = sensor.fit().has_value();

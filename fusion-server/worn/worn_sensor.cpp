@@ -81,6 +81,11 @@ std::optional<FirstCalibration> WornSensor::first_calibration() const {
   return first;
 }
 
+void WornSensor::hear(double time, const inertial::InertialReading& reading) {
+  heard_ = time;
+  stated_sigma_ = reading.covariance ? std::sqrt(reading.covariance->trace() / 3.0) : 0.0;
+}
+
 void WornSensor::keep_pair(double time, const evaluation::TrackedOrientation& tracked,
                            const Eigen::Quaterniond& inertial_from_sensor) {
   if (!pairs_.empty() && time - pairs_.back().time < kPairEvery) return;

@@ -23,6 +23,13 @@ class WornSensor {
   /// wandered since then.  It is not improved; once it slips, it is calibrated as any other.
   WornSensor(const FirstCalibration& known, double time, const WornConfig& config);
 
+  /// Notes that it speaks, and what it states of its own error.
+  void hear(double time, const inertial::InertialReading& reading);
+  /// When it last spoke while its wearer was seen [s].
+  [[nodiscard]] double heard() const { return heard_; }
+  /// What it then stated of its error about one axis [rad]; 0: nothing.
+  [[nodiscard]] double stated_sigma() const { return stated_sigma_; }
+
   /// Takes what is tracked of the limb and what the sensor says, at `time` [s].
   void learn(double time, const evaluation::TrackedOrientation& tracked,
              const Eigen::Quaterniond& inertial_from_sensor, const WornConfig& config);
@@ -75,7 +82,9 @@ class WornSensor {
   evaluation::SlipWatch watch_;
   std::optional<Slip> slip_;
   double direction_sigma_ = 0.0;  ///< What direction_sigma() returns [rad].
-  int improved_ = 0;              ///< Attempts at a better calibration.
+  double heard_ = 0.0;
+  double stated_sigma_ = 0.0;
+  int improved_ = 0;  ///< Attempts at a better calibration.
 };
 
 }  // namespace chorus::worn

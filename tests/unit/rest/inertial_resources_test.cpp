@@ -62,13 +62,19 @@ TEST(InertialResources, TellWhoWearsASourceAndWhatIsAmiss) {
   WornReport worn{sensor_id("suit"), PersonId{7}, "", {}, {"IMU-3"}};
   worn.sensors.push_back({"L", inertial::Limb::ForearmLeft, true, "", 0.05, 0.0, 0.02, {}, 0.0});
   worn.sensors.push_back({"S", inertial::Limb::ShankLeft, false, "bend it", 0, 0, 0, 4.0, 1.0472});
+  worn.sensors[0].silent_for = 3.0;
+  worn.sensors[1].overstated = 3.4907;
   resources.publish({suit_report()}, {worn}, kStart);
   const auto list = nlohmann::json::parse(get(router, "/inertial/").body);
   const auto& suit = list.at("inertialSources").at("suit");
   EXPECT_EQ(suit.at("wearer"), 7);
   EXPECT_EQ(suit.at("knownLimbs"), nlohmann::json({"ForearmLeft"}));
-  EXPECT_EQ(suit.at("reasons").size(), 3U);
+  EXPECT_EQ(suit.at("reasons").size(), 5U);
   EXPECT_NE(suit.at("reasons").dump().find("left shank has turned on it by 60 degrees"),
+            std::string::npos);
+  EXPECT_NE(suit.at("reasons").dump().find("left forearm has said nothing for 3 s"),
+            std::string::npos);
+  EXPECT_NE(suit.at("reasons").dump().find("left shank states an error of 200 degrees"),
             std::string::npos);
   resource::Node node = inertial_source_node(suit_report(), kStart, "suit");
   add_worn(worn, node);

@@ -93,8 +93,9 @@ inline FusedBody fused_of(const Walker& who, double time, double noise, std::mt1
 /// Sensors on kLimbs of a person, each with a mount and a heading of its own.
 struct Suit {
   SensorId id = *SensorId::parse("suit");
-  double drift = 0.0;                ///< Of every heading [rad/s].
-  std::map<Limb, double> slip = {};  ///< By which a sensor is turned about its limb's +x [rad].
+  double drift = 0.0;                  ///< Of every heading [rad/s].
+  std::map<Limb, double> slip = {};    ///< By which a sensor is turned about its limb's +x [rad].
+  std::map<Limb, double> states = {};  ///< Its own error [rad]; negative: it says nothing at all.
 
   [[nodiscard]] inertial::InertialFrame says(const Walker& wearer, double time) const {
     inertial::InertialFrame frame{id, 0, at(time), at(time), {}};
@@ -110,6 +111,10 @@ struct Suit {
       reading.sensor = std::string(name_of(kLimbs[i]));
       reading.captured = at(time);
       reading.inertial_from_sensor = heading * tracked->world_from_limb * turn * mount;
+      const auto stated = states.find(kLimbs[i]);
+      if (stated != states.end() && stated->second < 0) continue;
+      if (stated != states.end())
+        reading.covariance = stated->second * stated->second * Eigen::Matrix3d::Identity();
       frame.readings.push_back(std::move(reading));
     }
     return frame;

@@ -11,6 +11,7 @@
 namespace chorus::worn {
 namespace {
 
+using inertial::Limb;
 using walker::Suit;
 using walker::Walker;
 
@@ -270,6 +271,22 @@ TEST(Wear, ASourceThatIsNotFollowedAndOneThatIsSwitchedOffSayNothing) {
   world.wear.configure(off, {world.suit.id});
   world.run(7.0);
   EXPECT_TRUE(world.wear.reports(walker::at(8.0)).empty());
+}
+
+TEST(Wear, TellsWhichSensorFallsSilentAndWhichLeavesItselfNoSay) {
+  WornWorld world({{1, 0.0, 1.0, 1.0, 0.0}});
+  world.run(4.0);
+  ASSERT_TRUE(world.report().wearer);
+  for (const WornSensorReport& one : world.report().sensors)
+    EXPECT_TRUE(!one.silent_for && !one.overstated) << one.sensor;
+  world.suit.states = {{Limb::ShankLeft, -1.0}, {Limb::ThighLeft, deg(200)}};
+  world.run(8.0);
+  for (const WornSensorReport& one : world.report().sensors) {
+    EXPECT_EQ(one.silent_for.has_value(), one.limb == Limb::ShankLeft) << one.sensor;
+    EXPECT_EQ(one.overstated.has_value(), one.limb == Limb::ThighLeft) << one.sensor;
+    EXPECT_NEAR(one.silent_for.value_or(4.0), 4.0, 0.2);
+    EXPECT_NEAR(one.overstated.value_or(deg(200)), deg(200), 1e-6);
+  }
 }
 
 /// Heading [rad] that a sensor with the heading 0.7 is found to have at 40 s: its limb is upright
