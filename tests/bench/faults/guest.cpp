@@ -10,6 +10,7 @@
 
 #include "common/resource/frame_resource.h"
 #include "common/resource/link_lines.h"
+#include "common/synthetic/exercise.h"
 #include "common/synthetic/scene.h"
 #include "common/time/clock.h"
 #include "tests/support/builders.h"
@@ -30,6 +31,15 @@ synthetic::WalkerScript script_of_the_room() {
 
 Skeleton<WorldSpace> person_at(Timestamp instant) {
   static const synthetic::Scene scene{{}, synthetic::make_people(script_of_the_room(), 1), {}};
+  return synthetic::truth(scene, 0, instant);
+}
+
+Skeleton<WorldSpace> exercising_person_at(Timestamp instant) {
+  static const synthetic::Scene scene = [] {
+    synthetic::Scene made{{}, synthetic::make_people(script_of_the_room(), 1), {}};
+    for (auto& person : made.people) person = synthetic::exercising(std::move(person));
+    return made;
+  }();
   return synthetic::truth(scene, 0, instant);
 }
 

@@ -19,6 +19,9 @@ namespace chorus::bench {
 /// The person that all sensors of a cell see; walks within half a metre of the middle.
 [[nodiscard]] Skeleton<WorldSpace> person_at(Timestamp instant);
 
+/// The same person where the scene says that people exercise.
+[[nodiscard]] Skeleton<WorldSpace> exercising_person_at(Timestamp instant);
+
 /// Pose of place `index` of `count` on the ring of simulated sensors.
 [[nodiscard]] Eigen::Isometry3d place_of(int index, int count);
 

@@ -20,10 +20,14 @@ namespace {
 constexpr double kPercent = 100.0;
 
 FusedInstant instant_of(const resource::FrameResource& frame, Timestamp received) {
-  FusedInstant out{static_cast<std::int64_t>(frame.sequence), frame.captured, received, {}, {}, {}};
+  FusedInstant out{
+      static_cast<std::int64_t>(frame.sequence), frame.captured, received, {}, {}, {}, {}};
   for (const auto& body : frame.bodies) {
     out.bodies.push_back(body.id);
     out.places.push_back(body.joints[index_of(JointId::SpineBase)].position);
+    Located& joints = out.joints.emplace_back();
+    for (std::size_t j = 0; j < kJointCount; ++j)
+      if (body.joints[j].state != JointState::NotTracked) joints[j] = body.joints[j].position;
     for (const auto& joint : body.joints) {
       for (std::size_t i = 0; i < frame.sensors.size(); ++i) {
         if ((joint.contributors >> i & 1U) != 0) out.contributors.insert(frame.sensors[i]);

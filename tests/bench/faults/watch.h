@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "common/body/located.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::bench {
@@ -22,6 +23,7 @@ struct FusedInstant {
   Timestamp received;  ///< By the clock of this host.
   std::vector<std::uint64_t> bodies;
   std::vector<Eigen::Vector3d> places;  ///< Where each body's SpineBase is, world [m].
+  std::vector<Located> joints;          ///< Each body's joints, world [m].
   std::set<std::string> contributors;   ///< Sensors that contributed to any joint.
 };
 
