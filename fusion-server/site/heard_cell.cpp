@@ -13,6 +13,9 @@ constexpr double kFarthestStated = 1000.0;  // [m] from a cell's origin
 constexpr double kFastestStated = 15.0;     // [m/s]; a sprinter makes 12
 // Another boot of a cell that spoke within this time is another cell of the same name.
 constexpr Duration kRestart = std::chrono::milliseconds(500);
+// A velocity is that of a time between these two [s]: in a shorter one, noise moves people.
+constexpr double kShortestWay = 0.2;
+constexpr double kLongestWay = 0.5;
 
 tl::unexpected<Error> refuse(const CellId& cell, std::string why) {
   return fail(ErrorCode::InvalidArgument, "cell " + cell.str(), std::move(why));
@@ -77,7 +80,11 @@ void hear_person(HeardCell& cell, const Person& person, Timestamp now) {
   if (fresh) {
     body.found = now;
     body.appeared = person.place;
+    body.appeared_at = cell.at;
   }
+  const double elapsed = seconds(cell.at - body.appeared_at);
+  if (elapsed >= kShortestWay && elapsed <= kLongestWay)
+    body.came_with = (person.place - body.appeared) / elapsed;
   if (fresh || body.last.site_id != person.site_id) body.named = now;
   body.last = person;
   if (body.seen()) body.trail.add({cell.at, person.place, person.velocity, person.covariance});

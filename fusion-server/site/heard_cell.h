@@ -19,6 +19,9 @@ struct HeardBody {
   Timestamp found;  ///< First heard of, by our clock.
   Timestamp named;  ///< When we first heard them under the present id, by our clock.
   Eigen::Vector3d appeared = Eigen::Vector3d::Zero();  ///< Where first heard of; cell's world [m].
+  Timestamp appeared_at;                               ///< When that was, by our clock.
+  /// The mean velocity of the first half second in view [m/s]; none: not in view for long enough.
+  std::optional<Eigen::Vector3d> came_with = {};
 
   [[nodiscard]] bool seen() const { return !last.carried || *last.carried <= Duration{0}; }
 };

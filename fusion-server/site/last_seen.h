@@ -10,6 +10,13 @@
 
 namespace chorus::site {
 
+/// The lengths of a person as one cell knew them while one of its bodies showed the person.
+struct Visit {
+  CellId cell;
+  PersonId body;
+  associate::StatedBuild lengths;
+};
+
 /// The last sight of a person; in the site, by our clock.
 struct LastSight {
   CellId cell;
@@ -17,8 +24,12 @@ struct LastSight {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  associate::StatedBuild lengths;
+  associate::StatedBuild lengths;  ///< Of all visits.
+  std::vector<Visit> visits = {};  ///< In which the name was not doubtful; the newest few.
 };
+
+/// Adds what is known of a visit, or replaces what was known of it, and renews `lengths`.
+void learn(LastSight& sight, const Visit& visit);
 
 using LastSights = std::map<SiteId, LastSight>;
 
@@ -27,6 +38,7 @@ struct Newcomer {
   Timestamp at;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< Site [m].
   associate::StatedBuild lengths;
+  std::optional<Eigen::Vector3d> velocity = {};  ///< With which they came; site [m/s].
 };
 
 /// The people of a map in its order, as match_returning() takes them.
@@ -39,7 +51,7 @@ struct Gone {
 /// More people are not remembered at once.
 inline constexpr std::size_t kMostSights = 10'000;
 
-/// Keeps the newer sight; that of somebody new is left out beyond kMostSights.
+/// Keeps the newer sight, and the visits; that of somebody new is left out beyond kMostSights.
 void remember(LastSights& sights, const SiteId& id, const LastSight& sight);
 /// Forgets the sights of before `oldest`.
 void forget_before(LastSights& sights, Timestamp oldest);

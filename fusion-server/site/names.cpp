@@ -25,7 +25,11 @@ bool given_by(const std::optional<SiteId>& id, const SiteId& wanted) { return id
 Newcomer newcomer_of(const HeardCell& ours, PersonId body) {
   const HeardBody& heard = ours.bodies.at(body);
   Newcomer newcomer{heard.last.since + ours.to_ours, heard.appeared, heard.last.lengths};
-  if (ours.place) newcomer.place = ours.place->site_from_cell * heard.appeared;
+  newcomer.velocity = heard.came_with;
+  if (!ours.place) return newcomer;
+  newcomer.place = ours.place->site_from_cell * heard.appeared;
+  if (newcomer.velocity)
+    newcomer.velocity = ours.place->site_from_cell.linear() * *newcomer.velocity;
   return newcomer;
 }
 
@@ -114,23 +118,28 @@ void Names::keep_up(const Hearing& hearing) {
 }
 
 void Names::remember_sights(const Hearing& hearing) {
-  const auto sight = [&](const HeardCell& cell, PersonId body, const SiteId& id) {
+  // What a visit under a doubtful name shows may be somebody else's.
+  const auto sight = [&](const HeardCell& cell, PersonId body, const KnownName& name) {
     const auto where = where_is(cell, body);
     if (!where) return;
-    remember(sights_, id,
-             {cell.id, where->at, where->place, where->velocity, where->covariance,
-              cell.bodies.at(body).last.lengths});
+    const associate::StatedBuild& lengths = cell.bodies.at(body).last.lengths;
+    remember(sights_, name.id,
+             {cell.id, where->at, where->place, where->velocity, where->covariance, lengths});
+    const auto known = sights_.find(name.id);
+    if (known != sights_.end() && name.sure) learn(known->second, {cell.id, body, lengths});
   };
   for (const auto& [id, cell] : *hearing.others) {
     if (!cell.live(hearing.now, config_.lease)) continue;
     for (const auto& [body, heard] : cell.bodies) {
-      if (heard.seen() && heard.last.site_id) sight(cell, body, present(*heard.last.site_id));
+      if (heard.seen() && heard.last.site_id)
+        sight(cell, body,
+              {present(*heard.last.site_id), heard.last.site_certainty >= config_.doubt});
     }
   }
   for (const auto& [body, name] : names_) {
     const auto heard = hearing.ours->bodies.find(body);
     if (name.id && heard != hearing.ours->bodies.end() && heard->second.seen())
-      sight(*hearing.ours, body, *name.id);
+      sight(*hearing.ours, body, {*name.id, name.certainty >= config_.doubt});
   }
   forget_before(sights_, hearing.now - config_.remember);
 }

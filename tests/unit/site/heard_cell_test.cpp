@@ -47,6 +47,21 @@ TEST(Messages, OfACellThatLiesAreRefusedAndSayWhy) {
   EXPECT_NE(refusal(message(1, {one, other})), "");
 }
 
+TEST(Messages, TellWithWhichVelocitySomebodyCame) {
+  HeardCell cell;
+  cell.id = kCell;
+  for (std::uint64_t i = 0; i < 30; ++i) {
+    Person walking = somebody(1);
+    walking.place.x() = 0.04 * static_cast<double>(i);
+    const CellPeople heard = message(i + 1, {walking});
+    ASSERT_TRUE(hear(cell, heard, heard.at, {}));
+    EXPECT_EQ(cell.bodies.at(PersonId{1}).came_with.has_value(), i > 6) << i;
+  }
+  const auto came = cell.bodies.at(PersonId{1}).came_with;
+  ASSERT_TRUE(came);
+  EXPECT_NEAR(came->x(), 0.04 / 0.033, 1e-6);
+}
+
 TEST(Messages, WithNumbersOutOfRangeAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Person> bad(6, somebody(1));

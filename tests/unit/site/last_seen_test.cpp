@@ -50,6 +50,45 @@ TEST(Returning, LengthsTellTwoApartWhoLeftSideBySide) {
   EXPECT_GT(match.at(1, 1), 0.8);
 }
 
+TEST(Returning, WhoWalksOnIsNotTakenForWhoTurnedBack) {
+  // Two went into a gap of 2.4 m from its two ends; the one at this end comes from the other one.
+  LastSight gone = walker(0, 0);
+  gone.velocity = -gone.velocity;
+  gone.place.x() = 2.4;
+  gone.at += std::chrono::milliseconds(800);
+  Newcomer come = newcomer(2.4, 0, 0);
+  const auto advantage = [&] {
+    const auto across = return_odds(walker(0, 0), come, {});
+    const auto turned = return_odds(gone, come, {});
+    return across && turned ? *across - *turned : -1.0;
+  };
+  const double by_place = advantage();
+  come.velocity = Eigen::Vector3d(1.2, 0, 0);
+  EXPECT_GT(advantage(), 2.0);
+  EXPECT_GT(advantage(), by_place + 1.0);
+}
+
+TEST(Returning, LengthsAreKnownTheBetterTheMoreVisitsShowThem) {
+  LastSight sight = walker(0, 0.03);
+  const CellId cell = *SensorId::parse("a");
+  learn(sight, {cell, PersonId{1}, build(0.03)});
+  learn(sight, {cell, PersonId{1}, build(0.04)});  // the same visit, known better
+  EXPECT_DOUBLE_EQ(sight.lengths.mean[0], 0.04);
+  learn(sight, {*SensorId::parse("b"), PersonId{1}, build(0.02)});
+  EXPECT_NEAR(sight.lengths.mean[0], 0.03, 1e-12);
+  EXPECT_NEAR(sight.lengths.variance[0], 2e-4, 1e-12);
+  for (std::uint64_t i = 2; i < 40; ++i) learn(sight, {cell, PersonId{i}, build(0.03)});
+  EXPECT_LT(sight.visits.size(), 10U);
+  EXPECT_GE(sight.lengths.variance[0], 1e-4);
+  LastSights sights;
+  remember(sights, *SiteId::parse("x"), sight);
+  LastSight newer = walker(1, 0.5);
+  newer.at += std::chrono::seconds(1);
+  remember(sights, *SiteId::parse("x"), newer);
+  EXPECT_NEAR(sights.begin()->second.lengths.mean[0], 0.03, 1e-12);
+  EXPECT_DOUBLE_EQ(sights.begin()->second.place.z(), 1.0);
+}
+
 TEST(Returning, IsDoubtfulForTwoAlike) {
   const std::vector<LastSight> missing{walker(0, 0), walker(0.6, 0)};
   const std::vector<Newcomer> come{newcomer(1.7, 0.3, 0)};
