@@ -23,6 +23,13 @@ constexpr double kUsual = 2.0;    // [s] in view after which a build is the pers
 constexpr double kSure = 5.0;     // Log odds by which the likeliest answer is certain.
 // The same for a newcomer, who has no id to lose.
 constexpr double kSureOfNewcomer = 3.0;
+// ... and who has waited for kPatience, since a wrong id is found out: where somebody known is
+// taken for a person, by the cut that this makes; somebody taken for new is not asked again.
+constexpr Duration kPatience = std::chrono::milliseconds(300);
+constexpr double kSureOfReturning = 1.5;
+constexpr double kSureOfNew = 2.2;
+// The same where the id in use is certainly wrong.
+constexpr double kNextOfExcluded = 0.7;
 // Log odds of being the same below which a track is questioned.
 constexpr double kInQuestion = 2.0;
 // Log odds by which another answer has to be likelier than the id in use, after a second in view.
@@ -176,6 +183,14 @@ bool is_glance(const Build& build) {
   return sight_of(build) * std::min(build.views, 2.0) >= kGlance;
 }
 
+/// By how much the best answer has to be likelier than the next one before the look is over.
+double needed_for(const Question& question, std::optional<std::size_t> known, double gain,
+                  Duration waited) {
+  if (question.doubt) return known && gain > kSure ? kNextOfExcluded : kSure;
+  if (waited <= kPatience) return kSureOfNewcomer;
+  return known ? kSureOfReturning : kSureOfNew;
+}
+
 /// True if it can be said now that the answer in column `known`, or somebody new, is right.
 bool is_decided(const Question& question, const CostTable& table, std::size_t row,
                 std::optional<std::size_t> known, Timestamp instant) {
@@ -190,10 +205,12 @@ bool is_decided(const Question& question, const CostTable& table, std::size_t ro
   if (!anybody) return true;
   // An id in use is given up for a clear reason only: what is not clear yet may become so.
   const bool other = question.doubt && known != question.own;
-  if (other && best + table.at(row, *question.own) < question.turn) return false;
+  const double gain = other ? best + table.at(row, *question.own) : 0.0;
+  if (other && gain < question.turn) return false;
   if (is_looked_at(question.build)) return true;
-  if (!question.doubt && instant - question.since > kNoBones) return true;
-  return is_glance(question.build) && best - rival > (question.doubt ? kSure : kSureOfNewcomer);
+  const Duration waited = instant - question.since;
+  if (!question.doubt && waited > kNoBones) return true;
+  return is_glance(question.build) && best - rival > needed_for(question, known, gain, waited);
 }
 
 /// True if the id of `own` is given to somebody else for certain.

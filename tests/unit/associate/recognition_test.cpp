@@ -78,6 +78,14 @@ TEST(Recognition, OneSensorAloneNeedsNoLongerThanIsConfigured) {
   EXPECT_GE(took, 1.0 - 0.05) << "nor less: four would";
 }
 
+TEST(Recognition, WhoIsProbablySomebodyKnownDoesNotWaitForCertainty) {
+  RecognitionRoom room{.sensors = 2};
+  EXPECT_EQ(room.see_for(15.0, {{0.0}}).at(0).id, kFirst);
+  room.see_for(10.0, {});
+  EXPECT_LE(room.until_seen({{0.0}}), 0.45);
+  EXPECT_EQ(room.see({{0.0}}).at(0).id, kFirst);
+}
+
 TEST(Recognition, OfTwoWhoLeftTheRightOneComesBack) {
   RecognitionRoom room;
   const auto both = room.see_for(3.0, {{0.0, 1.0}, {2.0, 1.08}});
