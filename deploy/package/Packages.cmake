@@ -1,12 +1,12 @@
 # What is installed where, and the Debian packages that are made from it (deploy/make-packages.sh).
 #
-#   common  chorus (small: init, discover, doctor, status, register, record), user, folders
+#   common  chorus (small: init, discover, doctor, status, register, origin, record, mark, camera), user, folders
 #   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures its dependencies)
 #   fusion  chorus-fusion, its service and the viewer
 #   ergonomics, evaluation  a service that follows a tracker: posture scores; a judgement by worn inertial sensors
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
 #           runs this program; chorus-positioner, which looks through cameras
-#   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise, align, scan, glove, position; what looks at pictures needs the runner of camera
+#   tools   the whole chorus: import, replay, fuse, export, train-error, calibrate, characterise, align, scan, glove, report, compare, score, evaluate, position, site; what looks at pictures needs the runner of camera
 #
 # With CHORUS_ONLY_SENSOR, only common and sensor.
 include(GNUInstallDirs)
@@ -169,7 +169,8 @@ set(CPACK_COMPONENT_ERGONOMICS_DESCRIPTION "Chorus: posture scores of the people
 set(CPACK_COMPONENT_EVALUATION_DESCRIPTION "Chorus: a tracker judged by inertial sensors that people wear
  Follows a tracker and worn sensors, and says which limb is off and since when.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
- The commands import, replay, fuse, export, train-error, calibrate, characterise and align.")
+ The commands import, replay, view, fuse, export, train-error, calibrate, characterise, align,
+ scan, glove, report, compare, score, evaluate, position and site.")
 include(CPack)
 foreach(component ${components})
   cpack_add_component_group(${component})

@@ -53,7 +53,6 @@ Run add_mark(CLI::App& options) {
   const auto arguments = std::make_shared<MarkArguments>();
   options.add_option("text", arguments->text, "What happens now, at most 200 bytes")->required();
   add_server_option(options, arguments->url, "The fusion server that records");
-  add_token_footer(options);
   return [arguments] { return run_mark(*arguments); };
 }
 
