@@ -78,7 +78,7 @@ void Wear::search_wearer(Source& source, const std::vector<inertial::InertialRea
     for (const inertial::InertialReading& reading : readings) {
       const auto limb = limb_of(reading);
       if (!limb) continue;
-        const auto tracked = evaluation::limb_from_joints(alone, *limb);
+      const auto tracked = evaluation::limb_from_joints(alone, *limb);
       if (tracked)
         all.push_back(
             {body.id, reading.sensor, *limb, {time, *tracked, *reading.inertial_from_sensor}});
