@@ -202,6 +202,7 @@ Result<void> suit_floods(Trial& trial) {
   return suit_errs(trial,
                    {.settings = {"device.inertial.rate_hz=1000", "device.inertial.skin=0"},
                     .hit = {kLimbEnds.begin(), kLimbEnds.end()},
+                    .used = false,
                     .act = [&trial](const SuitCell& both) {
                       trial.check(both.told().value("framesMissed", 0) > 0,
                                   "what is not read is told as missed: " + both.told().dump());
@@ -216,7 +217,6 @@ Result<void> suit_clock(Trial& trial) {
   return suit_errs(
       trial, {.settings = {"clock.step_ms=5000", fmt::format("clock.step_after_s={}", kFaultAt)},
               .hit = {kLimbEnds.begin(), kLimbEnds.end()},
-              .used = false,
               .act = [&trial](const SuitCell& both) {
                 const auto followed = [&] {
                   const auto told = both.told();
