@@ -168,6 +168,7 @@ void read_worn(ConfigReader reader, LiveSettings& out) {
   reader.read_ms("hidden_ms", model.hidden, milliseconds(1), std::chrono::seconds(60));
   reader.read_ms("handback_ms", model.handback, milliseconds(1), std::chrono::seconds(10));
   reader.read_deg("most_sigma_deg", model.most_sigma, 1.0, 90.0);
+  out.worn.most_sigma = model.most_sigma;
   reader.read_deg("heading_walk_deg", out.worn.heading_walk, 0.0, 30.0);
   reader.read_deg("slip_deg", out.worn.slip, 1.0, 90.0);
   reader.read_deg("most_prediction_deg", out.worn.most_prediction, 1.0, 90.0);

@@ -14,7 +14,6 @@ constexpr double kRenamedWithin = 0.5;
 constexpr double kRenamedNear = 0.4;  // [m] between both: nobody else can have come so near
 constexpr double kSameSight = 0.5;    // [m] between two passes' sights of one person
 constexpr double kSilent = 2.0;       // [s] without a word of a sensor while others speak
-constexpr double kNoSay = deg(30);    // stated by a sensor itself, as InertialModel::most_sigma
 constexpr double kSlipIsNews = 60.0;  // [s] for which a slip is told
 // Sides that are less probable teach nothing (as SidesConfig::learn_from): what is learned on wrong
 // sides would go on to say that they are right.
@@ -225,7 +224,7 @@ std::vector<WornReport> Wear::reports(Timestamp now) const {
     for (const auto& [name, sensor] : source.sensors) {
       WornSensorReport& one = report.sensors.emplace_back();
       if (newest - sensor.heard() > kSilent) one.silent_for = time - sensor.heard();
-      if (sensor.stated_sigma() > kNoSay) one.overstated = sensor.stated_sigma();
+      if (sensor.stated_sigma() > config_.most_sigma) one.overstated = sensor.stated_sigma();
       one.sensor = name;
       one.limb = sensor.limb();
       one.calibrated = sensor.fit().has_value();

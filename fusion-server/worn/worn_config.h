@@ -18,6 +18,9 @@ struct WornConfig {
   /// A calibration that would know its limb's direction worse than this in the poses it was made in
   /// is refused [rad].
   double most_prediction = deg(10);
+  /// A sensor whose own stated error exceeds this is told, because fusion lets it have no say
+  /// (InertialModel::most_sigma, the same key) [rad].
+  double most_sigma = deg(30);
 
   bool operator==(const WornConfig&) const = default;
 };

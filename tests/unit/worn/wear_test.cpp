@@ -287,6 +287,10 @@ TEST(Wear, TellsWhichSensorFallsSilentAndWhichLeavesItselfNoSay) {
     EXPECT_NEAR(one.silent_for.value_or(4.0), 4.0, 0.2);
     EXPECT_NEAR(one.overstated.value_or(deg(200)), deg(200), 1e-6);
   }
+  world.config.most_sigma = deg(250);
+  world.wear.configure(world.config, {world.suit.id});
+  for (const WornSensorReport& one : world.report().sensors)
+    EXPECT_FALSE(one.overstated) << "fusion lets it have its say: " << one.sensor;
 }
 
 /// Heading [rad] that a sensor with the heading 0.7 is found to have at 40 s: its limb is upright
