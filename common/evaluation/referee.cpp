@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/median.h"
 #include "common/geometry/rotation.h"
 
 namespace chorus::evaluation {
@@ -97,14 +98,6 @@ std::optional<TrackedOrientation> reference_at(const TrackedLimb& limb,
   return out;
 }
 
-double share_of(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto rank = std::min(values.size() - 1,
-                             static_cast<std::size_t>(share * static_cast<double>(values.size())));
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(rank));
-  return values[rank];
-}
-
 std::vector<double> angles_of(const ErrorTrack& errors, const Segment* within) {
   std::vector<double> out;
   for (const auto& each : errors)
@@ -115,7 +108,8 @@ std::vector<double> angles_of(const ErrorTrack& errors, const Segment* within) {
 
 ErrorSpread spread_of(const ErrorTrack& errors) {
   const auto angles = angles_of(errors, nullptr);
-  return {share_of(angles, 0.5), share_of(angles, 0.9)};
+  if (angles.empty()) return {};
+  return {quantile(angles, 0.5), quantile(angles, 0.9)};
 }
 
 void add_errors(RefereedLimb& out, const JudgedLimb& judged, const TrackedLimb& tracked,
@@ -149,8 +143,8 @@ void decide(RefereedLimb& out, const std::vector<Segment>& disagreements, double
   for (const Segment& segment : disagreements) {
     const auto tracker = angles_of(out.tracker, &segment);
     if (tracker.empty()) continue;
-    RefereedSegment one{segment, share_of(tracker, 0.5),
-                        share_of(angles_of(out.sensor, &segment), 0.5), Right::Neither};
+    RefereedSegment one{segment, quantile(tracker, 0.5),
+                        quantile(angles_of(out.sensor, &segment), 0.5), Right::Neither};
     one.right = who_is_right(one.tracker, one.sensor, tau);
     out.segments.push_back(one);
   }

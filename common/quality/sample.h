@@ -4,21 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
-namespace chorus::quality {
+#include "common/base/median.h"
 
-/// NaN of nothing.
-[[nodiscard]] inline double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto place = std::min(values.size() - 1,
-                              static_cast<std::size_t>(share * static_cast<double>(values.size())));
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
+namespace chorus::quality {
 
 /// Beyond `most` values each new one takes the place of one that is drawn by a fixed sequence.  The
 /// median of 20 000 normal values has a standard error of 0.9 % of their standard deviation.

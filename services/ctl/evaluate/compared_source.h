@@ -16,7 +16,7 @@ struct ComparedSource {
   std::vector<std::string> notes;  ///< What was salvaged.
 };
 
-/// By the file's ending: .c3d, .trc, .bvh, .mvnx; none for everything else.
+/// By the file's ending: .c3d, .trc, .bvh, .htr, .mvnx; none for everything else.
 [[nodiscard]] std::optional<importers::MotionFormat> motion_format(const std::string& file);
 
 /// Times count from the options' start, or are those that the file states.

@@ -261,10 +261,11 @@ Result<int> run_evaluate(const EvaluateArguments& arguments) {
 }
 
 void add_reference_options(CLI::App& options, EvaluateArguments& arguments) {
-  auto* const reference = options.add_option(
-      "--reference", arguments.reference,
-      "Optical markers or joints of the same take (C3D, TRC, or fused frames of another tracker): "
-      "says who errs where tracker and sensor disagree");
+  auto* const reference =
+      options.add_option("--reference", arguments.reference,
+                         "Optical markers or joints of the same take (C3D, TRC, BVH, HTR, MVNX, or "
+                         "fused frames of another tracker): "
+                         "says who errs where tracker and sensor disagree");
   options
       .add_option("--reference-joints", arguments.reference_joints,
                   "Lines such as \"HipLeft = LASI, LPSI\": points of the reference's joints, where "

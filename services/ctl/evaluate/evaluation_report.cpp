@@ -16,12 +16,6 @@ using report::Judgement;
 using report::Plot;
 using report::Section;
 
-std::string key_of(inertial::Limb limb) {
-  std::string key(words_for(limb));
-  std::ranges::replace(key, ' ', '_');
-  return key;
-}
-
 std::string capital(std::string_view words) {
   std::string out(words);
   if (!out.empty())
@@ -91,7 +85,7 @@ std::string calibrated_by(const JudgedLimb& limb) {
 }
 
 std::vector<Figure> figures_of(const JudgedLimb& limb, const EvaluationInputs& inputs) {
-  const std::string key = key_of(limb.limb);
+  const std::string key = figure_key(limb.limb);
   const std::string name(words_for(limb.limb));
   const double percent = error_percent(limb);
   const bool good = percent <= inputs.most_percent;

@@ -13,6 +13,7 @@
 #include "services/ctl/calibrate/lens_file.h"
 #include "services/ctl/convert/video_import.h"
 #include "services/ctl/convert/video_sights.h"
+#include "services/ctl/evaluate/compared_source.h"
 
 namespace chorus::ctl {
 namespace {
@@ -24,9 +25,9 @@ using positioning::Method;
 constexpr std::uintmax_t kMaxPlacesFile = 1u << 22;
 
 bool is_suit(const fs::path& file) {
-  const std::string ending = file.extension().string();
-  return ending == ".bvh" || ending == ".BVH" || ending == ".mvnx" || ending == ".MVNX" ||
-         ending == ".htr" || ending == ".HTR";
+  const auto format = motion_format(file.string());
+  using importers::MotionFormat;
+  return format == MotionFormat::Bvh || format == MotionFormat::Htr || format == MotionFormat::Mvnx;
 }
 
 /// What one input gives before its place is known.

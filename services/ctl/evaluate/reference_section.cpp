@@ -13,14 +13,8 @@ using namespace evaluation;
 using report::Figure;
 using report::Plot;
 
-std::string key_of(inertial::Limb limb) {
-  std::string key(words_for(limb));
-  std::ranges::replace(key, ' ', '_');
-  return key;
-}
-
 Figure error_figure(const RefereedLimb& limb, const char* whose, const ErrorSpread& spread) {
-  return {key_of(limb.limb) + "." + whose + "_error",
+  return {figure_key(limb.limb) + "." + whose + "_error",
           fmt::format("{}: error of the {}", words_for(limb.limb), whose),
           to_deg(spread.median),
           "deg",
@@ -31,7 +25,7 @@ Figure error_figure(const RefereedLimb& limb, const char* whose, const ErrorSpre
 Figure right_figure(const RefereedLimb& limb, Right right, const char* whose) {
   const auto all = limb.disagreements();
   const auto own = limb.instants[static_cast<std::size_t>(right)];
-  Figure out{key_of(limb.limb) + "." + whose + "_right",
+  Figure out{figure_key(limb.limb) + "." + whose + "_right",
              fmt::format("{}: {} right in disagreements", words_for(limb.limb), whose)};
   out.unit = "%";
   out.meaning = fmt::format(
@@ -94,6 +88,12 @@ Plot error_plot(const RefereedLimb& limb, double tau) {
 
 }  // namespace
 
+std::string figure_key(inertial::Limb limb) {
+  std::string key(words_for(limb));
+  std::ranges::replace(key, ' ', '_');
+  return key;
+}
+
 report::Section reference_section(const RefereedTake& take, double tau) {
   report::Section out{"reference", "Tracker and sensors against the reference"};
   out.paragraphs = {
@@ -127,8 +127,7 @@ std::string reference_verdict(const RefereedTake& take) {
   if (all == 0) return "The reference shows no disagreement of tracker and sensors.";
   return fmt::format(
       "Of {} disagreements that the reference shows, the tracker errs in {}, the sensor in {}, "
-      "both "
-      "in {}.",
+      "both in {}.",
       all, of(Right::Sensor), of(Right::Tracker), of(Right::Neither));
 }
 

@@ -17,6 +17,9 @@ struct RefereedTake {
   std::vector<evaluation::RefereedLimb> limbs;
 };
 
+/// A limb's name in the keys of figures: "left_forearm".
+[[nodiscard]] std::string figure_key(inertial::Limb limb);
+
 /// Errors of tracker and sensor by limb, and who is right where they disagree.
 [[nodiscard]] report::Section reference_section(const RefereedTake& take, double tau);
 
