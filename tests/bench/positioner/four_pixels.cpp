@@ -70,8 +70,8 @@ constexpr std::array kPixelMethods{PixelMethod{"silhouettes", Method::Silhouette
 struct PixelTruth {
   std::vector<Eigen::Vector3d> roots;
   /// Whether the triangulation of this instant is a person: where the network exchanges the sides
-  /// in one camera for long (pictures 22 to 38 of cam02), the published landmarks' mean of both has
-  /// hips of half their width, and such a place judges nobody.
+  /// in one camera for long (cam02, between pictures 18 and 37), the triangulation lies between
+  /// both and has hips of half their width, and such a place judges nobody.
   std::vector<bool> sound;
   suit::SuitTake suit;
   double stature = 1.75;
