@@ -64,6 +64,27 @@ std::string level_lines(const ergonomics::Method& method, const Height& y) {
   return svg;
 }
 
+std::string without_score(double x, double width) {
+  return fmt::format("<rect x=\"{:.1f}\" y=\"8\" width=\"{:.2f}\" height=\"{}\" class=\"none\"/>",
+                     x, width + 0.1, kTimelineHeight - 30);
+}
+
+std::string timeline_head(const std::string& label) {
+  return fmt::format(
+      "<svg viewBox=\"0 0 {} {}\" class=\"timeline\" role=\"img\" aria-label=\"{}\">",
+      kTimelineWidth, kTimelineHeight, report::escaped(label));
+}
+
+/// Where the timeline begins and ends.
+std::string time_labels(double from, double lasts) {
+  const int digits = lasts < 20.0 ? 1 : 0;
+  return fmt::format(
+      "<text x=\"{}\" y=\"{}\">{:.{}f} s</text><text x=\"{}\" y=\"{}\" "
+      "text-anchor=\"end\">{:.{}f} s</text>",
+      kMargin, kTimelineHeight - 6, from, digits, kTimelineWidth - kMargin, kTimelineHeight - 6,
+      from + lasts, digits);
+}
+
 }  // namespace
 
 std::string stick_figure(const Skeleton<WorldSpace>& body, View view) {
@@ -104,20 +125,14 @@ std::string score_timeline(const ergonomics::ScoredPerson& person, std::size_t m
   const auto y = [&](double score) {
     return kTimelineHeight - 22 - (kTimelineHeight - 34) * (score - 0.5) / highest;
   };
-  std::string svg = fmt::format(
-      "<svg viewBox=\"0 0 {} {}\" class=\"timeline\" role=\"img\" "
-      "aria-label=\"{}\">",
-      kTimelineWidth, kTimelineHeight, report::escaped(label));
-  svg += level_lines(*summary.method, y);
+  std::string svg = timeline_head(label) + level_lines(*summary.method, y);
   const double step = (kTimelineWidth - 2 * kMargin) /
                       static_cast<double>(std::max<std::size_t>(person.instants.size(), 1));
   std::string line;
   for (const auto& instant : person.instants) {
     const auto& score = instant.scores[method];
     if (!score.known()) {
-      svg +=
-          fmt::format("<rect x=\"{:.1f}\" y=\"8\" width=\"{:.2f}\" height=\"{}\" class=\"none\"/>",
-                      x(instant.at), step + 0.1, kTimelineHeight - 30);
+      svg += without_score(x(instant.at), step);
       line += line.empty() || line.back() == ' ' ? "" : " ";
       continue;
     }
@@ -131,16 +146,10 @@ std::string score_timeline(const ergonomics::ScoredPerson& person, std::size_t m
                         x(instant.at), y(score.score.high));
   }
   svg += fmt::format("<path d=\"{}\" class=\"score\"/>", line);
-  const int digits = person.seconds < 20.0 ? 1 : 0;
   for (std::size_t w = 0; w < summary.worst.size(); ++w)
     svg += fmt::format("<text x=\"{:.1f}\" y=\"10\" class=\"worst\">{}</text>",
                        x(summary.worst[w].at) - 3, w + 1);
-  svg += fmt::format(
-      "<text x=\"{}\" y=\"{}\">{:.{}f} s</text><text x=\"{}\" y=\"{}\" "
-      "text-anchor=\"end\">{:.{}f} s</text>",
-      kMargin, kTimelineHeight - 6, from, digits, kTimelineWidth - kMargin, kTimelineHeight - 6,
-      from + person.seconds, digits);
-  return svg + "</svg>";
+  return svg + time_labels(from, person.seconds) + "</svg>";
 }
 
 }  // namespace chorus::assessment

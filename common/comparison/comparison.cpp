@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -203,6 +205,17 @@ void compare_worlds(const std::vector<Both>& frames, const CompareOptions& optio
     out.offset[axis] = mean_of(offset[axis], options.block, level(options));
 }
 
+/// Bland and Altman 1986: between them lie 95 % of the differences, if they are normal.
+std::pair<double, double> limits_of_agreement(const std::vector<double>& differences) {
+  const auto n = static_cast<double>(differences.size());
+  double mean = 0.0;
+  for (const double value : differences) mean += value / n;
+  double variance = 0.0;
+  for (const double value : differences) variance += (value - mean) * (value - mean) / n;
+  const double reach = 1.96 * std::sqrt(variance);
+  return {mean - reach, mean + reach};
+}
+
 std::optional<JointDifference> compare_joint(const std::vector<Both>& frames, std::size_t j,
                                              const Comparison& whole,
                                              const CompareOptions& options) {
@@ -228,12 +241,7 @@ std::optional<JointDifference> compare_joint(const std::vector<Both>& frames, st
   out.drift = slope_of(distance, options.block, level(options));
   out.drift.mean *= kMinute;
   out.drift.half *= kMinute;
-  double height = 0.0;
-  for (const double value : axes[1].values) height += value / n;
-  double scatter = 0.0;
-  for (const double value : axes[1].values) scatter += (value - height) * (value - height) / n;
-  out.limit_low = height - 1.96 * std::sqrt(scatter);
-  out.limit_high = height + 1.96 * std::sqrt(scatter);
+  std::tie(out.limit_low, out.limit_high) = limits_of_agreement(axes[1].values);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.offset[axis] = mean_of(axes[axis], options.block, level(options));
     out.differs = out.differs || out.offset[axis].differs(options.least);

@@ -243,6 +243,15 @@ Result<void> check(const TakeResult& result, std::span<const CameraTake> cameras
                     "without the person known (--empty-room), and the suit's heading?");
 }
 
+/// What the whole take tells of the suit's heading and of each camera's depths.
+void conclude(const Tracker& tracker, std::size_t cameras, TakeResult& result) {
+  result.misfit = median_misfit(result);
+  const Position end = result.placed.back().smooth;
+  result.heading = end.heading;
+  result.heading_sigma = end.heading_sigma;
+  for (std::size_t i = 0; i < cameras; ++i) result.depth.push_back(tracker.filter().depth_of(i));
+}
+
 }  // namespace
 
 ClockFit fit_clock(std::span<const CameraTake> cameras, const suit::SuitTake& suit,
@@ -301,14 +310,7 @@ Result<TakeResult> place_take(std::span<const CameraTake> cameras, const suit::S
   result.strangers = tracker.strangers();
   if (const auto ok = check(result, cameras, tracking.method); !ok) return pass(ok);
   smooth(steps, tracking.method, result);
-  result.misfit = median_misfit(result);
-  const Position end = result.placed.back().smooth;
-  result.heading = end.heading;
-  result.heading_sigma = end.heading_sigma;
-  if (!steps.empty()) {
-    for (std::size_t i = 0; i < cameras.size(); ++i)
-      result.depth.push_back(tracker.filter().depth_of(i));
-  }
+  conclude(tracker, steps.empty() ? 0 : cameras.size(), result);
   return result;
 }
 

@@ -62,6 +62,25 @@ Section findings_section(const std::vector<Finding>& findings) {
   return section;
 }
 
+std::vector<std::string> joint_row(std::string_view name, const JointQuality& joint,
+                                   double error_by_views) {
+  return {std::string(name),
+          percent(joint.tracked),
+          percent(joint.inferred),
+          percent(joint.missing),
+          percent(joint.unseen),
+          percent(joint.carried),
+          std::to_string(joint.gaps),
+          readable(joint.longest_gap),
+          readable(joint.longest_gap_at),
+          readable(joint.sensors),
+          in_millimetres(joint.jitter_at_rest),
+          in_millimetres(joint.jitter_in_motion),
+          in_millimetres(joint.stated),
+          in_millimetres(error_by_views),
+          std::to_string(joint.jumps)};
+}
+
 Section joints(const RecordingQuality& quality) {
   const FusedQuality& fused = quality.fused;
   Section section{"joints", "Joints"};
@@ -84,14 +103,7 @@ Section joints(const RecordingQuality& quality) {
   report::Series inferred{"inferred", report::Mark::Bars};
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const JointQuality& joint = fused.joints[j];
-    const std::string name(kJointNames[j]);
-    table.rows.push_back({name, percent(joint.tracked), percent(joint.inferred),
-                          percent(joint.missing), percent(joint.unseen), percent(joint.carried),
-                          std::to_string(joint.gaps), readable(joint.longest_gap),
-                          readable(joint.longest_gap_at), readable(joint.sensors),
-                          in_millimetres(joint.jitter_at_rest),
-                          in_millimetres(joint.jitter_in_motion), in_millimetres(joint.stated),
-                          in_millimetres(quality.views[j].found), std::to_string(joint.jumps)});
+    table.rows.push_back(joint_row(kJointNames[j], joint, quality.views[j].found));
     missing.x.push_back(static_cast<double>(j));
     missing.y.push_back(100.0 * joint.missing);
     inferred.x.push_back(static_cast<double>(j));

@@ -188,23 +188,9 @@ void add_fixed(http::Router& router) {
   serve(router, "/.well-known/void", void_document());
 }
 
-}  // namespace
-
-void add_routes(http::Router& router, const CommonResources& options) {
-  std::shared_ptr<const Clock> clock = options.clock;
-  if (!clock) clock = std::make_shared<SystemClock>();
-  router.get("/clock", [clock](const Request&, const PathParams&) -> Result<DocumentPtr> {
-    return clock_document(*clock);
-  });
-  router.get("/healthz",
-             [clock, health = options.health, configuration = options.configuration](
-                 const Request&, const PathParams&) -> Result<DocumentPtr> {
-               return health_document(with_configuration(health ? health() : Health{},
-                                                         configuration ? configuration() : nullptr),
-                                      clock->now());
-             });
-  router.vital("/healthz");
-  router.for_everybody("/healthz");
+/// What a service says of itself where it has it: figures, and the configuration in force.
+void add_own_state(http::Router& router, const CommonResources& options,
+                   const std::shared_ptr<const Clock>& clock) {
   if (options.metrics) {
     router.vital("/metrics");
     router.get("/metrics",
@@ -224,6 +210,26 @@ void add_routes(http::Router& router, const CommonResources& options) {
                                                  fleeting(clock->now()));
                });
   }
+}
+
+}  // namespace
+
+void add_routes(http::Router& router, const CommonResources& options) {
+  std::shared_ptr<const Clock> clock = options.clock;
+  if (!clock) clock = std::make_shared<SystemClock>();
+  router.get("/clock", [clock](const Request&, const PathParams&) -> Result<DocumentPtr> {
+    return clock_document(*clock);
+  });
+  router.get("/healthz",
+             [clock, health = options.health, configuration = options.configuration](
+                 const Request&, const PathParams&) -> Result<DocumentPtr> {
+               return health_document(with_configuration(health ? health() : Health{},
+                                                         configuration ? configuration() : nullptr),
+                                      clock->now());
+             });
+  router.vital("/healthz");
+  router.for_everybody("/healthz");
+  add_own_state(router, options, clock);
   add_fixed(router);
   if (!options.self) return;
   router.get("/.well-known/wot",

@@ -273,6 +273,10 @@ void remember(const Instant& now, const Person& person, const Spans& spans, Side
   }
 }
 
+Sides new_sides(const Instant& now, const SidesConfig& config) {
+  return {now.at, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, 0.0, {}};
+}
+
 }  // namespace
 
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
@@ -286,11 +290,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   now.upright = upright_share(trunk_of(person.views), config.upright);
   auto before = recall(memory, person.id, instant, config);
   now.first = !before;
-  Sides sides =
-      before
-          ? std::move(*before)
-          : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, 0.0, 0.0,
-                  {}};
+  Sides sides = before ? std::move(*before) : new_sides(now, config);
   now.elapsed = seconds(instant - sides.seen);
   look_at_views(now, person, flat, sides, memory, config);
   Spans spans = joined(now);

@@ -21,6 +21,20 @@ void add_fates(service::MetricsText& out, const SensorStatus& s) {
   }
 }
 
+void add_frames(service::MetricsText& out, const SensorStatus& s, const service::Labels& labels) {
+  out.counter({"chorus_frames_received_total", "Frames received from the sensor."},
+              number(s.frames), labels);
+  out.counter({"chorus_frames_missed_total", "Gaps in the sensor's own sequence."},
+              number(s.missed), labels);
+  out.counter(
+      {"chorus_frames_refused_total",
+       "Frames left out because of their time; unreadable ones count as failures of polling."},
+      number(s.refused), labels);
+  add_fates(out, s);
+  out.counter({"chorus_poll_failures_total", "Requests without a usable answer."},
+              number(s.failures), labels);
+}
+
 void add_sensor(service::MetricsText& out, const SensorStatus& s) {
   const service::Labels labels{{"sensor", s.id.str()}};
   out.gauge({"chorus_sensor_up", "1 while the sensor delivers frames."},
@@ -53,17 +67,7 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
                "How far from the others the sensor sees people now, beyond what is usual for it."},
               *s.shift, labels);
   }
-  out.counter({"chorus_frames_received_total", "Frames received from the sensor."},
-              number(s.frames), labels);
-  out.counter({"chorus_frames_missed_total", "Gaps in the sensor's own sequence."},
-              number(s.missed), labels);
-  out.counter(
-      {"chorus_frames_refused_total",
-       "Frames left out because of their time; unreadable ones count as failures of polling."},
-      number(s.refused), labels);
-  add_fates(out, s);
-  out.counter({"chorus_poll_failures_total", "Requests without a usable answer."},
-              number(s.failures), labels);
+  add_frames(out, s, labels);
 }
 
 void add_output(service::MetricsText& out, const OutputStatus& output) {

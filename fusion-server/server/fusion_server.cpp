@@ -50,6 +50,9 @@ struct FusionServer::Impl {
   }
 
   std::shared_ptr<http::Router> make_router();
+  void make_resources();
+  void add_site_routes(http::Router& router);
+  void add_common_routes(http::Router& router, const service::Self& self);
   LoopOptions loop_options(InitialRegistration initial);
   void follow();
   [[nodiscard]] FusionSettings in_force() const;
@@ -61,12 +64,18 @@ struct FusionServer::Impl {
     return with_site(outputs->states(), member ? &member->link() : nullptr);
   }
   LookoutOptions lookout_options();
-  service::RecordingViewsOptions recording_views_options();
   SensorDeskOptions sensor_desk_options(const std::string& folder);
   [[nodiscard]] std::optional<client::FollowedService> followed(const std::string& id) const;
+  /// Reads what the mutex guards, whenever it is called.
+  template <class Read>
+  [[nodiscard]] auto guarded(Read read) const {
+    return [this, read] {
+      const std::scoped_lock lock(mutex);
+      return read();
+    };
+  }
   [[nodiscard]] Status status_now() const {
-    const std::scoped_lock lock(mutex);
-    return status;
+    return guarded([this] { return status; })();
   }
 
   FusionSettings config;  ///< Its live part is guarded by mutex.
@@ -129,28 +138,11 @@ LookoutOptions FusionServer::Impl::lookout_options() {
   return options;
 }
 
-service::RecordingViewsOptions FusionServer::Impl::recording_views_options() {
-  service::RecordingViewsOptions options;
-  options.files_of = [this](const std::string& name) { return recordings->files_of(name); };
-  options.folder = config.at_start.recording.folder;
-  options.mark_running = [this](auto& n, auto& text) { return recordings->mark(n, text); };
-  options.min_free_bytes = config.at_start.recording.limits.min_free_bytes;
-  options.made = [this](const record::RecordingReport& made) { recordings->adopt(made); };
-  options.run = serving.run;
-  return options;
-}
-
 SensorDeskOptions FusionServer::Impl::sensor_desk_options(const std::string& folder) {
   SensorDeskOptions options;
   options.folder = store_trouble.empty() ? folder : "";
-  options.trust = [this] {
-    const std::scoped_lock lock(mutex);
-    return config.live.trust;
-  };
-  options.configured = [this] {
-    const std::scoped_lock lock(mutex);
-    return config.live.sensors;
-  };
+  options.trust = guarded([this] { return config.live.trust; });
+  options.configured = guarded([this] { return config.live.sensors; });
   options.changed = [this] { sensors_changed(); };
   options.run = serving.run;
   return options;
@@ -162,15 +154,14 @@ std::optional<client::FollowedService> FusionServer::Impl::followed(const std::s
   return std::nullopt;
 }
 
-std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
-  auto router = std::make_shared<http::Router>();
+/// What answers requests, without its routes.
+void FusionServer::Impl::make_resources() {
   rest::RegistrationControl control =
       registration_control([this](Command command) { loop->ask(std::move(command)); });
-  control.defaults = [this] {
-    const std::scoped_lock lock(mutex);
+  control.defaults = guarded([this] {
     const core::SessionConfig& session = config.live.session;
     return rest::SessionRequest{session.target, session.adoption};
-  };
+  });
   frames.emplace(serving, service::DocumentHistory{config.at_start.history});
   frame_sink.emplace(*frames);
   frames->predict_with([this] { return frame_sink->predicted(clock->now()); });
@@ -182,29 +173,21 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   recordings.emplace(recordings_options(config.at_start, serving, clock));
   tap.emplace(*recordings, clock);
   lookout.emplace(lookout_options());
-  lookout->add_routes(*router);
-  foxglove::add_route(*router, desk, config.at_start.title, serving.run);
-  recordings->add_routes(*router);
-  views.emplace(recording_views_options());
-  views->add_routes(*router);
-  frames->add_routes(*router);
-  sensors->add_routes(*router);
-  pictures->add_routes(*router);
-  rest::add_setup_routes(*router, serving, desk_of_sensors->control());
-  inertial->add_routes(*router);
-  props->add_routes(*router);
-  if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run, *router);
-  if (!config.at_start.site.link.site.empty()) {
-    site.emplace(serving).add_routes(*router);
-    auto ask = [this](const auto& cell, const auto& at) {
-      return member->link().ask_frame(cell, at);
-    };
-    cell_frames.emplace(serving.run, std::move(ask)).add_routes(*router);
-  }
-  registration->add_routes(*router);
-  const auto self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty(),
-                                  evaluation.has_value());
-  rest::add_description_routes(*router, serving, self, viewer_folder(config.at_start.viewer_dir));
+  views.emplace(views_options(*recordings, config.at_start.recording, serving.run));
+}
+
+/// Of a hall, when the cell is part of one.
+void FusionServer::Impl::add_site_routes(http::Router& router) {
+  if (config.at_start.site.link.site.empty()) return;
+  site.emplace(serving).add_routes(router);
+  auto ask = [this](const auto& cell, const auto& at) {
+    return member->link().ask_frame(cell, at);
+  };
+  cell_frames.emplace(serving.run, std::move(ask)).add_routes(router);
+}
+
+/// What every service answers: its clock, health, metrics and description.
+void FusionServer::Impl::add_common_routes(http::Router& router, const service::Self& self) {
   service::CommonResources common;
   common.clock = clock;
   common.health = [this] { return with_outputs(health_of(status_now()), output_states()); };
@@ -213,12 +196,31 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
            recordings->metrics_text();
   };
   common.self = [self] { return self; };
-  common.configuration = [this] {
-    const std::scoped_lock lock(mutex);
-    return configuration;
-  };
+  common.configuration = guarded([this] { return configuration; });
+  service::add_routes(router, common);
+}
+
+std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
+  auto router = std::make_shared<http::Router>();
+  make_resources();
+  lookout->add_routes(*router);
+  foxglove::add_route(*router, desk, config.at_start.title, serving.run);
+  recordings->add_routes(*router);
+  views->add_routes(*router);
+  frames->add_routes(*router);
+  sensors->add_routes(*router);
+  pictures->add_routes(*router);
+  rest::add_setup_routes(*router, serving, desk_of_sensors->control());
+  inertial->add_routes(*router);
+  props->add_routes(*router);
+  if (!config.at_start.evaluation.empty()) evaluation.emplace(serving.run, *router);
+  add_site_routes(*router);
+  registration->add_routes(*router);
+  const auto self = rest::self_of(config.at_start.title, !config.at_start.viewer_dir.empty(),
+                                  evaluation.has_value());
+  rest::add_description_routes(*router, serving, self, viewer_folder(config.at_start.viewer_dir));
   rest::add_output_routes(*router, serving, [this] { return output_states(); });
-  service::add_routes(*router, common);
+  add_common_routes(*router, self);
   return router;
 }
 
@@ -239,11 +241,7 @@ void FusionServer::Impl::take_status(const Status& next) {
 LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
   LoopOptions options;
   options.core = core_config(in_force());
-  // Sequences grow across restarts (no output is faster than 1 kHz): no cache takes an old frame.
-  options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
-  // Ids of sessions, too: no session is shorter than a second, so no client follows an old one.
-  options.core.first_session = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000'000);
-  options.core.first_person = first_person(store);
+  count_on(options.core, clock->now(), store);
   options.registration = std::move(initial.registration);
   options.store_damage = std::move(initial.damage);
   options.store = store;
@@ -267,11 +265,7 @@ LoopOptions FusionServer::Impl::loop_options(InitialRegistration initial) {
 
 /// The settings, in which the sensors are those that are followed: what operators changed counts.
 FusionSettings FusionServer::Impl::in_force() const {
-  FusionSettings settings;
-  {
-    const std::scoped_lock lock(mutex);
-    settings = config;
-  }
+  FusionSettings settings = guarded([this] { return config; })();
   settings.live.sensors = desk_of_sensors->followed(settings.live.sensors);
   return settings;
 }

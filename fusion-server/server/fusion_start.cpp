@@ -29,11 +29,29 @@ std::vector<SensorId> ids_of(const std::vector<client::FollowedService>& sensors
   return ids;
 }
 
-std::uint64_t first_person(const RegistrationStore& store) {
+void count_on(core::CoreConfig& config, Timestamp now, const RegistrationStore& store) {
+  // No output is faster than 1 kHz, so that no cache takes an old frame; no session is shorter than
+  // a second, so that no client follows an old one.
+  config.first_sequence = static_cast<std::uint64_t>(to_unix_ns(now) / 1'000'000);
+  config.first_session = static_cast<std::uint64_t>(to_unix_ns(now) / 1'000'000'000);
   const auto next = store.load_next_person();
-  if (next) return *next;
-  log::error("ids of people begin anew", {{"reason", to_string(next.error())}});
-  return 1;
+  config.first_person = next ? *next : 1;
+  if (!next) log::error("ids of people begin anew", {{"reason", to_string(next.error())}});
+}
+
+service::RecordingViewsOptions views_options(service::Recordings& recordings,
+                                             const service::RecordingConfig& config,
+                                             const std::string& run) {
+  service::RecordingViewsOptions options;
+  options.files_of = [&recordings](const std::string& name) { return recordings.files_of(name); };
+  options.folder = config.folder;
+  options.mark_running = [&recordings](auto& name, auto& text) {
+    return recordings.mark(name, text);
+  };
+  options.min_free_bytes = config.limits.min_free_bytes;
+  options.made = [&recordings](const record::RecordingReport& made) { recordings.adopt(made); };
+  options.run = run;
+  return options;
 }
 
 rest::RegistrationControl registration_control(std::function<void(Command)> ask) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "common/service/recording_views.h"
 #include "fusion-server/core/core_config.h"
 #include "fusion-server/rest/registration_resources.h"
 #include "fusion-server/server/fusion_settings.h"
@@ -17,8 +18,13 @@ namespace chorus::server {
 
 [[nodiscard]] std::vector<SensorId> ids_of(const std::vector<client::FollowedService>& sensors);
 
-/// The lowest id that a person may get; 1, with an error in the log, if what is stored is damaged.
-[[nodiscard]] std::uint64_t first_person(const RegistrationStore& store);
+/// Ids, sequences and sessions that are new after a restart.
+void count_on(core::CoreConfig& config, Timestamp now, const RegistrationStore& store);
+
+/// Looking at the recordings, the one that runs included.
+[[nodiscard]] service::RecordingViewsOptions views_options(service::Recordings& recordings,
+                                                           const service::RecordingConfig& config,
+                                                           const std::string& run);
 
 /// What the routes of the registration ask of the pipeline; `ask` must only post the command.  Its
 /// defaults are set elsewhere.

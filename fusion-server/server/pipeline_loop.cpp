@@ -277,16 +277,10 @@ void PipelineLoop::take_solutions() {
   }
 }
 
-SensorStatus PipelineLoop::status_of(const client::FollowReport& report, Timestamp now) const {
-  SensorStatus status;
-  status.id = report.service.id;
-  status.url = report.service.url;
+/// What following the sensor tells: its counts, its clock, and what became of its frames.
+void PipelineLoop::add_following(const client::FollowReport& report, Timestamp now,
+                                 SensorStatus& status) const {
   const core::SensorMemory& memory = core_.memory_of(report.service.id);
-  const auto& walked = memory.clock.walked();
-  if (report.newest) status.age = now - *report.newest - memory.clock.added();
-  const bool silent =
-      report.state == client::SensorState::Live && status.age && *status.age > kStale;
-  status.state = client::name_of(silent ? client::SensorState::Lost : report.state);
   status.last_error = report.last_error;
   if (status.last_error.empty()) status.last_error = memory.losses.complaint(now);
   status.streaming = report.streaming;
@@ -298,22 +292,35 @@ SensorStatus PipelineLoop::status_of(const client::FollowReport& report, Timesta
   status.fates.early += report.early;
   status.fates.stale += report.stale;
   status.refused = refused(status.fates);
-  const bool lost = silent || report.state == client::SensorState::Lost;
-  const core::Share share = lost ? core::Share{} : memory.share;
-  status.share = share.in_time;
-  status.share_afterwards = share.afterwards;
-  status.awaited = share.awaited;
   if (report.clock) {
     status.clock_offset = report.clock->ours_minus_theirs;
     status.clock_uncertainty = report.clock->uncertainty;
     status.clock_corrected = correction(report.clock) != Duration{0};
   }
-  if (status.last_error.empty() && silent) status.last_error = stale(status);
+  const auto& walked = memory.clock.walked();
   if (walked && walked->added != Duration{0}) {
     status.walked_offset = walked->added;
     status.walked_sigma = walked->sigma;
     status.guessed_from_age = core_.registration().clocks.size() == 1;
   }
+}
+
+SensorStatus PipelineLoop::status_of(const client::FollowReport& report, Timestamp now) const {
+  SensorStatus status;
+  status.id = report.service.id;
+  status.url = report.service.url;
+  const core::SensorMemory& memory = core_.memory_of(report.service.id);
+  if (report.newest) status.age = now - *report.newest - memory.clock.added();
+  const bool silent =
+      report.state == client::SensorState::Live && status.age && *status.age > kStale;
+  status.state = client::name_of(silent ? client::SensorState::Lost : report.state);
+  add_following(report, now, status);
+  if (status.last_error.empty() && silent) status.last_error = stale(status);
+  const bool lost = silent || report.state == client::SensorState::Lost;
+  const core::Share share = lost ? core::Share{} : memory.share;
+  status.share = share.in_time;
+  status.share_afterwards = share.afterwards;
+  status.awaited = share.awaited;
   const auto latency = core_.registration().latencies.find(report.service.id);
   if (latency != core_.registration().latencies.end()) status.latency = latency->second;
   status.host = report.host;

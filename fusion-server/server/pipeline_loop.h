@@ -115,6 +115,7 @@ class PipelineLoop {
   void complain(const SensorStatus& sensor);
   void tell_of_worn(const std::vector<WornReport>& worn);
   [[nodiscard]] SensorStatus status_of(const client::FollowReport& report, Timestamp now) const;
+  void add_following(const client::FollowReport& report, Timestamp now, SensorStatus& status) const;
 
   LoopOptions options_;
   core::FusionCore core_;

@@ -70,6 +70,9 @@ ASIO_DOORS = {"common/net/asio.h", "common/net/asio_local.h", "common/http/beast
 LINKED_DATA = re.compile(r"/ns/ldp|openapi|context\.jsonld|</shapes>|Chorus-Clock")
 
 MAX_LINES = 400
+MAX_FUNCTION_LINES = 40
+FUNCTION_HEAD = re.compile(r"^[A-Za-z\[].*")
+NO_FUNCTION = re.compile(r"^(namespace|extern|using|#)|\b(struct|class|enum|union|concept)\b|[^=!<>]=[^=]|R\"")
 SOURCE_ENDINGS = {".h", ".cpp", ".py", ".mjs", ".js", ".sh"}
 LIBRARY = re.compile(r"(?:chorus_library\(NAME\s+|target_link_libraries\(chorus_)(\w+)([^)]*)\)")
 LINKED = re.compile(r"chorus::(\w+)")
@@ -148,8 +151,30 @@ def form_violations(file, text):
     lines = text.count("\n")
     if lines > MAX_LINES:
         yield Violation(file, f"has {lines} lines; at most {MAX_LINES}")
+    yield from long_functions(file, text)
     if BANNED_NAMES.search(file.rsplit("/", 1)[-1]):
         yield Violation(file, "its name says nothing (data, info, manager, helper, util)")
+
+
+def long_functions(file, text):
+    """Functions of namespaces that are too long: from the first line of their head to the closing brace, as clang-format sets them."""
+    if not file.endswith((".h", ".cpp")) or file.startswith("tests/"):
+        return
+    head, start = [], None
+    for number, line in enumerate(text.split("\n"), 1):
+        code = line.split("//")[0].rstrip()
+        if start is not None:
+            if code.startswith("}"):
+                if number - start + 1 > MAX_FUNCTION_LINES:
+                    yield Violation(file, f"line {start} begins a function of {number - start + 1} lines; at most {MAX_FUNCTION_LINES}")
+                head, start = [], None
+        elif head or FUNCTION_HEAD.match(code):
+            head.append(code)
+            signature = " ".join(head)
+            if code.endswith("{") and "(" in signature and not NO_FUNCTION.search(signature):
+                start = number - len(head) + 1
+            elif not code or code.endswith((";", "{", "}")):
+                head = []
 
 
 def linked_rooms(root):

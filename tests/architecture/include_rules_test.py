@@ -126,6 +126,8 @@ class BrokenRules(unittest.TestCase):
 
     def test_form(self):
         self.assert_caught("common/base/long.cpp", "\n" * 401, "401 lines")
+        self.assert_caught("common/base/long.cpp", "int f(\n    int x) {\n" + "  x += 1;\n" * 38 + "}\n", "function of 41 lines")
+        self.assertEqual(messages_for({"common/base/short.cpp": "int f(\n    int x) {\n" + "  x += 1;\n" * 37 + "}\n"}), [])
         self.assert_caught("common/base/string_utils.cpp", "", "says nothing")
         self.assert_caught("common/base/guard.h", "int x;\n", "#pragma once")
 

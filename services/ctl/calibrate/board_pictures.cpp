@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/calibration/board_finder.h"
-#include "services/ctl/evaluate/photo_files.h"
+#include "services/ctl/line/photo_files.h"
 #include "services/sensor/device/camera/video.h"
 
 namespace chorus::ctl {

@@ -251,28 +251,20 @@ Result<int> run_characterise(const CharacteriseArguments& arguments) {
   return kExitOk;
 }
 
-}  // namespace
-
-Run add_characterise(CLI::App& options) {
-  const auto arguments = std::make_shared<CharacteriseArguments>();
+/// What was measured beside the recordings.
+void add_measured_options(CLI::App& options, CharacteriseArguments& arguments) {
   options
-      .add_option("recordings", arguments->inputs,
-                  "Folders or .mcap files of one person who stands and turns; of several sensors "
-                  "also of a walk")
-      ->required();
-  options.add_option("--sensor", arguments->sensor, "Only this sensor of the recordings");
-  options
-      .add_option("--distance", arguments->distance,
+      .add_option("--distance", arguments.distance,
                   "Measured along the floor from below the sensor to the mark on which the person "
                   "turns [m]: says how much too near joints are")
       ->check(number_range(0.3, 20.0));
   options
-      .add_option("--distance-sigma", arguments->distance_sigma,
+      .add_option("--distance-sigma", arguments.distance_sigma,
                   "How well that was measured, as a standard deviation [m]")
       ->check(number_range(0.0005, 0.5))
       ->capture_default_str();
   options
-      .add_option("--turn", arguments->turns,
+      .add_option("--turn", arguments.turns,
                   "When one whole, even turn began and ended, in seconds from the first frame, as "
                   "in 4,28; may be repeated. Without it the shoulders are followed")
       ->check(CLI::Validator(
@@ -283,6 +275,19 @@ Run add_characterise(CLI::App& options) {
           "FROM,TO"))
       ->take_all()
       ->allow_extra_args(false);
+}
+
+}  // namespace
+
+Run add_characterise(CLI::App& options) {
+  const auto arguments = std::make_shared<CharacteriseArguments>();
+  options
+      .add_option("recordings", arguments->inputs,
+                  "Folders or .mcap files of one person who stands and turns; of several sensors "
+                  "also of a walk")
+      ->required();
+  options.add_option("--sensor", arguments->sensor, "Only this sensor of the recordings");
+  add_measured_options(options, *arguments);
   options.add_option("--out", arguments->out,
                      "Folder to write: report.txt, report.json, fusion-profile.json, "
                      "sensor-profile.json");

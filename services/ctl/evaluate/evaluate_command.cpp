@@ -273,6 +273,26 @@ void add_reference_options(CLI::App& options, EvaluateArguments& arguments) {
       ->needs(reference);
 }
 
+/// By which rules limbs are judged.
+void add_judging_options(CLI::App& options, EvaluateArguments& arguments) {
+  options.add_option("--tau", arguments.tau_deg, "Threshold [deg]")
+      ->check(number_range(1.0, 180.0))
+      ->capture_default_str();
+  options
+      .add_option("--most", arguments.most_percent, "Time in error that passes, of every limb [%]")
+      ->check(number_range(0.0, 100.0))
+      ->capture_default_str();
+  options.add_flag("--stated", arguments.stated,
+                   "Judge the orientations that the tracker states, not its joints");
+  options.add_flag("--same-clock", arguments.same_clock,
+                   "Tracker and sensors were recorded by one clock: no shift is looked for, which "
+                   "needs less movement");
+  options.add_flag(
+      "--from-start", arguments.from_start,
+      "Judge the part that calibrates, too; limbs that hardly move in it are calibrated "
+      "from more of the take");
+}
+
 }  // namespace
 
 Run add_evaluate(CLI::App& options) {
@@ -303,22 +323,7 @@ Run add_evaluate(CLI::App& options) {
   options.add_option(
       "--person", arguments->person,
       "Who wears the sensors, of several people; else it is found from the movement");
-  options.add_option("--tau", arguments->tau_deg, "Threshold [deg]")
-      ->check(number_range(1.0, 180.0))
-      ->capture_default_str();
-  options
-      .add_option("--most", arguments->most_percent, "Time in error that passes, of every limb [%]")
-      ->check(number_range(0.0, 100.0))
-      ->capture_default_str();
-  options.add_flag("--stated", arguments->stated,
-                   "Judge the orientations that the tracker states, not its joints");
-  options.add_flag("--same-clock", arguments->same_clock,
-                   "Tracker and sensors were recorded by one clock: no shift is looked for, which "
-                   "needs less movement");
-  options.add_flag(
-      "--from-start", arguments->from_start,
-      "Judge the part that calibrates, too; limbs that hardly move in it are calibrated "
-      "from more of the take");
+  add_judging_options(options, *arguments);
   options.add_option("--out", arguments->out, "Folder of the report")->capture_default_str();
   options.add_flag("--json", arguments->json, "Print the report as JSON");
   return [arguments] { return run_evaluate(*arguments); };

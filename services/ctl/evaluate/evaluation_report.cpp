@@ -222,6 +222,17 @@ double error_percent(const JudgedLimb& limb) {
   return limb.errors.empty() ? 0.0 : 100.0 * inside_count / static_cast<double>(limb.errors.size());
 }
 
+static std::string verdict_of(const evaluation::Judgement& found, const EvaluationInputs& inputs) {
+  std::string bad;
+  for (const JudgedLimb& limb : found.limbs)
+    if (error_percent(limb) > inputs.most_percent)
+      bad += (bad.empty() ? "" : ", ") + std::string(words_for(limb.limb));
+  std::string out = bad.empty() ? "No limb is in error for longer than allowed."
+                                : "In error for too long: " + bad + ".";
+  if (inputs.reference) out += " " + reference_verdict(*inputs.reference);
+  return out;
+}
+
 report::Report evaluation_report(const evaluation::Judgement& found,
                                  const EvaluationInputs& inputs) {
   report::Report out;
@@ -255,13 +266,7 @@ report::Report evaluation_report(const evaluation::Judgement& found,
   out.sections.push_back(std::move(rates));
   if (!found.refused.empty()) out.sections.push_back(refusals(found));
   out.judgement = report::worst_of(out.sections);
-  std::string bad;
-  for (const JudgedLimb& limb : found.limbs)
-    if (error_percent(limb) > inputs.most_percent)
-      bad += (bad.empty() ? "" : ", ") + std::string(words_for(limb.limb));
-  out.verdict = bad.empty() ? "No limb is in error for longer than allowed."
-                            : "In error for too long: " + bad + ".";
-  if (inputs.reference) out.verdict += " " + reference_verdict(*inputs.reference);
+  out.verdict = verdict_of(found, inputs);
   return out;
 }
 

@@ -1,4 +1,4 @@
-#include "services/ctl/evaluate/photo_files.h"
+#include "services/ctl/line/photo_files.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "services/ctl/evaluate/position_inputs.h"
+#include "services/ctl/position/position_inputs.h"
 
 #include <memory>
 #include <optional>

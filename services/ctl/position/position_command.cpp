@@ -18,12 +18,12 @@
 #include "common/report/report_files.h"
 #include "common/suit/suit_file.h"
 #include "common/suit/walk.h"
-#include "services/ctl/evaluate/position_inputs.h"
-#include "services/ctl/evaluate/position_report.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
 #include "services/ctl/line/text_file.h"
+#include "services/ctl/position/position_inputs.h"
+#include "services/ctl/position/position_report.h"
 
 namespace chorus::ctl {
 namespace {
@@ -213,72 +213,94 @@ Result<int> run_position(PositionArguments arguments) {
   return kExitOk;
 }
 
-}  // namespace
-
-Run add_position(CLI::App& options) {
-  const auto arguments = std::make_shared<PositionArguments>();
+/// What the results are made from, and where they go.
+void add_inputs(CLI::App& options, PositionArguments& into) {
   options
       .add_option(
-          "input", arguments->inputs,
+          "input", into.inputs,
           "Videos (or recordings of cameras, .mcap), and the suit's take (.bvh, .htr, .mvnx)")
       ->required();
   options
-      .add_option("--place", arguments->places,
+      .add_option("--place", into.places,
                   "Where the cameras stand, as `chorus calibrate place` writes it")
       ->required();
-  options.add_option("--intrinsics", arguments->lenses,
+  options.add_option("--intrinsics", into.lenses,
                      "The lens: one file for all videos, or one for each");
-  options.add_option("--out", arguments->out, "Folder for the results")->required();
+  options.add_option("--out", into.out, "Folder for the results")->required();
+}
+
+void add_person(CLI::App& options, PositionArguments& into) {
   CLI::Option* const stature =
-      options.add_option("--stature", arguments->stature, "The person's height [m]")
+      options.add_option("--stature", into.stature, "The person's height [m]")
           ->check(number_range(0.5, 2.5));
   options
-      .add_option("--size-from", arguments->size_from,
+      .add_option("--size-from", into.size_from,
                   "What tells the height: a depth camera's recording (.mcap), or a recording or "
                   "video of the person standing before a placed camera")
       ->excludes(stature);
-  options.add_flag("--recalibrate", arguments->recalibrate,
+  options.add_option("--girth", into.girth, "Of the person, relative to a usual one")
+      ->check(number_range(0.5, 2.0))
+      ->capture_default_str();
+  options.add_flag("--recalibrate", into.recalibrate,
                    "Find bones and constant turns of the suit's segments by the cameras, from a "
                    "walk of a minute");
+}
+
+void add_method(CLI::App& options, PositionArguments& into) {
   const auto methods = positioning::method_names();
   options
-      .add_option("--method", arguments->method,
+      .add_option("--method", into.method,
                   "both: landmarks and outline; silhouettes: Madaras et al.; suit: steps alone")
       ->check(CLI::IsMember(std::vector<std::string>(methods.begin(), methods.end())))
       ->capture_default_str();
   options
       .add_option(
-          "--background", arguments->background,
+          "--background", into.background,
           "What tells the outline: a network's mask, or what differs from the room's median "
           "or mixtures; auto: the mask if there is one, else the median")
       ->check(CLI::IsMember({"auto", "network", "median", "mixtures"}))
       ->capture_default_str();
   options.add_option(
-      "--empty-room", arguments->empty_room,
+      "--empty-room", into.empty_room,
       "A picture or video of the room without the person; default: the video itself");
-  options.add_option("--girth", arguments->girth, "Of the person, relative to a usual one")
-      ->check(number_range(0.5, 2.0))
+  options.add_option("--model", into.model, "Of the runner that looks at the videos")
       ->capture_default_str();
-  options.add_option("--start", arguments->start,
+}
+
+struct Stated {
+  CLI::Option* heading;
+  CLI::Option* offset;
+};
+
+/// Where and when the suit begins, which is found unless it is stated.
+Stated add_beginning(CLI::App& options, PositionArguments& into) {
+  options.add_option("--start", into.start,
                      "Where the person is at first: x,z [m]; default: found (suit: the origin)");
-  CLI::Option* const heading =
-      options.add_option("--heading", arguments->heading_deg,
-                         "Of the suit's world in the cameras' [deg]; default: found");
-  options.add_option("--model", arguments->model, "Of the runner that looks at the videos")
-      ->capture_default_str();
+  CLI::Option* const heading = options.add_option(
+      "--heading", into.heading_deg, "Of the suit's world in the cameras' [deg]; default: found");
   CLI::Option* const offset =
-      options.add_option("--clock-offset", arguments->offset_s,
+      options.add_option("--clock-offset", into.offset_s,
                          "Added to the suit's time to get the first video's [s]; default: found");
-  options
-      .add_option("--search", arguments->search_s, "Largest offset of the clocks that is tried [s]")
+  options.add_option("--search", into.search_s, "Largest offset of the clocks that is tried [s]")
       ->check(number_range(0.1, 60.0))
       ->capture_default_str();
-  options.add_option("--rate", arguments->rate_hz, "Of the result [Hz]")
+  options.add_option("--rate", into.rate_hz, "Of the result [Hz]")
       ->check(number_range(5.0, 120.0))
       ->capture_default_str();
-  return [arguments, offset, heading] {
-    arguments->offset_stated = offset->count() > 0;
-    arguments->heading_stated = heading->count() > 0;
+  return {heading, offset};
+}
+
+}  // namespace
+
+Run add_position(CLI::App& options) {
+  const auto arguments = std::make_shared<PositionArguments>();
+  add_inputs(options, *arguments);
+  add_person(options, *arguments);
+  add_method(options, *arguments);
+  const Stated stated = add_beginning(options, *arguments);
+  return [arguments, stated] {
+    arguments->offset_stated = stated.offset->count() > 0;
+    arguments->heading_stated = stated.heading->count() > 0;
     return run_position(*arguments);
   };
 }

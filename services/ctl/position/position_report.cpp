@@ -1,4 +1,4 @@
-#include "services/ctl/evaluate/position_report.h"
+#include "services/ctl/position/position_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +50,18 @@ Judgement judged(double value, double good, double doubtful) {
   return value <= good ? Judgement::Good : Judgement::Doubtful;
 }
 
+Figure drift_figure(const PositionReport& take) {
+  return {"drift",
+          "the suit's steps alone end elsewhere by",
+          to_mm(drift_of(take)),
+          "mm",
+          {},
+          "what the cameras have corrected",
+          {},
+          {},
+          Judgement::NotJudged};
+}
+
 std::vector<Figure> place_figures(const PositionReport& take) {
   const double answered = 100.0 * static_cast<double>(take.result.placed.size()) /
                           static_cast<double>(take.result.instants);
@@ -82,15 +94,7 @@ std::vector<Figure> place_figures(const PositionReport& take) {
            "at most 100 mm",
            "a second camera quarters it",
            judged(sigma, 100.0, 300.0)},
-          {"drift",
-           "the suit's steps alone end elsewhere by",
-           to_mm(drift_of(take)),
-           "mm",
-           {},
-           "what the cameras have corrected",
-           {},
-           {},
-           Judgement::NotJudged}};
+          drift_figure(take)};
 }
 
 /// The person's height that makes all cameras' depths right.  Two cameras or more judge together.
@@ -117,28 +121,33 @@ std::optional<Figure> stature_figure(const PositionReport& take) {
                 judged(std::abs(error), std::max(0.02, 2.0 * sigma), 0.1)};
 }
 
+Figure clock_figure(const positioning::ClockFit& clock) {
+  return {"clock",
+          "clock of the suit against the cameras'",
+          1e3 * clock.offset,
+          "ms",
+          clock.found ? fmt::format("give or take {:.0f} ms", 1e3 * clock.sigma)
+                      : std::string("not found: nothing moves enough; 0 is used"),
+          "added to the suit's time",
+          {},
+          "wave, or state --clock-offset",
+          clock.found ? Judgement::Good : Judgement::Doubtful};
+}
+
+Figure heading_figure(const positioning::TakeResult& result) {
+  return {"heading",
+          "heading of the suit in the world",
+          to_deg(result.heading),
+          "deg",
+          fmt::format("give or take {:.1f} deg", to_deg(result.heading_sigma)),
+          "at the end; it drifts",
+          {},
+          {},
+          Judgement::NotJudged};
+}
+
 std::vector<Figure> found_figures(const PositionReport& take) {
-  const positioning::ClockFit& clock = take.result.clock;
-  std::vector<Figure> out;
-  out.push_back({"clock",
-                 "clock of the suit against the cameras'",
-                 1e3 * clock.offset,
-                 "ms",
-                 clock.found ? fmt::format("give or take {:.0f} ms", 1e3 * clock.sigma)
-                             : std::string("not found: nothing moves enough; 0 is used"),
-                 "added to the suit's time",
-                 {},
-                 "wave, or state --clock-offset",
-                 clock.found ? Judgement::Good : Judgement::Doubtful});
-  out.push_back({"heading",
-                 "heading of the suit in the world",
-                 to_deg(take.result.heading),
-                 "deg",
-                 fmt::format("give or take {:.1f} deg", to_deg(take.result.heading_sigma)),
-                 "at the end; it drifts",
-                 {},
-                 {},
-                 Judgement::NotJudged});
+  std::vector<Figure> out{clock_figure(take.result.clock), heading_figure(take.result)};
   if (const auto stature = stature_figure(take)) out.push_back(*stature);
   for (std::size_t i = 0; i < take.result.depth.size(); ++i) {
     const auto& [error, sigma] = take.result.depth[i];
