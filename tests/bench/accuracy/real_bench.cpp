@@ -308,12 +308,9 @@ void add_notes(Report& report) {
       "elsewhere: measured outside this project: 104 mm the plain mean, 140 mm the best single "
       "camera");
   report.note(
-      "truth: linear triangulation of the same landmarks, good to a few centimetres; fusing along "
-      "the same rays comes near it by construction, so the last millimetres are agreement, not "
-      "accuracy");
-  report.note(
-      "joint_p90_mm: around the middle of the recording views seem to mix up left and right; truth "
-      "and fusion then differ by decimetres and neither is known to be right");
+      "truth: robust triangulation of the same landmarks, their sides chosen for all cameras "
+      "together, good to a few centimetres; fusing along the same rays comes near it by "
+      "construction, so the last millimetres are agreement, not accuracy");
   report.note("shape_median_mm: after the best rigid motion onto the truth");
   report.note(
       "published-rays-*: only the directions of the landmarks, no perspective-n-point; the first "

@@ -1,17 +1,18 @@
 // Four real cameras before one person (Pose2Sim's videos that ship with the tests), each alone and
-// from its pixels; the suit is the published triangulation without its root, every bone erring.
+// from its pixels; the suit is the person as the other three cameras show it, every bone erring.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 
-#include "common/base/median.h"
 #include "common/base/units.h"
+#include "common/body/bones.h"
 #include "common/importers/formats.h"
 #include "common/positioning/take.h"
 #include "services/ctl/calibrate/lens_file.h"
 #include "services/ctl/convert/video_sights.h"
 #include "services/sensor/device/camera/film.h"
+#include "tests/bench/camera/triangulation.h"
 #include "tests/bench/positioner/position_errors.h"
 #include "tests/bench/positioner/positioner_cases.h"
 #include "tests/bench/positioner/suit_stand_in.h"
@@ -69,11 +70,7 @@ constexpr std::array kPixelMethods{PixelMethod{"silhouettes", Method::Silhouette
 
 struct PixelTruth {
   std::vector<Eigen::Vector3d> roots;
-  /// Whether the triangulation of this instant is a person: where the network exchanges the sides
-  /// in one camera for long (cam02, between pictures 18 and 37), the triangulation lies between
-  /// both and has hips of half their width, and such a place judges nobody.
-  std::vector<bool> sound;
-  suit::SuitTake suit;
+  suit::SuitTake suit;  ///< Without the camera that is judged.
   double stature = 1.75;
 };
 
@@ -105,30 +102,61 @@ Result<PlaceScores> score(const PixelCamera& camera, const PixelTruth& truth,
     const auto i = static_cast<std::size_t>(std::lround(seconds(one.time) * kVideoRate));
     if (i < found.size()) found[i] = {one.online.position.place, one.online.position.covariance};
   }
-  std::vector<FoundPlace> judged;
-  std::vector<Eigen::Vector3d> roots;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!truth.sound[i]) continue;
-    judged.push_back(found[i]);
-    roots.push_back(truth.roots[i]);
+  return scores_of(found, truth.roots, take.world_from_sensor.translation());
+}
+
+using Bodies = std::vector<Skeleton<WorldSpace>>;
+
+/// The joint of the reference that a ray passes nearest to, of the joint itself and its other side:
+/// the network exchanges left and right, the reference does not.
+JointId nearer_side(const SeenAlong& ray, JointId id, const Skeleton<WorldSpace>& reference) {
+  const JointId other = mirror(id);
+  const auto off = [&](JointId joint) {
+    return ray.direction.cross(reference[joint].position - ray.eye).norm();
+  };
+  return off(other) < off(id) ? other : id;
+}
+
+/// The person as all cameras but one see it: robust triangulation of each instant.  A joint that
+/// they cannot place is where the reference has it.
+Bodies without(const SensorId& judged, const importers::ImportedSet& set, const Bodies& reference) {
+  Bodies out = reference;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    std::array<std::vector<SeenAlong>, kJointCount> seen;
+    for (const auto& recording : set.recordings) {
+      if (recording.sensor == judged || recording.frames[i].bodies.empty()) continue;
+      const Eigen::Isometry3d& place = set.world_from_sensor.at(recording.sensor);
+      const auto& rays = recording.frames[i].bodies.front().skeleton;
+      for (std::size_t k = 0; k < kJointCount; ++k) {
+        const auto id = static_cast<JointId>(k);
+        if (!rays[id].bears()) continue;
+        const SeenAlong ray{place.translation(), (place.linear() * rays[id].position).normalized()};
+        seen[static_cast<std::size_t>(nearer_side(ray, id, reference[i]))].push_back(ray);
+      }
+    }
+    for (std::size_t k = 0; k < kJointCount; ++k) {
+      if (const auto point = triangulated(seen[k])) out[i].joints[k].position = *point;
+    }
   }
-  return scores_of(judged, roots, take.world_from_sensor.translation());
-}
-
-double hip_width(const Skeleton<WorldSpace>& body) {
-  return (body[JointId::HipLeft].position - body[JointId::HipRight].position).norm();
-}
-
-/// Hips that are within 15 % of their usual width: bones do not change.
-std::vector<bool> sound_instants(const std::vector<Skeleton<WorldSpace>>& bodies) {
-  constexpr double kMostChange = 0.15;
-  std::vector<double> widths;
-  for (const Skeleton<WorldSpace>& body : bodies) widths.push_back(hip_width(body));
-  const double usual = median(widths);
-  std::vector<bool> out;
-  for (std::size_t i = 0; i < widths.size(); i += 2)
-    out.push_back(std::abs(widths[i] - usual) < kMostChange * usual);
   return out;
+}
+
+void add_methods(Report& report, const PixelCamera& camera, const PixelTruth& truth) {
+  double beside = kNoRatio;
+  for (const PixelMethod& method : kPixelMethods) {
+    const std::string name = "four-views/" + camera.take.sensor.str() + "/" + method.name;
+    const auto scores = score(camera, truth, method);
+    if (!scores) {
+      report.note(name + ": " + to_string(scores.error()));
+      continue;
+    }
+    if (beside != beside) beside = scores->rms;
+    report.row(name, "online_rms_mm", 1e3 * scores->rms, "mm", "silhouettes", scores->rms / beside);
+    report.row(name, "online_p95_mm", 1e3 * scores->p95, "mm");
+    report.row(name, "answered_percent", 100.0 * scores->answered, "%");
+    report.row(name, "nees_along", scores->nees_along, "1");
+    report.row(name, "nees_across", scores->nees_across, "1");
+  }
 }
 
 }  // namespace
@@ -144,35 +172,18 @@ Result<void> four_views_pixels(Report& report) {
       importers::import_files(importers::FileFormat::Pose2Sim, {kTruthFolder}, options);
   if (!set) return pass(set);
   PixelTruth truth;
-  std::vector<Skeleton<WorldSpace>> bodies;
+  Bodies bodies;
   for (std::size_t i = 0; i < set->truth.size(); ++i) {
     bodies.push_back(set->truth[i].skeleton);
     if (i % 2 == 0) truth.roots.push_back(bodies.back()[JointId::SpineBase].position);
   }
-  truth.sound = sound_instants(bodies);
-  const auto sound = std::ranges::count(truth.sound, true);
-  report.row("four-views", "judged_pictures", static_cast<double>(sound), "1");
-  truth.suit = suit_of(bodies, kTruthRate, {});
-  if (const double own = suit::stature_of(truth.suit.poses.front()); own > 0.0) truth.stature = own;
   for (const auto& [id, place] : set->world_from_sensor) {
     const auto camera = looked_through(id, place);
     if (!camera) return pass(camera);
-    double beside = kNoRatio;
-    for (const PixelMethod& method : kPixelMethods) {
-      const std::string name = "four-views/" + id.str() + "/" + method.name;
-      const auto scores = score(*camera, truth, method);
-      if (!scores) {
-        report.note(name + ": " + to_string(scores.error()));
-        continue;
-      }
-      if (beside != beside) beside = scores->rms;
-      report.row(name, "online_rms_mm", 1e3 * scores->rms, "mm", "silhouettes",
-                 scores->rms / beside);
-      report.row(name, "online_p95_mm", 1e3 * scores->p95, "mm");
-      report.row(name, "answered_percent", 100.0 * scores->answered, "%");
-      report.row(name, "nees_along", scores->nees_along, "1");
-      report.row(name, "nees_across", scores->nees_across, "1");
-    }
+    truth.suit = suit_of(without(id, *set, bodies), kTruthRate, {});
+    const double own = suit::stature_of(truth.suit.poses.front());
+    if (own > 0.0) truth.stature = own;
+    add_methods(report, *camera, truth);
   }
   return {};
 }

@@ -1,7 +1,9 @@
 #include "common/importers/camera_views.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -109,6 +111,25 @@ TEST(CameraViews, AsRaysPointAtTheTriangulation) {
       }
     }
     EXPECT_LT(median(across), 0.04) << view.sensor.str();
+  }
+}
+
+/// A triangulation in which one camera exchanges left and right lies between both sides: hips of
+/// half their width, thighs that change.
+TEST(CameraViews, ComeWithATriangulationWhoseBonesDoNotChange) {
+  const auto truth = read_triangulation(kFolder / "triangulated.json");
+  ASSERT_THAT(truth, IsOk());
+  constexpr std::array kBones{std::pair{JointId::HipLeft, JointId::HipRight},
+                              std::pair{JointId::ShoulderLeft, JointId::ShoulderRight},
+                              std::pair{JointId::HipLeft, JointId::KneeLeft},
+                              std::pair{JointId::HipRight, JointId::KneeRight}};
+  for (const auto& [from, to] : kBones) {
+    std::vector<double> lengths;
+    for (const TruthFrame& frame : *truth)
+      lengths.push_back((frame.skeleton[from].position - frame.skeleton[to].position).norm());
+    const double usual = median(lengths);
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+      EXPECT_NEAR(lengths[i], usual, 0.13 * usual) << name_of(from) << " frame " << i;
   }
 }
 
