@@ -2,6 +2,7 @@
 
 All deliver as many bytes: those of a frame of ours.
 """
+import json
 import math
 import pathlib
 import selectors
@@ -221,3 +222,33 @@ def readers(bin_folder, quick):
     rows = [[f"us_per_delivery_{name}", cost_us, "us"] for name, (cost_us, _) in found.items()]
     rows += [[f"slowest_reader_{name}", hz, "Hz"] for name, (_, hz) in found.items()]
     return rows + [["ours_over_best", found["ours"][0] / best, ""]], notes
+
+
+def streams(bin_folder, quick):
+    """Event streams of the lean frame, as many as one core carries; the readers are a program without an interpreter."""
+    rows, notes = [], []
+    for count in (200, 500) if quick else (200, 1000, 3000, 5000):
+        with RealHall(bin_folder, 1, 3) as hall:
+            hall.start_cell(0, hall.start_sensors(0), in_site=False, more=("http.max_connections=6000",))
+            wait_for("somebody is seen", lambda: get(hall.urls["a"] + "frame")["bodies"])
+            pid, port, seconds = hall.fusion_pid("a"), hall.urls["a"].rsplit(":", 1)[1].rstrip("/"), 5 if quick else 20
+            begin = cpu_seconds(pid)
+            time.sleep(seconds)
+            idle = cpu_seconds(pid) - begin  # it also fuses
+            crowd = subprocess.Popen([hall.bin / "chorus-stream-crowd", port, "/frame?form=pose", str(count), str(seconds)], stdout=subprocess.PIPE, text=True)
+            try:
+                crowd.stdout.readline()  # all are connected, and have what came at first
+                begin, load = cpu_seconds(pid), cpu_seconds(crowd.pid)
+                said = json.loads(crowd.stdout.readline())
+                used, load = cpu_seconds(pid) - begin, cpu_seconds(crowd.pid) - load
+            finally:
+                crowd.kill()
+                crowd.wait()
+        case = f"{count}_streams"
+        rows += [[f"{case}_us_per_delivery", 1e6 * (used - idle) / max(1, said["deliveries"]), "us"],
+                 [f"{case}_server_core", 100 * used / seconds, "%"], [f"{case}_readers_core", 100 * load / seconds, "%"],
+                 [f"{case}_published", said["events"] / seconds, "Hz"], [f"{case}_slowest_reader", said["fewest"] / seconds, "Hz"],
+                 [f"{case}_behind_first_p50", said["late_p50_ms"], "ms"], [f"{case}_behind_first_p99", said["late_p99_ms"], "ms"],
+                 [f"{case}_lost", said["lost"], ""]]
+        notes.append(f"{count} streams: {said['bytes'] // max(1, said['deliveries'])} bytes each delivery")
+    return rows, notes + ["three simulated sensors run on the same cores"]

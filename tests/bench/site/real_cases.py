@@ -1,4 +1,4 @@
-"""The cases of chorus-bench site that need real processes: line-4x4, lost, faults, readers.  Usage: real_cases.py CASE BIN full|quick
+"""The cases of chorus-bench site that need real processes: line-4x4, lost, faults, readers, streams.  Usage: real_cases.py CASE BIN full|quick
 
 Prints one line of JSON: {"rows": [[metric, value, unit], ...], "notes": [...]}.
 """
@@ -11,7 +11,7 @@ import sys
 import time
 
 from fault_cases import faults, watch_ids, whole_again
-from reader_crowds import readers
+from reader_crowds import readers, streams
 from real_hall import LAP_S, NatsReader, RealHall, Stream, cpu_seconds, get, percentile, wait_for
 
 
@@ -167,7 +167,7 @@ def killed_cell(hall, ports):
     return kept
 
 
-CASES = {"line-4x4": line, "lost": lost, "faults": faults, "readers": readers}
+CASES = {"line-4x4": line, "lost": lost, "faults": faults, "readers": readers, "streams": streams}
 
 
 def main():

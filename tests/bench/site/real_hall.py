@@ -74,7 +74,7 @@ class RealHall(NatsHall):
         (self.place / f"{name}.registration.json").write_text(json.dumps({"sensors": registration}))
         return ports
 
-    def start_cell(self, index, sensor_ports, in_site=True, server_port=None):
+    def start_cell(self, index, sensor_ports, in_site=True, server_port=None, more=()):
         name, port = self.names[index], free_port()
         words = demo_hall.fusion_arguments(name, port, sensor_ports, self.place)
         if in_site:
@@ -84,6 +84,7 @@ class RealHall(NatsHall):
             config = self.place / f"{name}.alone.json"
             config.write_text("{}\n")
             words = [each for pair in zip(words[::2], words[1::2]) if not pair[1].startswith("site.") for each in pair]
+        words += [each for setting in more for each in ("--set", setting)]
         self.urls[name] = f"http://127.0.0.1:{port}/"
         self.spawn(f"fusion-{name}", self.bin / "chorus-fusion", "--config", config, *words)
 

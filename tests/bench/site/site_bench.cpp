@@ -28,6 +28,7 @@ constexpr const char* kLine = "line-4x4";
 constexpr const char* kLost = "lost";
 constexpr const char* kFaults = "faults";
 constexpr const char* kReaders = "readers";
+constexpr const char* kStreams = "streams";
 
 constexpr std::array kSiteCases{SiteCase{"hall-8x8", always<run_hall_case>},
                                 SiteCase{"hand-over", always<run_hand_over_case>},
@@ -35,7 +36,8 @@ constexpr std::array kSiteCases{SiteCase{"hall-8x8", always<run_hall_case>},
                                 SiteCase{kLine, real<&kLine>},
                                 SiteCase{kLost, real<&kLost>},
                                 SiteCase{kFaults, real<&kFaults>},
-                                SiteCase{kReaders, real<&kReaders>}};
+                                SiteCase{kReaders, real<&kReaders>},
+                                SiteCase{kStreams, real<&kStreams>}};
 
 }  // namespace
 
@@ -49,10 +51,8 @@ Result<void> run_site(Report& report) {
     if (const Result<void> done = each.run(report); !done) return done;
   }
   report.note(
-      "But for line-4x4, lost, faults and readers, simulated at the level of what cells publish: a "
-      "cell "
-      "never confuses two of its own people, "
-      "and loses nobody within its area.");
+      "But for line-4x4, lost, faults, readers and streams, simulated at the level of what cells "
+      "publish: a cell never confuses two of its own people, and loses nobody within its area.");
   return {};
 }
 

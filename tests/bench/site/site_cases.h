@@ -13,7 +13,7 @@ void run_hand_over_case(Report& report);
 /// Places and clocks of eight cells from one person who walks through all of them.
 [[nodiscard]] Result<void> run_places_case(Report& report);
 
-/// A case with real processes, by its name: `line-4x4`, `lost` or `readers`.
+/// A case with real processes, by its name: `line-4x4`, `lost`, `faults`, `readers` or `streams`.
 [[nodiscard]] Result<void> run_real_case(Report& report, const char* name);
 
 }  // namespace chorus::bench
