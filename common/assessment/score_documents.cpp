@@ -38,6 +38,7 @@ json zones_json(const MethodSummary& summary) {
     const auto& zone = summary.levels[l];
     zones.push_back({{"level", summary.method->levels[l].key},
                      {"share", rounded(zone.share)},
+                     {"shareAsked", {rounded(zone.least), rounded(zone.most)}},
                      {"share90", {rounded(zone.low), rounded(zone.high)}},
                      {"secondsPerMinute", rounded(60.0 * zone.share, 0.01)}});
   }

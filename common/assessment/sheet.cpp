@@ -55,6 +55,8 @@ class Sheet {
  private:
   std::string say(const Text& text) const { return report::escaped(german_ ? text.de : text.en); }
   std::string number(double value, int digits) const;
+  /// "12", or "12-40" where unknown inputs leave a range.
+  std::string from_to(double least, double most, int digits) const;
   std::string form(const SheetPerson& person, std::size_t method) const;
   std::string fields(const Method& method, const ergonomics::Observation& seen, Side side,
                      const ergonomics::Asked& asked) const;
@@ -167,6 +169,12 @@ std::string Sheet::form(const SheetPerson& person, std::size_t index) const {
   return html;
 }
 
+std::string Sheet::from_to(double least, double most, int digits) const {
+  const std::string low = number(least, digits);
+  const std::string high = number(most, digits);
+  return low == high ? low : low + "-" + high;
+}
+
 std::string Sheet::times(const MethodSummary& summary) const {
   std::string html = fmt::format(
       "<h3>{}</h3><table><tr><th></th><th class=\"number\">{}</th><th class=\"number\">{}"
@@ -177,8 +185,9 @@ std::string Sheet::times(const MethodSummary& summary) const {
     html += fmt::format(
         "<tr><td class=\"measured\">{0}</td><td class=\"number\">{1} % ({2}-{3} %)</td><td "
         "class=\"number\">{4}</td><td><input aria-label=\"{5}: {0}\" value=\"\"></td></tr>",
-        say(summary.method->levels[l].text), number(100 * zone.share, 0), number(100 * zone.low, 0),
-        number(100 * zone.high, 0), number(60 * zone.share, 1), say(word("correction")));
+        say(summary.method->levels[l].text), from_to(100 * zone.least, 100 * zone.most, 0),
+        number(100 * zone.low, 0), number(100 * zone.high, 0),
+        from_to(60 * zone.least, 60 * zone.most, 1), say(word("correction")));
   }
   return html + "</table>";
 }

@@ -58,7 +58,8 @@ Observation Observer::observe(const BodyAt& body) {
     return out;
   }
   if (now.singular.hips_steep || now.singular.trunk_level) out.reason = Unscored::Singular;
-  const posture::DrawnMeasures drawn = posture::drawn_measures(body.body);
+  const posture::DrawnMeasures drawn =
+      posture::drawn_measures(body.body, neutral_ ? posture::kLeftByStance : 1.0);
   out.doubtless = drawn.doubtless;
   const auto relative = [&](const Measures& measures) {
     return neutral_ ? posture::relative_to(*neutral_, measures) : measures;

@@ -26,30 +26,60 @@ double since(Timestamp start, Timestamp at) {
 
 std::size_t cell_of(int score) { return static_cast<std::size_t>(std::clamp(score, 0, kMaxScore)); }
 
+/// Sums over the instants of being in a level.
+struct Membership {
+  double nominal = 0.0;  ///< Of the body as it is.
+  double drawn = 0.0;    ///< The probability, from the drawn bodies.
+  double squares = 0.0;  ///< The variance of one instant's membership.
+
+  void add(bool in, double probability) {
+    nominal += in ? 1.0 : 0.0;
+    drawn += probability;
+    squares += probability * (1.0 - probability);
+  }
+};
+
+struct LevelSums {
+  double highest = 0.0;  ///< Instants at which the highest codes of unknown inputs lead here.
+  Membership least;      ///< Here, whatever the unknown inputs are.
+  Membership most;       ///< Here for some of them.
+};
+
 struct Collected {
-  std::vector<double> nominal, drawn, squares;  ///< Sums over the instants, by level.
+  std::vector<LevelSums> levels;
   std::vector<int> scores;
   std::array<std::vector<int>, 2> sides;
   double certain = 0.0;
 };
 
+/// Unknown inputs leave a score of `low` to `high`, so they leave the levels between these two.
+void add_levels(const Method& method, const DoubtfulScore& score, std::vector<LevelSums>& sums) {
+  const auto low = level_odds(method, score.low);
+  const auto high = level_odds(method, score.high);
+  const std::size_t from = level_of(method, score.score.low);
+  const std::size_t to = level_of(method, score.score.high);
+  double low_before = 0.0;
+  double high_before = 0.0;
+  for (std::size_t l = 0; l < sums.size(); ++l) {
+    const double low_after = 1.0 - low_before - low[l];
+    const double high_after = 1.0 - high_before - high[l];
+    sums[l].highest += l == to ? 1.0 : 0.0;
+    sums[l].least.add(from == l && to == l, std::clamp(1.0 - low_before - high_after, 0.0, 1.0));
+    sums[l].most.add(from <= l && l <= to, std::clamp(1.0 - low_after - high_before, 0.0, 1.0));
+    low_before += low[l];
+    high_before += high[l];
+  }
+}
+
 Collected collected(const ScoredPerson& person, const Method& method, std::size_t index,
                     const Slice& slice) {
   Collected sums;
-  const std::size_t levels = method.levels.size();
-  sums.nominal.assign(levels, 0.0);
-  sums.drawn.assign(levels, 0.0);
-  sums.squares.assign(levels, 0.0);
+  sums.levels.resize(method.levels.size());
   for (std::size_t i = slice.first; i < slice.last; ++i) {
     const DoubtfulScore& score = person.instants[i].scores[index];
     if (!score.known()) continue;
     sums.scores.push_back(score.score.high);
-    sums.nominal[level_of(method, score.score.high)] += 1.0;
-    const auto odds = level_odds(method, score.high);
-    for (std::size_t l = 0; l < levels; ++l) {
-      sums.drawn[l] += odds[l];
-      sums.squares[l] += odds[l] * (1.0 - odds[l]);
-    }
+    add_levels(method, score, sums.levels);
     sums.certain += score.high[cell_of(set_of(score.high, kNinety).from)] >= kNinety ? 1.0 : 0.0;
     for (std::size_t side = 0; side < 2 && method.sided; ++side)
       sums.sides[side].push_back(score.sides[side].high);
@@ -57,26 +87,32 @@ Collected collected(const ScoredPerson& person, const Method& method, std::size_
   return sums;
 }
 
-/// The drawn bodies err twice, as measured and as drawn, so their shares lie as far beyond those of
-/// the bodies as these lie beyond the truth.
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The 90 % interval of the share of time, of `n` instants that are `step` apart [s].  The drawn
+/// bodies err twice, as measured and as drawn, so their shares lie as far beyond those of the
+/// bodies as these lie beyond the truth.
+Interval interval_of(const Membership& sums, double n, double step) {
+  const double share = sums.nominal / n;
+  const double centre = 2.0 * share - sums.drawn / n;
+  const double doubt = sums.squares / n;
+  const double together = std::max(1.0, kErrorLasts / std::max(step, 1e-3));
+  const double variance = doubt * together / n + kLasting * doubt * doubt;
+  const double half = kSigmas * std::sqrt(variance) + 0.5 * std::abs(centre - share);
+  const double middle = 0.5 * (centre + share);
+  return {std::clamp(middle - half, 0.0, share), std::clamp(middle + half, share, 1.0)};
+}
+
 std::vector<ZoneTime> times_of(const Collected& sums, double step) {
-  std::vector<ZoneTime> zones;
+  std::vector<ZoneTime> zones(sums.levels.size());
   const double n = static_cast<double>(sums.scores.size());
-  for (std::size_t l = 0; l < sums.nominal.size(); ++l) {
-    ZoneTime zone;
-    if (n > 0.0) {
-      const double drawn = sums.drawn[l] / n;
-      zone.share = sums.nominal[l] / n;
-      const double centre = 2.0 * zone.share - drawn;
-      const double doubt = sums.squares[l] / n;  // variance of one instant's membership
-      const double together = std::max(1.0, kErrorLasts / std::max(step, 1e-3));
-      const double variance = doubt * together / n + kLasting * doubt * doubt;
-      const double half = kSigmas * std::sqrt(variance) + 0.5 * std::abs(centre - zone.share);
-      const double middle = 0.5 * (centre + zone.share);
-      zone.low = std::clamp(middle - half, 0.0, zone.share);
-      zone.high = std::clamp(middle + half, zone.share, 1.0);
-    }
-    zones.push_back(zone);
+  for (std::size_t l = 0; l < zones.size() && n > 0.0; ++l) {
+    const LevelSums& level = sums.levels[l];
+    zones[l] = {level.highest / n, level.least.nominal / n, level.most.nominal / n,
+                interval_of(level.least, n, step).low, interval_of(level.most, n, step).high};
   }
   return zones;
 }

@@ -13,8 +13,10 @@ namespace chorus::ergonomics {
 
 /// The share of the scored time in a level.
 struct ZoneTime {
-  double share = 0.0;
-  double low = 0.0;  ///< The 90 % interval.
+  double share = 0.0;  ///< With the highest code of each unknown input.
+  double least = 0.0;  ///< Of the time in which the level is this one, whatever unknown inputs are.
+  double most = 0.0;   ///< Of the time in which it may be this one.
+  double low = 0.0;    ///< The 90 % interval: from that of `least` to that of `most`.
   double high = 0.0;
 };
 

@@ -30,12 +30,9 @@ std::vector<BodyFrame> bodies_of(const LandmarkFrame& frame, Timestamp captured,
     return {};
   }
   BodyFrame body{kOnlyBody, captured, {layout::joints_of(layout::kMediapipe, *landmarks)}};
-  if (form.rays) {
-    // Rays have no depth, but the detector's body does: of the head, its turn is taken from there.
-    const auto fitted = fit_landmarks(*frame.detected, intrinsics, Lateral::RigidBody);
-    const auto turn = fitted ? layout::head_turn(layout::kMediapipe, *fitted) : std::nullopt;
-    if (turn) body.skeleton[JointId::Head].orientation = *turn;
-  } else {
+  const auto turn = fit_head(*frame.detected, intrinsics);
+  if (turn) body.skeleton[JointId::Head].orientation = *turn;
+  if (!form.rays) {
     for (Joint& joint : body.skeleton.joints) joint.covariance = fit_error(joint);
   }
   return {std::move(body)};

@@ -5,10 +5,14 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "common/layout/tables.h"
 #include "common/sensor/pixel_ray.h"
 
 namespace chorus::importers {
 namespace {
+
+/// Nose, eyes, ears and mouth are the first landmarks.
+constexpr std::size_t kFaceLandmarks = 11;
 
 /// A landmark nearer to the camera's plane than this, or behind it, is not tracked [m].
 constexpr double kMinDepth = 0.1;
@@ -22,9 +26,9 @@ struct PixelsAndBody {
   std::vector<cv::Point2d> pixel;
 };
 
-PixelsAndBody for_opencv(const DetectedLandmarks& detected) {
+PixelsAndBody for_opencv(const DetectedLandmarks& detected, std::size_t count = kLandmarkCount) {
   PixelsAndBody points;
-  for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     points.in_body.emplace_back(detected.in_body[i].x(), detected.in_body[i].y(),
                                 detected.in_body[i].z());
     points.pixel.emplace_back(detected.pixel[i].x(), detected.pixel[i].y());
@@ -32,30 +36,46 @@ PixelsAndBody for_opencv(const DetectedLandmarks& detected) {
   return points;
 }
 
+struct Pose {
+  cv::Vec3d turn;
+  cv::Vec3d shift;
+};
+
 struct CameraFit {
   std::array<Eigen::Vector3d, kLandmarkCount> in_camera;  ///< OpenCV axes.
   std::vector<cv::Point2d> ray;                           ///< x/z, y/z of each undistorted pixel.
 };
 
+std::vector<double> distortion_of(const Intrinsics& k) {
+  return {k.distortion.begin(), k.distortion.end()};
+}
+
+/// Levenberg-Marquardt from `pose`.  May throw cv::Exception.
+void refine(const PixelsAndBody& points, const Intrinsics& intrinsics, Pose& pose) {
+  cv::solvePnPRefineLM(points.in_body, points.pixel, camera_matrix(intrinsics),
+                       distortion_of(intrinsics), pose.turn, pose.shift);
+}
+
 /// SQPnP, then Levenberg-Marquardt.  OpenCV's default iterative start ends in mirrored poses for
 /// views from behind (off by metres for one of the four bundled cameras).  May throw cv::Exception.
-std::optional<CameraFit> fit_camera(const PixelsAndBody& points, const Intrinsics& intrinsics) {
-  const cv::Matx33d k = camera_matrix(intrinsics);
-  const std::vector<double> distortion(intrinsics.distortion.begin(), intrinsics.distortion.end());
-  cv::Vec3d turn;
-  cv::Vec3d shift;
-  if (!cv::solvePnP(points.in_body, points.pixel, k, distortion, turn, shift, false,
-                    cv::SOLVEPNP_SQPNP))
+std::optional<Pose> fit_pose(const PixelsAndBody& points, const Intrinsics& intrinsics) {
+  Pose pose;
+  if (!cv::solvePnP(points.in_body, points.pixel, camera_matrix(intrinsics),
+                    distortion_of(intrinsics), pose.turn, pose.shift, false, cv::SOLVEPNP_SQPNP))
     return std::nullopt;
-  cv::solvePnPRefineLM(points.in_body, points.pixel, k, distortion, turn, shift);
+  refine(points, intrinsics, pose);
+  return pose;
+}
+
+CameraFit posed(const PixelsAndBody& points, const Intrinsics& intrinsics, const Pose& pose) {
   cv::Matx33d rotation;
-  cv::Rodrigues(turn, rotation);
+  cv::Rodrigues(pose.turn, rotation);
   CameraFit fit;
-  for (std::size_t i = 0; i < kLandmarkCount; ++i) {
-    const cv::Vec3d x = rotation * cv::Vec3d(points.in_body[i]) + shift;
+  for (std::size_t i = 0; i < points.in_body.size(); ++i) {
+    const cv::Vec3d x = rotation * cv::Vec3d(points.in_body[i]) + pose.shift;
     fit.in_camera[i] = {x[0], x[1], x[2]};
   }
-  cv::undistortPoints(points.pixel, fit.ray, k, distortion);
+  cv::undistortPoints(points.pixel, fit.ray, camera_matrix(intrinsics), distortion_of(intrinsics));
   return fit;
 }
 
@@ -79,7 +99,9 @@ Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected, const Intrins
                                 Lateral lateral) {
   std::optional<CameraFit> fit;
   try {
-    fit = fit_camera(for_opencv(detected), intrinsics);
+    const auto points = for_opencv(detected);
+    const auto pose = fit_pose(points, intrinsics);
+    if (pose) fit = posed(points, intrinsics, *pose);
   } catch (const cv::Exception& refused) {
     return fail(ErrorCode::InvalidArgument, "landmarks", refused.err);
   }
@@ -93,6 +115,24 @@ Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected, const Intrins
     return fail(ErrorCode::InvalidArgument, "landmarks",
                 "the pixels fit no body before the camera.");
   return landmarks;
+}
+
+std::optional<Eigen::Quaterniond> fit_head(const DetectedLandmarks& detected,
+                                           const Intrinsics& intrinsics) {
+  std::optional<CameraFit> fit;
+  try {
+    auto pose = fit_pose(for_opencv(detected), intrinsics);
+    const auto face = for_opencv(detected, kFaceLandmarks);
+    if (pose) refine(face, intrinsics, *pose);
+    if (pose) fit = posed(face, intrinsics, *pose);
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+  if (!fit) return std::nullopt;
+  Landmarks landmarks;
+  for (std::size_t i = 0; i < kFaceLandmarks; ++i)
+    landmarks[i] = landmark_of(*fit, i, detected.visibility[i], Lateral::RigidBody);
+  return layout::head_turn(layout::kMediapipe, landmarks);
 }
 
 Covariance fit_error(const Joint& joint) {

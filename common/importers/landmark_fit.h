@@ -8,6 +8,8 @@
 // (tests/bench/accuracy/real_bench.cpp).
 #pragma once
 
+#include <optional>
+
 #include "common/base/result.h"
 #include "common/importers/landmarks.h"
 #include "common/sensor/camera_image.h"
@@ -26,6 +28,13 @@ enum class Lateral {
 [[nodiscard]] Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected,
                                               const Intrinsics& intrinsics,
                                               Lateral lateral = Lateral::PixelRay);
+
+/// The orientation of the head (layout::head_turn) in sensor space.  The detector's body turns its
+/// face along with its shoulders: of a head that turns on them, a third to a half is left.  So the
+/// marks of the face keep their shape and are turned until they fit their own pixels.  None if the
+/// pixels fit no body or no face.
+[[nodiscard]] std::optional<Eigen::Quaterniond> fit_head(const DetectedLandmarks& detected,
+                                                         const Intrinsics& intrinsics);
 
 /// The error of a joint made from fitted landmarks: 25 mm across the line of sight, and 6 % of the
 /// distance along it, because the person's size is a guess; twice as much for an Inferred joint.

@@ -39,21 +39,14 @@ constexpr double kUprightShare = 0.9;
 
 double median_of(std::span<const Instant> instants, std::size_t measure) {
   std::vector<double> values;
+  // What is shortened counts by its size: an arm that swings to both sides does not hang straight.
+  const bool by_size = row_of(measure).zeroing == Zeroing::Shortened;
   for (const Instant& each : instants) {
     const double value = each.measures.values[measure];
-    if (std::isfinite(value)) values.push_back(value);
+    if (std::isfinite(value)) values.push_back(by_size ? std::abs(value) : value);
   }
   if (values.size() < kLeastInstants) return std::nan("");
   return median(std::move(values));
-}
-
-Neutral summed_up(std::span<const Instant> instants) {
-  Neutral neutral;
-  neutral.from = instants.front().at;
-  neutral.until = instants.back().at;
-  neutral.instants = instants.size();
-  for (std::size_t m = 0; m < kMeasures; ++m) neutral.stance.values[m] = median_of(instants, m);
-  return neutral;
 }
 
 /// The largest standard deviation of a bounded angle; infinite if one is not measured.
@@ -101,7 +94,7 @@ std::optional<Neutral> calmest(std::span<const Instant> instants, Duration lengt
     }
   }
   if (!best) return std::nullopt;
-  return summed_up(*best);
+  return stance_of(*best);
 }
 
 double without(double value, double stance, Zeroing zeroing) {
@@ -131,13 +124,22 @@ std::string not_upright(const Measures& measures) {
   return {};
 }
 
+Neutral stance_of(std::span<const Instant> instants) {
+  Neutral neutral;
+  neutral.from = instants.front().at;
+  neutral.until = instants.back().at;
+  neutral.instants = instants.size();
+  for (std::size_t m = 0; m < kMeasures; ++m) neutral.stance.values[m] = median_of(instants, m);
+  return neutral;
+}
+
 Result<Neutral> neutral_of(std::span<const Instant> instants) {
   if (instants.size() < kLeastInstants)
     return fail(ErrorCode::Timeout, "neutral stance",
                 fmt::format("was seen at {} instants only; stand upright, arms down, where sensors "
                             "see you, for two seconds",
                             instants.size()));
-  const Neutral neutral = summed_up(instants);
+  const Neutral neutral = stance_of(instants);
   const std::string why = not_upright(neutral.stance);
   if (!why.empty())
     return fail(ErrorCode::InvalidArgument, "neutral stance",
@@ -151,7 +153,7 @@ std::optional<Neutral> find_neutral(std::span<const Instant> instants) {
   std::vector<Instant> upright;
   for (const std::size_t i : upright_instants(instants)) upright.push_back(instants[i]);
   if (upright.empty()) return std::nullopt;
-  return summed_up(upright);
+  return stance_of(upright);
 }
 
 std::vector<std::size_t> upright_instants(std::span<const Instant> instants) {

@@ -29,8 +29,18 @@ struct Neutral {
 /// The measures relative to the stance, as each row of the table says.
 [[nodiscard]] Measures relative_to(const Neutral& neutral, const Measures& measures);
 
+/// What the stance leaves of the standard deviation that joints state: the larger part of their
+/// error is where a tracker takes a joint to be, and is the same in the stance.  Held angles less
+/// the stance err by 0.3 to 0.6 of what the joints state (median over the angles), with eight
+/// cameras as with one Kinect v2 against Vicon (docs/benchmarks/ergonomics.md).
+inline constexpr double kLeftByStance = 0.5;
+
 /// How long one stands for it.
 inline constexpr Duration kStanceLasts = std::chrono::seconds(2);
+
+/// The medians of instants that are a stance, of their sizes for what is Shortened; a measure that
+/// fewer than five instants know is NaN.  Not empty.
+[[nodiscard]] Neutral stance_of(std::span<const Instant> instants);
 
 /// The stance of these instants, in the order of time, which somebody says are one ("stand upright,
 /// arms down").  InvalidArgument if it is plainly none (knees or trunk bent, arms raised), Timeout

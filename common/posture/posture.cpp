@@ -85,18 +85,23 @@ void measure_trunk(const Located& joints, const Axes& axes, Posture& out) {
         std::atan2(trunk.dot(hips->cross(*axes.trunk_left)), hips->dot(*axes.trunk_left));
 }
 
-/// `crown` points from the neck to the top of the head, `face` forward, where known.
-void measure_head(const Axes& axes, const Vector3d& crown, const Point& face, Measures& out) {
-  if (!axes.trunk_left) return;
-  const Vector3d& trunk = *axes.trunk;
-  out[Centre::NeckFlexion] = std::atan2(crown.dot(axes.trunk_forward), crown.dot(trunk));
+/// Where the head is above the shoulders; the crown is taken to lie on that line.
+void measure_head_place(const Axes& axes, const Vector3d& crown, Measures& out) {
+  out[Centre::NeckFlexion] = std::atan2(crown.dot(axes.trunk_forward), crown.dot(*axes.trunk));
   out[Centre::NeckSideBend] = lean(crown.dot(*axes.trunk_left), crown);
   bool steep = false;
   const Point level = across(*axes.trunk_left, kUp, steep);
   if (level)
     out[Centre::HeadInclination] = std::atan2(crown.dot(level->cross(kUp)), crown.dot(kUp));
-  if (!face) return;
-  const Point turned = across(*face, trunk, steep);
+}
+
+/// Where the face looks.  Nodding is how far that is below level, whichever way the face is turned,
+/// so an error about the line of sight, the largest one of marks in a picture, does not count.
+void measure_face(const Axes& axes, const Vector3d& face, Measures& out) {
+  out[Centre::NeckFlexion] = -lean(face.dot(*axes.trunk), face);
+  out[Centre::HeadInclination] = -lean(face.dot(kUp), face);
+  bool steep = false;
+  const Point turned = across(face, *axes.trunk, steep);
   if (turned)
     out[Centre::NeckTwist] =
         std::atan2(turned->dot(*axes.trunk_left), turned->dot(axes.trunk_forward));
@@ -167,12 +172,9 @@ Posture posture_of(const Located& joints, const std::optional<Eigen::Quaterniond
   const Axes axes = axes_of(joints, out.singular);
   measure_trunk(joints, axes, out);
   const Point top = point(joints, JointId::Head);
-  if (axes.trunk_left && head) {
-    const Eigen::Matrix3d turn = head->toRotationMatrix();
-    measure_head(axes, turn.col(1), Vector3d(turn.col(2)), out.measures);
-  } else if (axes.trunk_left && top && (*top - *axes.shoulders).norm() > 0.0) {
-    measure_head(axes, *top - *axes.shoulders, std::nullopt, out.measures);
-  }
+  if (axes.trunk_left && top && (*top - *axes.shoulders).norm() > 0.0)
+    measure_head_place(axes, *top - *axes.shoulders, out.measures);
+  if (axes.trunk_left && head) measure_face(axes, *head * Vector3d::UnitZ(), out.measures);
   for (const Side side : kSides) {
     measure_arm(joints, axes, side, out.measures);
     measure_leg(joints, axes, side, out.measures);

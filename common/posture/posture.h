@@ -32,8 +32,9 @@ struct Posture {
   Singular singular;
 };
 
-/// Head orientation (head axes to world; +y to the crown, +z to the face) if it is known: then the
-/// neck is measured from it, otherwise from where the head is, and its twist is unknown.
+/// Head orientation (head axes to world; +y to the crown, +z to the face) if it is known: then
+/// flexion and twist of the neck are those of the face, otherwise flexion is that of where the head
+/// is and twist is unknown.  Side bend is always from where the head is.
 [[nodiscard]] Posture posture_of(const Located& joints,
                                  const std::optional<Eigen::Quaterniond>& head = {});
 

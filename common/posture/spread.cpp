@@ -126,7 +126,7 @@ Spread spread_of(const Skeleton<WorldSpace>& body) {
   return spread;
 }
 
-DrawnMeasures drawn_measures(const Skeleton<WorldSpace>& body) {
+DrawnMeasures drawn_measures(const Skeleton<WorldSpace>& body, double share) {
   static const std::array<Deviates, kDraws> kDeviates = fixed_deviates();
   static const std::array<Eigen::Vector3d, kDraws> kHeadTurns = fixed_head_turns();
   const Roots roots = roots_of(body);
@@ -137,7 +137,7 @@ DrawnMeasures drawn_measures(const Skeleton<WorldSpace>& body) {
   for (std::size_t k = 0; k < kDraws; ++k) {
     Located moved = joints;
     for (std::size_t j = 0; j < kJointCount; ++j) {
-      if (moved[j]) *moved[j] += roots.of[j] * kDeviates[k][j];
+      if (moved[j]) *moved[j] += share * (roots.of[j] * kDeviates[k][j]);
     }
     const auto turned =
         head ? std::optional<Eigen::Quaterniond>(exp_map(kHeadTurns[k]) * *head) : std::nullopt;

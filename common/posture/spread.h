@@ -40,8 +40,9 @@ struct DrawnMeasures {
   std::array<Measures, kDraws> draws;
   std::size_t doubtless = 0;  ///< Seen joints without a covariance.
 };
-/// A head whose orientation is stated errs by kHeadTurn about each axis.
-[[nodiscard]] DrawnMeasures drawn_measures(const Skeleton<WorldSpace>& body);
+/// `share` of the stated standard deviations of the joints is drawn.  A head whose orientation is
+/// stated errs by kHeadTurn about each axis.
+[[nodiscard]] DrawnMeasures drawn_measures(const Skeleton<WorldSpace>& body, double share = 1.0);
 
 /// The orientation of the head if the body states one; then posture_of() takes it.
 [[nodiscard]] std::optional<Eigen::Quaterniond> head_of(const Skeleton<WorldSpace>& body);

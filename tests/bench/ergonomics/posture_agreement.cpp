@@ -20,30 +20,17 @@ using ergonomics::Side;
 constexpr double kNinety = 0.9;
 constexpr Duration kWindow = std::chrono::seconds(20);
 
-/// The stance as medians over a stretch, upright or not: the protocol of the recordings says when
-/// it is.
-using Stance = std::set<Timestamp>;  ///< The instants of the own stance.
+using Stance = std::set<Timestamp>;  ///< The instants of the own stance, the same on both sides.
 
 std::optional<posture::Neutral> stance_over(const std::vector<BodyAt>& bodies,
                                             const Stance& stance) {
-  std::array<std::vector<double>, posture::kMeasures> values;
+  std::vector<posture::Instant> instants;
   for (const BodyAt& body : bodies) {
-    if (!stance.contains(body.at)) continue;
-    const auto measures = posture::posture_of(body.body).measures;
-    for (std::size_t m = 0; m < posture::kMeasures; ++m) {
-      if (!std::isnan(measures.values[m])) values[m].push_back(measures.values[m]);
-    }
+    if (stance.contains(body.at))
+      instants.push_back({body.at, posture::posture_of(body.body).measures});
   }
-  posture::Neutral neutral;
-  bool any = false;
-  for (std::size_t m = 0; m < posture::kMeasures; ++m) {
-    if (values[m].empty()) continue;
-    std::ranges::sort(values[m]);
-    neutral.stance.values[m] = values[m][values[m].size() / 2];
-    any = true;
-  }
-  if (!any) return std::nullopt;
-  return neutral;
+  if (instants.empty()) return std::nullopt;
+  return posture::stance_of(instants);
 }
 
 std::vector<Observation> observed(const std::vector<BodyAt>& bodies, const PostureOptions& options,
@@ -181,10 +168,20 @@ Stance stance_of_take(const ScoredTake& take) {
   return stance;
 }
 
+/// A neck is compared with one that is measured in the same way: without a true orientation of the
+/// head, the found one is left out.
+ScoredTake with_like_heads(ScoredTake take) {
+  const auto turned = [](const BodyAt& body) { return posture::head_of(body.body).has_value(); };
+  if (std::ranges::any_of(take.truth, turned)) return take;
+  for (BodyAt& body : take.found) body.body[JointId::Head].orientation.coeffs().setZero();
+  return take;
+}
+
 }  // namespace
 
-void compare_postures(const ScoredTake& take, const PostureOptions& options,
+void compare_postures(const ScoredTake& compared, const PostureOptions& options,
                       PostureAgreement& sum) {
+  const ScoredTake take = with_like_heads(compared);
   const Stance stance = stance_of_take(take);
   const auto found = observed(take.found, options, stance);
   const auto truth = observed(take.truth, options, stance);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -80,6 +83,38 @@ Result<ScoredTake> fused_take(const ImportedSet& set, fusion::Method method, Cam
   return take;
 }
 
+/// world_from_head of the takes' gt_skel_gbl_ori.txt (60 Hz; of its 21 segments, x y z w, the
+/// seventh).  The segments' axes lie to the right, back and down.
+Result<std::vector<Eigen::Quaterniond>> true_heads(const std::filesystem::path& file) {
+  constexpr std::size_t kHead = 6;
+  std::vector<Eigen::Quaterniond> heads;
+  Eigen::Matrix3d ours;
+  ours << -1, 0, 0, 0, 0, -1, 0, -1, 0;
+  std::ifstream lines(file);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    const std::vector<double> numbers{std::istream_iterator<double>(words), {}};
+    if (numbers.empty()) continue;
+    if (numbers.size() != 21 * 4)
+      return fail(ErrorCode::Malformed, file.string(), "must have 21 quaternions a line");
+    const double* q = &numbers[4 * kHead];
+    heads.emplace_back(Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized() *
+                       Eigen::Quaterniond(ours));
+  }
+  return heads;
+}
+
+/// The true bodies' heads are turned as Vicon says.
+Result<void> turn_heads(const std::filesystem::path& take, ImportedSet& set) {
+  const auto heads = true_heads(take / "gt_skel_gbl_ori.txt");
+  if (!heads) return pass(heads);
+  for (std::size_t i = 0; i < set.truth.size() && 2 * i < heads->size(); ++i)
+    set.truth[i].skeleton[JointId::Head].orientation = (*heads)[2 * i];
+  return {};
+}
+
 Result<ImportedSet> read_take(const std::filesystem::path& path, bool rays) {
   importers::ImportOptions options;
   options.rays = rays;
@@ -88,6 +123,7 @@ Result<ImportedSet> read_take(const std::filesystem::path& path, bool rays) {
   for (const auto& recording : set->recordings) {
     if (set->truth.size() > recording.frames.size()) set->truth.resize(recording.frames.size());
   }
+  if (auto turned = turn_heads(path, *set); !turned) return pass(turned);
   return set;
 }
 

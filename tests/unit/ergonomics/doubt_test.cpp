@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "common/base/units.h"
 #include "common/ergonomics/all_methods.h"
 #include "common/ergonomics/live.h"
@@ -85,7 +87,7 @@ TEST(DoubtfulScores, OfASideCountTheChanceOfExchangedSides) {
 }
 
 TEST(ScoredPeople, CarriedBodiesHaveNoScoreAndTheReasonIsCounted) {
-  auto bodies = take(120, 0.01);
+  auto bodies = take(120, 0.01, deg(70));
   for (std::size_t i = 100; i < 110; ++i) bodies[i].carried = true;
   bodies[119].body = {};
   const std::vector<const Method*> methods{&kReba, &kOwas};
@@ -107,6 +109,47 @@ TEST(ScoredPeople, CarriedBodiesHaveNoScoreAndTheReasonIsCounted) {
   EXPECT_GT(reba.worst[0].at, 2.0) << "bent in the second half";
   // Bent for half of the time, known half a second late, twice not at all.
   EXPECT_NEAR(person.methods[1].levels[0].share, 0.66, 0.08);
+}
+
+TEST(ScoredPeople, SpendARangeOfTimeInALevelWhereAnswersAreUnknown) {
+  const auto bodies = take(120, 0.005);
+  const std::vector<const Method*> methods{&kReba};
+  Task task = quiet_task();
+  const auto known = score_person({bodies, methods, task, kStart, stance_in(bodies)});
+  for (const auto& zone : known.methods[0].levels) {
+    EXPECT_EQ(zone.least, zone.share);
+    EXPECT_EQ(zone.most, zone.share);
+  }
+  task.asked.load_kg.reset();
+  task.asked.coupling.reset();
+  const auto unknown = score_person({bodies, methods, task, kStart, stance_in(bodies)});
+  double certain = 0.0;
+  for (std::size_t l = 0; l < kReba.levels.size(); ++l) {
+    const auto& zone = unknown.methods[0].levels[l];
+    certain += zone.least;
+    EXPECT_LE(zone.least, known.methods[0].levels[l].share) << "the load may be none";
+    EXPECT_GE(zone.most, known.methods[0].levels[l].share);
+    EXPECT_LE(zone.low, zone.least);
+    EXPECT_GE(zone.high, zone.most);
+    EXPECT_GE(zone.share, zone.least);
+    EXPECT_LE(zone.share, zone.most);
+  }
+  EXPECT_LT(certain, 0.9) << "12 kg would lift the level of most of the time";
+}
+
+TEST(DoubtfulScores, AreSurerWithTheOwnStance) {
+  const auto bodies = take(60, 0.02, deg(64));
+  const auto standing = posture::posture_of(bodies.front().body).measures;
+  const auto stance =
+      posture::neutral_of(std::vector<posture::Instant>(6, {kStart, standing})).value();
+  double surest[2] = {0, 0};
+  for (const int own : {0, 1}) {
+    Observer observer({.held = false});
+    if (own == 1) observer.stance(stance);
+    const auto score = score_of(kReba, observer.observe(bodies.back()), quiet_task().asked);
+    surest[own] = *std::ranges::max_element(score.high);
+  }
+  EXPECT_GT(surest[1], surest[0]);
 }
 
 TEST(ScoredPeople, HaveNoScoreThatIsLowOnlyBecauseNothingIsSeen) {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/units.h"
 #include "common/importers/formats.h"
 #include "tests/support/matchers.h"
 #include "tests/unit/importers/import_files.h"
@@ -188,6 +189,47 @@ TEST(LandmarkFit, RecoversAKnownPose) {
   }
 }
 
+/// The detector's body looks straight ahead; the pixels show a head that is turned on it.
+TEST(LandmarkFit, TakesTheHeadsTurnFromThePixelsOfTheFace) {
+  Intrinsics camera;
+  camera.fx = camera.fy = 900.0;
+  camera.cx = 640.0;
+  camera.cy = 360.0;
+  const std::array<Eigen::Vector3d, 11> face{{{0, -0.62, -0.20},
+                                              {0.02, -0.65, -0.18},
+                                              {0.035, -0.65, -0.18},
+                                              {0.05, -0.65, -0.17},
+                                              {-0.02, -0.65, -0.18},
+                                              {-0.035, -0.65, -0.18},
+                                              {-0.05, -0.65, -0.17},
+                                              {0.075, -0.63, -0.09},
+                                              {-0.075, -0.63, -0.09},
+                                              {0.025, -0.57, -0.18},
+                                              {-0.025, -0.57, -0.18}}};
+  const Eigen::Vector3d middle(0, -0.62, -0.1);
+  for (const double turned : {-50.0, 0.0, 50.0}) {
+    DetectedLandmarks detected;
+    for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+      const double t = static_cast<double>(i);
+      detected.in_body[i] = i < face.size()
+                                ? face[i]
+                                : Eigen::Vector3d(0.3 * std::sin(t), 0.5 + 0.4 * std::cos(1.7 * t),
+                                                  0.1 * std::sin(2.3 * t));
+      Eigen::Vector3d x = detected.in_body[i];
+      if (i < face.size())
+        x = middle + Eigen::AngleAxisd(deg(turned), Eigen::Vector3d::UnitY()) * (x - middle);
+      x += Eigen::Vector3d(0, 0, 3);
+      detected.pixel[i] = {camera.fx * x.x() / x.z() + camera.cx,
+                           camera.fy * x.y() / x.z() + camera.cy};
+      detected.visibility[i] = 0.9;
+    }
+    const auto head = fit_head(detected, camera);
+    ASSERT_TRUE(head);
+    const Eigen::Vector3d looks = *head * Eigen::Vector3d::UnitZ();
+    EXPECT_NEAR(std::atan2(looks.x(), -looks.z()), deg(turned), deg(3));
+  }
+}
+
 TEST(LandmarkFit, DepthIsWorseThanDirection) {
   Joint joint;
   joint.position = {0.0, 0.0, 4.0};
@@ -212,6 +254,7 @@ TEST(LandmarkFit, RefusesSightsThatFitNoBody) {
   EXPECT_FALSE(fit_landmarks(detected, Intrinsics{}).has_value());
   for (auto& pixel : detected.pixel) pixel.setConstant(std::nan(""));
   EXPECT_FALSE(fit_landmarks(detected, Intrinsics{}).has_value());
+  EXPECT_FALSE(fit_head(detected, Intrinsics{}).has_value());
 }
 
 TEST(CameraViews, RefuseBadCalibrations) {

@@ -59,6 +59,13 @@ TEST(NeutralStance, OfSomebodyWhoNeverStandsStillIsThatOfAllUprightInstants) {
   EXPECT_FALSE(find_neutral(std::span(restless).first(50))) << "25 instants are too few";
 }
 
+TEST(NeutralStance, OfArmsThatSwingToBothSidesIsTheirSize) {
+  std::vector<Instant> instants(31);
+  for (std::size_t i = 0; i < instants.size(); ++i)
+    instants[i].measures.at(Limb::UpperArmRaise, Side::Left) = deg(i % 2 == 0 ? 12 : -12);
+  EXPECT_NEAR(stance_of(instants).stance.at(Limb::UpperArmRaise, Side::Left), deg(12), 1e-12);
+}
+
 TEST(NeutralStance, IsNotFoundWhereNobodyIsUpright) {
   const auto instants = take();
   EXPECT_FALSE(find_neutral(std::span(instants).last(25)));

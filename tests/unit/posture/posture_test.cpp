@@ -123,6 +123,11 @@ TEST(NeckMeasures, ComeFromTheHeadsOrientationWhereItIsKnown) {
   body[Head].orientation = Eigen::AngleAxisd(deg(25), Eigen::Vector3d::UnitX());
   const double trunk = of(body)[Centre::TrunkFlexion];
   EXPECT_NEAR(of(body)[Centre::NeckFlexion], deg(25) - trunk, deg(0.5));
+  // A roll about the line of sight changes neither; side bend is that of the head's place.
+  body[Head].orientation =
+      body[Head].orientation * Eigen::AngleAxisd(deg(20), Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(of(body)[Centre::NeckFlexion], deg(25) - trunk, deg(0.5));
+  EXPECT_NEAR(of(body)[Centre::NeckSideBend], 0.0, 1e-6);
 }
 
 TEST(Measures, AreUnmovedByTurningAndMovingTheWorld) {
