@@ -157,7 +157,7 @@ class BodyFilter final : public Estimator {
     } else {
       place.covariance += beyond_[j] * Eigen::Matrix3d::Identity();
     }
-    state(fused, place, plain_views_[j], turn_covariance(j, whole, turn_sigma_));
+    state(fused, place, j, turn_covariance(j, whole, turn_sigma_));
     if (fused.contributors != 0) contributed_[j] = instant;
     if (contributed_[j]) fused.age = seconds(instant - *contributed_[j]);
     return fused;
@@ -208,14 +208,19 @@ class BodyFilter final : public Estimator {
             true};
   }
 
-  /// Sets position and covariance.  Errors that all views have in common are added to the
-  /// covariance, because no view's covariance contains them.
-  void state(FusedJoint& fused, const PlacedJoint& place, std::size_t plain_views,
+  /// Sets position and covariance of joint `j`.  Errors that all views have in common are added to
+  /// the covariance, because no view's covariance contains them.
+  void state(FusedJoint& fused, const PlacedJoint& place, std::size_t j,
              const Eigen::Matrix3d& turned) const {
     const BodyModel& body = model();
     // Covariances that sensors state themselves are believed as they are.
-    const bool adapted = body.disagreement > 0 && plain_views > 0;
-    const double wider = adapted ? disagreement_.value() * unseen_error(plain_views) : 1.0;
+    const bool adapted = body.disagreement > 0 && plain_views_[j] > 0;
+    // What views show of a joint says nothing of how far it goes unseen.
+    const double shown = fused.contributors != 0
+                             ? disagreement_.value(j)
+                             : std::max(disagreement_.value(), disagreement_.value(j));
+    const double differ = adapted ? shown : 1.0;
+    const double wider = adapted ? differ * unseen_error(plain_views_[j]) : 1.0;
     const double alike = adapted ? body.common * disagreement_.value() : 0.0;
     const double uneven = std::max(0.0, scale_square_.value - kUsualScale * kUsualScale);
     const double reach = middle_ ? (place.position - *middle_).squaredNorm() : 0.0;

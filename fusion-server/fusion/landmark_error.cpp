@@ -12,22 +12,26 @@ double landmark_error(JointId joint) {
       return 0.028;
     case ElbowLeft:
     case ElbowRight:
+      return 0.024;
+    case SpineShoulder:
       return 0.022;
+    case Head:
+      return 0.020;
+    case Neck:
     case WristLeft:
     case WristRight:
-    case KneeLeft:
-    case KneeRight:
-      return 0.018;
-    case SpineBase:
-    case SpineMid:
-    case SpineShoulder:
-    case Neck:
-    case Head:
     case HipLeft:
     case HipRight:
     case AnkleLeft:
     case AnkleRight:
-      return 0.020;
+      return 0.016;
+    case SpineBase:
+      return 0.014;
+    case KneeLeft:
+    case KneeRight:
+      return 0.013;
+    case SpineMid:
+      return 0.011;
     default:
       return 0.030;
   }
@@ -40,10 +44,10 @@ bool from_cameras(std::span<const JointView> views) {
 }
 
 void state_landmark_error(FusedJoint& fused, JointId joint) {
-  const double least = landmark_error(joint);
-  const double lack = least * least - fused.variance;
-  if (!fused.joint.seen() || !(lack > 0)) return;
-  state_covariance(fused, fused.joint.covariance.matrix() + lack * Eigen::Matrix3d::Identity());
+  if (!fused.joint.seen()) return;
+  const double error = landmark_error(joint);
+  state_covariance(fused,
+                   fused.joint.covariance.matrix() + error * error * Eigen::Matrix3d::Identity());
 }
 
 }  // namespace chorus::fusion

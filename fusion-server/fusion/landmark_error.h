@@ -11,15 +11,15 @@
 
 namespace chorus::fusion {
 
-/// Standard deviation per axis [m] below which a joint is never stated that cameras alone place.
-/// Shoulders, elbows, wrists, hips, knees and ankles: measured (docs/benchmarks/camera.md, Stated
-/// errors); the others, which nobody has measured, are those of a joint alike or larger.
+/// Standard deviation per axis [m] of the error that all cameras share: what eight cameras have
+/// wrong, less what they differ by (docs/benchmarks/camera.md, Stated errors).  Head, hands, feet
+/// and thumbs, which nobody has measured, are those of a joint alike or larger.
 [[nodiscard]] double landmark_error(JointId joint);
 
 /// True if the views are rays, or points whose depth is hardly known.
 [[nodiscard]] bool from_cameras(std::span<const JointView> views);
 
-/// Raises the joint's stated covariance to at least that, alike on every axis.
+/// Adds it to the joint's stated covariance, alike on every axis.
 void state_landmark_error(FusedJoint& fused, JointId joint);
 
 }  // namespace chorus::fusion

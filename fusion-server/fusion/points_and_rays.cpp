@@ -9,6 +9,7 @@
 #include "common/base/square.h"
 #include "common/geometry/ray.h"
 #include "common/geometry/rotation.h"
+#include "fusion-server/fusion/disagreement.h"
 #include "fusion-server/fusion/held_body.h"
 #include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/landmark_error.h"
@@ -59,6 +60,28 @@ FusedJoint finish(std::span<const JointView> views, const LeastSquares& found, d
   state_covariance(fused, found.covariance + common * common * Eigen::Matrix3d::Identity());
   show(fused, views, found.trust, found.pull);
   return fused;
+}
+
+/// By how far cameras miss the place where they meet, across their lines of sight.  None if others
+/// show the joint, too.
+ShownDifference difference_of(const Meeting& meeting) {
+  constexpr double kAxes = 3.0;
+  ShownDifference shown;
+  if (!meeting.found || !from_cameras(meeting.views)) return shown;
+  for (std::size_t i = 0; i < meeting.views.size(); ++i) {
+    const JointView& view = meeting.views[i];
+    const Eigen::Vector3d way = meeting.found->position - view.eye;
+    const Eigen::Vector3d to =
+        view.joint.bears() ? view.joint.position : Eigen::Vector3d(view.joint.position - view.eye);
+    const Eigen::Vector3d ray = to.normalized();
+    const double miss = (way - way.dot(ray) * ray).squaredNorm();
+    const double across = (view.covariance.trace() - ray.dot(view.covariance * ray)) / 2.0;
+    const double square = view.joint.bears() ? across * way.squaredNorm() : across;
+    shown.sum += meeting.found->trust[i] * miss / square / kAxes;
+    shown.free += 2.0 / kAxes;
+  }
+  shown.free -= 1.0;
+  return shown.free > 0 && std::isfinite(shown.sum) ? shown : ShownDifference{};
 }
 
 /// True if the views place the joint: by a point of known depth, or from two sides.
@@ -118,6 +141,7 @@ class PointsAndRays final : public Estimator {
           points_and_rays_of(static_cast<JointId>(j), person, instant.sensors, *errors_);
       meetings[j].found = least_squares(meetings[j].views, config_->huber);
     }
+    learn_differences(meetings, passed);
     const Holding held = hold(person, meetings);
     FusedBody body = joint_by_joint(person.id, [&](JointId joint) {
       const std::size_t j = index_of(joint);
@@ -189,6 +213,23 @@ class PointsAndRays final : public Estimator {
     }
   }
 
+  void learn_differences(const Meetings& meetings, double passed) {
+    ShownDifferences shown;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      shown[j] = difference_of(meetings[j]);
+      misses_[j] = shown[j].free > 0;
+    }
+    differ_.learn(shown, passed);
+  }
+
+  /// Cameras that meet more closely than their errors say have smaller ones; that they meet less
+  /// closely, the instant itself shows.
+  [[nodiscard]] LeastSquares as_they_meet(const LeastSquares& found, std::size_t joint) const {
+    LeastSquares told = found;
+    if (misses_[joint]) told.covariance *= std::min(1.0, differ_.value(joint));
+    return told;
+  }
+
   /// Gives the held body what the views show of it.
   Holding hold(const Person& person, const Meetings& meetings) {
     PlacedBody placed;
@@ -227,7 +268,7 @@ class PointsAndRays final : public Estimator {
     if (!found || !determined(views, *found)) return bounded(joint, instant, views);
     filters_[joint].update(instant, found->position, mean_variance(found->covariance));
     seen_[joint] = instant;
-    return finish(views, *found, config_->common_sigma);
+    return finish(views, as_they_meet(*found, joint), config_->common_sigma);
   }
 
   [[nodiscard]] bool determined(std::span<const JointView> views, const LeastSquares& found) const {
@@ -257,7 +298,9 @@ class PointsAndRays final : public Estimator {
   std::shared_ptr<const FusionConfig> config_;  ///< Shared by all copies.
   std::shared_ptr<const ErrorModel> errors_;
   HeldBody held_;
-  std::optional<Source> source_;  ///< Who last placed the body.
+  Disagreement differ_{1.0};                ///< Of rays that state no covariance.
+  std::array<bool, kJointCount> misses_{};  ///< True if the joint showed something of that.
+  std::optional<Source> source_;            ///< Who last placed the body.
   SourceFade fade_;
   std::optional<Timestamp> last_;
   JointFilters filters_ = joint_filters();

@@ -251,10 +251,9 @@ std::size_t SightedBody::plain_views(std::size_t joint) const {
   return sights_[joint].round ? sights_[joint].views.size() : 0;
 }
 
-std::optional<double> SightedBody::disagreement() const {
+ShownDifferences SightedBody::disagreement() const {
   constexpr double kDimensions = 3.0;
-  double sum = 0.0;
-  double free = 0.0;
+  ShownDifferences shown;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Sights& sights = sights_[j];
     if (!determined(j) || plain_views(j) < 2) continue;
@@ -262,12 +261,11 @@ std::optional<double> SightedBody::disagreement() const {
       const Weighing& weighing = sights.weighings[v];
       const Eigen::Vector3d off =
           sights.views[v].joint.position + weighing.bias - placed_[j].position;
-      sum += weighing.trust * off.squaredNorm() / (kDimensions * weighing.stated);
+      shown[j].sum += weighing.trust * off.squaredNorm() / (kDimensions * weighing.stated);
     }
-    free += static_cast<double>(sights.views.size() - 1);
+    shown[j].free = static_cast<double>(sights.views.size() - 1);
   }
-  if (free == 0.0) return std::nullopt;
-  return sum / free;
+  return shown;
 }
 
 std::optional<double> SightedBody::scale_square() const {

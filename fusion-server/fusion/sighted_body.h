@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fusion-server/fusion/bone_tree.h"
+#include "fusion-server/fusion/disagreement.h"
 #include "fusion-server/fusion/estimator.h"
 #include "fusion-server/fusion/fusion_config.h"
 #include "fusion-server/fusion/handover.h"
@@ -50,10 +51,10 @@ class SightedBody {
   void learn(Biases& biases, const PlacedBody& body, double passed, double turned) const;
   /// How the views take part in the means of placed().
   [[nodiscard]] std::vector<ViewPulls> pulls() const;
-  /// Mean squared distance of the points, biases included, from placed(), per axis and degree of
-  /// freedom, in units of the points' stated variances; only over joints that several views show,
-  /// all as points without a covariance of their own; none if there is no such joint.
-  [[nodiscard]] std::optional<double> disagreement() const;
+  /// Squared distances of the points, biases included, from placed(), per axis, in units of the
+  /// points' stated variances; only of joints that several views show, all as points without a
+  /// covariance of their own.
+  [[nodiscard]] ShownDifferences disagreement() const;
   /// Number of views that show a joint as points without a covariance of their own; 0 if a view
   /// shows a ray or states a covariance.
   [[nodiscard]] std::size_t plain_views(std::size_t joint) const;
