@@ -189,7 +189,7 @@ Result<void> run_scene(Report& report, SceneScript script,
   const RenderedScene scene = rendered_scene(std::move(script));
   double beside = 0.0;
   std::vector<FoundPlace> true_places;
-  for (const Eigen::Vector3d& root : roots_of(scene)) true_places.push_back({root, {}});
+  for (const Eigen::Vector3d& root : roots_of(scene)) true_places.push_back({.place = root});
   report.row(scene.script.name + "/truth", "acceleration", acceleration_of(true_places), "m/s2");
   for (const Method method : methods) {
     const auto score = score_of(scene, method);
