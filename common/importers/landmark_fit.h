@@ -29,10 +29,10 @@ enum class Lateral {
                                               const Intrinsics& intrinsics,
                                               Lateral lateral = Lateral::PixelRay);
 
-/// The orientation of the head (layout::head_turn) in sensor space.  The detector's body turns its
-/// face along with its shoulders: of a head that turns on them, a third to a half is left.  So the
-/// marks of the face keep their shape and are turned until they fit their own pixels.  None if the
-/// pixels fit no body or no face.
+/// The orientation of the head (layout::head_turn's axes) in sensor space: that of a face whose
+/// marks fall on their pixels.  The detector's own face in metres is lopsided (its right eye is 2
+/// cm higher) and turns along with the shoulders: of a head that turns on them, a third is left.
+/// None if the pixels fit no body or no face.
 [[nodiscard]] std::optional<Eigen::Quaterniond> fit_head(const DetectedLandmarks& detected,
                                                          const Intrinsics& intrinsics);
 

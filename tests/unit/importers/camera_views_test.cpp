@@ -195,24 +195,25 @@ TEST(LandmarkFit, TakesTheHeadsTurnFromThePixelsOfTheFace) {
   camera.fx = camera.fy = 900.0;
   camera.cx = 640.0;
   camera.cy = 360.0;
-  const std::array<Eigen::Vector3d, 11> face{{{0, -0.62, -0.20},
-                                              {0.02, -0.65, -0.18},
-                                              {0.035, -0.65, -0.18},
-                                              {0.05, -0.65, -0.17},
-                                              {-0.02, -0.65, -0.18},
-                                              {-0.035, -0.65, -0.18},
-                                              {-0.05, -0.65, -0.17},
-                                              {0.075, -0.63, -0.09},
-                                              {-0.075, -0.63, -0.09},
-                                              {0.025, -0.57, -0.18},
-                                              {-0.025, -0.57, -0.18}}};
-  const Eigen::Vector3d middle(0, -0.62, -0.1);
+  // A larger face than most, in the detector's axes: x to its left, y down, z behind it.
+  const std::array<Eigen::Vector3d, 11> face{{{0, 0.014, -0.025},
+                                              {0.0145, -0.015, -0.0105},
+                                              {0.0235, -0.015, -0.007},
+                                              {0.0335, -0.016, -0.0025},
+                                              {-0.0145, -0.015, -0.0105},
+                                              {-0.0235, -0.015, -0.007},
+                                              {-0.0335, -0.016, -0.0025},
+                                              {0.049, -0.005, 0.039},
+                                              {-0.049, -0.005, 0.039},
+                                              {0.016, 0.0435, -0.007},
+                                              {-0.016, 0.0435, -0.007}}};
+  const Eigen::Vector3d middle(0, -0.62, 0);
   for (const double turned : {-50.0, 0.0, 50.0}) {
     DetectedLandmarks detected;
     for (std::size_t i = 0; i < kLandmarkCount; ++i) {
       const double t = static_cast<double>(i);
       detected.in_body[i] = i < face.size()
-                                ? face[i]
+                                ? Eigen::Vector3d(1.2 * face[i] + middle)
                                 : Eigen::Vector3d(0.3 * std::sin(t), 0.5 + 0.4 * std::cos(1.7 * t),
                                                   0.1 * std::sin(2.3 * t));
       Eigen::Vector3d x = detected.in_body[i];
