@@ -13,22 +13,29 @@
 namespace chorus::posture {
 namespace {
 
+/// What a bound is asked of: all measures, or those of one arm.
+enum class Of : std::uint8_t { Body, LeftArm, RightArm };
+
 /// Below these, a posture may be somebody's upright stance.  They are wide because what is measured
 /// includes the errors that the stance is to take off: a Kinect's knees err by up to 15 degrees.
 struct Bound {
+  Of of;
   std::size_t measure;
   double most;
   std::string_view is;
 };
 const std::array kBounds{
-    Bound{index_of(Centre::TrunkFlexion), deg(20), "the trunk is bent"},
-    Bound{index_of(Centre::TrunkSideBend), deg(15), "the trunk leans sideways"},
-    Bound{index_of(Limb::KneeFlexion, Side::Left), deg(25), "the left knee is bent"},
-    Bound{index_of(Limb::KneeFlexion, Side::Right), deg(25), "the right knee is bent"},
-    Bound{index_of(Limb::UpperArmElevation, Side::Left), deg(30), "the left arm is raised"},
-    Bound{index_of(Limb::UpperArmElevation, Side::Right), deg(30), "the right arm is raised"},
-    Bound{index_of(Limb::ElbowFlexion, Side::Left), deg(45), "the left elbow is bent"},
-    Bound{index_of(Limb::ElbowFlexion, Side::Right), deg(45), "the right elbow is bent"}};
+    Bound{Of::Body, index_of(Centre::TrunkFlexion), deg(20), "the trunk is bent"},
+    Bound{Of::Body, index_of(Centre::TrunkSideBend), deg(15), "the trunk leans sideways"},
+    Bound{Of::Body, index_of(Limb::KneeFlexion, Side::Left), deg(25), "the left knee is bent"},
+    Bound{Of::Body, index_of(Limb::KneeFlexion, Side::Right), deg(25), "the right knee is bent"},
+    Bound{Of::LeftArm, index_of(Limb::UpperArmElevation, Side::Left), deg(30),
+          "the left arm is raised"},
+    Bound{Of::RightArm, index_of(Limb::UpperArmElevation, Side::Right), deg(30),
+          "the right arm is raised"},
+    Bound{Of::LeftArm, index_of(Limb::ElbowFlexion, Side::Left), deg(45), "the left elbow is bent"},
+    Bound{Of::RightArm, index_of(Limb::ElbowFlexion, Side::Right), deg(45),
+          "the right elbow is bent"}};
 
 constexpr std::size_t kLeastInstants = 5;
 constexpr std::size_t kLeastUpright = 30;
@@ -36,6 +43,26 @@ constexpr std::size_t kLeastUpright = 30;
 constexpr double kCalm = deg(4);
 /// The middle share of the stretch's instants that must be upright.
 constexpr double kUprightShare = 0.9;
+
+Of part_of(std::size_t measure) {
+  for (const Side side : kSides) {
+    if (index_of(Limb::UpperArmRaise, side) <= measure &&
+        measure <= index_of(Limb::HandReach, side))
+      return side == Side::Left ? Of::LeftArm : Of::RightArm;
+  }
+  return Of::Body;
+}
+
+bool holds(const Bound& bound, const Measures& measures) {
+  return std::abs(measures.values[bound.measure]) <= bound.most;
+}
+
+/// Upright, as far as these measures need it.
+bool stands(const Measures& measures, Of part) {
+  return std::ranges::all_of(kBounds, [&](const Bound& bound) {
+    return (bound.of != Of::Body && bound.of != part) || holds(bound, measures);
+  });
+}
 
 double median_of(std::span<const Instant> instants, std::size_t measure) {
   std::vector<double> values;
@@ -147,22 +174,30 @@ Result<Neutral> neutral_of(std::span<const Instant> instants) {
   return neutral;
 }
 
-std::optional<Neutral> find_neutral(std::span<const Instant> instants) {
+std::optional<Neutral> calm_stance(std::span<const Instant> instants) {
   if (auto found = calmest(instants, kStanceLasts)) return found;
-  if (auto found = calmest(instants, kStanceLasts / 2)) return found;
-  std::vector<Instant> upright;
-  for (const std::size_t i : upright_instants(instants)) upright.push_back(instants[i]);
-  if (upright.empty()) return std::nullopt;
-  return stance_of(upright);
+  return calmest(instants, kStanceLasts / 2);
 }
 
-std::vector<std::size_t> upright_instants(std::span<const Instant> instants) {
-  std::vector<std::size_t> upright;
-  for (std::size_t i = 0; i < instants.size(); ++i) {
-    if (not_upright(instants[i].measures).empty()) upright.push_back(i);
+std::optional<Neutral> standing_stance(std::span<const Instant> instants,
+                                       std::span<const Instant> judged) {
+  std::array<std::vector<Instant>, 3> standing;
+  for (std::size_t i = 0; i < std::min(instants.size(), judged.size()); ++i) {
+    for (const Of part : {Of::Body, Of::LeftArm, Of::RightArm}) {
+      if (stands(judged[i].measures, part))
+        standing[static_cast<std::size_t>(part)].push_back(instants[i]);
+    }
   }
-  if (upright.size() < kLeastUpright) upright.clear();
-  return upright;
+  if (standing.front().size() < kLeastUpright) return std::nullopt;
+  Neutral neutral = stance_of(standing.front());
+  for (std::size_t m = 0; m < kMeasures; ++m)
+    neutral.stance.values[m] = median_of(standing[static_cast<std::size_t>(part_of(m))], m);
+  return neutral;
+}
+
+std::optional<Neutral> find_neutral(std::span<const Instant> instants) {
+  if (auto found = calm_stance(instants)) return found;
+  return standing_stance(instants, instants);
 }
 
 }  // namespace chorus::posture

@@ -49,12 +49,18 @@ inline constexpr Duration kStanceLasts = std::chrono::seconds(2);
 [[nodiscard]] Result<Neutral> neutral_of(std::span<const Instant> instants);
 
 /// The calmest upright stretch of kStanceLasts in a recording; if there is none of that length, of
-/// half of it; if nobody stands still so long, all upright_instants().  None otherwise.
-[[nodiscard]] std::optional<Neutral> find_neutral(std::span<const Instant> instants);
+/// half of it.
+[[nodiscard]] std::optional<Neutral> calm_stance(std::span<const Instant> instants);
 
-/// The places of the instants at which the person is upright, wherever they are in the recording;
-/// empty if they are fewer than a second of 30 Hz.
-[[nodiscard]] std::vector<std::size_t> upright_instants(std::span<const Instant> instants);
+/// The medians over all instants at which the person stands, wherever they are in the recording:
+/// with the trunk upright and the knees straight, and for what is measured of an arm with that arm
+/// hanging.  Whether they do is seen in `judged` (the same instants, of the same or of another
+/// tracker).  None if they stand for less than a second of 30 Hz.
+[[nodiscard]] std::optional<Neutral> standing_stance(std::span<const Instant> instants,
+                                                     std::span<const Instant> judged);
+
+/// The calm stance; if nobody stands still so long, the standing one.
+[[nodiscard]] std::optional<Neutral> find_neutral(std::span<const Instant> instants);
 
 /// Why these measures are no upright stance ("the left knee is bent by 40 degrees"); empty: they
 /// are one.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "common/ergonomics/all_methods.h"
 #include "common/ergonomics/summary.h"
@@ -20,25 +19,46 @@ using ergonomics::Side;
 constexpr double kNinety = 0.9;
 constexpr Duration kWindow = std::chrono::seconds(20);
 
-using Stance = std::set<Timestamp>;  ///< The instants of the own stance, the same on both sides.
-
-std::optional<posture::Neutral> stance_over(const std::vector<BodyAt>& bodies,
-                                            const Stance& stance) {
+std::vector<posture::Instant> instants_of(const std::vector<BodyAt>& bodies) {
   std::vector<posture::Instant> instants;
-  for (const BodyAt& body : bodies) {
-    if (stance.contains(body.at))
-      instants.push_back({body.at, posture::posture_of(body.body).measures});
+  for (const BodyAt& body : bodies)
+    instants.push_back({body.at, posture::posture_of(body.body).measures});
+  return instants;
+}
+
+/// The own stances as the two sides see them, of the same instants.
+struct Stances {
+  std::optional<posture::Neutral> found;
+  std::optional<posture::Neutral> truth;
+};
+
+/// The stance over a stretch, upright or not: the protocol of a recording says when it is.
+std::optional<posture::Neutral> stance_within(const std::vector<posture::Instant>& instants,
+                                              const std::pair<Timestamp, Timestamp>& stretch) {
+  std::vector<posture::Instant> within;
+  for (const auto& each : instants) {
+    if (stretch.first <= each.at && each.at <= stretch.second) within.push_back(each);
   }
-  if (instants.empty()) return std::nullopt;
-  return posture::stance_of(instants);
+  if (within.empty()) return std::nullopt;
+  return posture::stance_of(within);
+}
+
+/// Where no stretch is stated, what was found says when the person stands.
+Stances stances_of(const ScoredTake& take) {
+  const auto found = instants_of(take.found);
+  const auto truth = instants_of(take.truth);
+  auto stretch = take.stance;
+  if (!stretch) {
+    if (const auto calm = posture::calm_stance(found)) stretch = std::pair{calm->from, calm->until};
+  }
+  if (stretch) return {stance_within(found, *stretch), stance_within(truth, *stretch)};
+  return {posture::standing_stance(found, found), posture::standing_stance(truth, found)};
 }
 
 std::vector<Observation> observed(const std::vector<BodyAt>& bodies, const PostureOptions& options,
-                                  const Stance& stance) {
+                                  const std::optional<posture::Neutral>& stance) {
   Observer observer({.held = options.held});
-  if (options.stance) {
-    if (auto neutral = stance_over(bodies, stance)) observer.stance(*neutral);
-  }
+  if (options.stance && stance) observer.stance(*stance);
   std::vector<Observation> all;
   for (const BodyAt& body : bodies) all.push_back(observer.observe(body));
   return all;
@@ -81,13 +101,11 @@ void add_doubt(const Observation& found, int truth, PostureAgreement& sum) {
 
 /// Of each window, whether the stated interval of each level's share holds the true share.
 void add_zones(const ScoredTake& take, const std::vector<Observation>& truth,
-               const PostureOptions& options, const Stance& stance, PostureAgreement& sum) {
+               const std::optional<posture::Neutral>& stance, PostureAgreement& sum) {
   const std::vector<const Method*> methods{&ergonomics::kReba, &ergonomics::kOwas};
   ergonomics::Task task;
   task.asked = empty_hands();
-  std::optional<posture::Neutral> neutral;
-  if (options.stance) neutral = stance_over(take.found, stance);
-  const ergonomics::ScoringInput input{take.found, methods, task, take.found.front().at, neutral};
+  const ergonomics::ScoringInput input{take.found, methods, task, take.found.front().at, stance};
   const auto person = ergonomics::score_person(input);
   for (std::size_t first = 0; first < take.found.size();) {
     std::size_t last = first;
@@ -152,22 +170,6 @@ ergonomics::Asked empty_hands() {
 
 namespace {
 
-Stance stance_of_take(const ScoredTake& take) {
-  std::vector<posture::Instant> instants;
-  for (const BodyAt& body : take.found)
-    instants.push_back({body.at, posture::posture_of(body.body).measures});
-  auto stretch = take.stance;
-  if (const auto found = posture::find_neutral(instants); !stretch && found)
-    stretch = std::pair{found->from, found->until};
-  Stance stance;
-  for (const auto& instant : instants) {
-    const bool upright = take.stance || posture::not_upright(instant.measures).empty();
-    if (stretch && upright && stretch->first <= instant.at && instant.at <= stretch->second)
-      stance.insert(instant.at);
-  }
-  return stance;
-}
-
 /// A neck is compared with one that is measured in the same way: without a true orientation of the
 /// head, the found one is left out.
 ScoredTake with_like_heads(ScoredTake take) {
@@ -182,9 +184,9 @@ ScoredTake with_like_heads(ScoredTake take) {
 void compare_postures(const ScoredTake& compared, const PostureOptions& options,
                       PostureAgreement& sum) {
   const ScoredTake take = with_like_heads(compared);
-  const Stance stance = stance_of_take(take);
-  const auto found = observed(take.found, options, stance);
-  const auto truth = observed(take.truth, options, stance);
+  const Stances stances = stances_of(take);
+  const auto found = observed(take.found, options, stances.found);
+  const auto truth = observed(take.truth, options, stances.truth);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const int exact = person_score(ergonomics::kReba, truth[i]);
     if (exact == 0) continue;
@@ -204,7 +206,8 @@ void compare_postures(const ScoredTake& compared, const PostureOptions& options,
     if (posture > 0 && posture_exact > 0) sum.of[10].add(posture, posture_exact);
     add_doubt(found[i], exact, sum);
   }
-  if (options.held && !take.found.empty()) add_zones(take, truth, options, stance, sum);
+  if (options.held && !take.found.empty())
+    add_zones(take, truth, options.stance ? stances.found : std::nullopt, sum);
 }
 
 void report_agreement(Report& report, const std::string& name, const PostureAgreement& sum) {

@@ -50,13 +50,38 @@ TEST(NeutralStance, OfSomebodyWhoNeverStandsStillIsThatOfAllUprightInstants) {
   std::vector<Instant> restless;  // upright and bent in turn
   for (int i = 0; i < 80; ++i)
     restless.push_back({kStart + i * kFrameInterval, instants[i % 2 == 0 ? 100 : 170].measures});
-  EXPECT_EQ(upright_instants(restless).size(), 40u);
   const auto found = find_neutral(restless);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->instants, 40u);
   EXPECT_NEAR(found->stance[Centre::TrunkFlexion], instants[100].measures[Centre::TrunkFlexion],
               1e-12);
   EXPECT_FALSE(find_neutral(std::span(restless).first(50))) << "25 instants are too few";
+}
+
+TEST(NeutralStance, OfWhatIsNoArmDoesNotWaitForHangingArms) {
+  const auto instants = take();
+  std::vector<Instant> busy;  // stands, with one arm raised all the time and the other half of it
+  for (int i = 0; i < 80; ++i) {
+    busy.push_back({kStart + i * kFrameInterval, instants[100].measures});
+    Measures& measures = busy.back().measures;
+    measures[Centre::TrunkFlexion] = deg(i % 2 == 0 ? 4 : 9);
+    measures.at(Limb::UpperArmElevation, Side::Left) = deg(80);
+    measures.at(Limb::UpperArmElevation, Side::Right) = deg(i % 4 == 0 ? 10 : 70);
+  }
+  const auto found = find_neutral(busy);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->instants, 80u);
+  EXPECT_GE(found->stance[Centre::TrunkFlexion], deg(4) - 1e-9);
+  EXPECT_TRUE(std::isnan(found->stance.at(Limb::UpperArmElevation, Side::Left)))
+      << "nothing is taken off an arm that never hangs";
+  EXPECT_NEAR(found->stance.at(Limb::UpperArmElevation, Side::Right), deg(10), 1e-9);
+  // Another tracker of the same instants is not asked whether they stand.
+  auto other = busy;
+  for (auto& each : other) each.measures[Centre::TrunkFlexion] = deg(30);
+  EXPECT_FALSE(find_neutral(other));
+  const auto alike = standing_stance(other, busy);
+  ASSERT_TRUE(alike);
+  EXPECT_NEAR(alike->stance[Centre::TrunkFlexion], deg(30), 1e-9);
 }
 
 TEST(NeutralStance, OfArmsThatSwingToBothSidesIsTheirSize) {
