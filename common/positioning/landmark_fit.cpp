@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -178,7 +179,25 @@ std::optional<LandmarkFit> fit(const std::vector<Sighting>& seen, const HeadingP
   return out;
 }
 
+struct Pair {
+  JointId left;
+  JointId right;
+};
+constexpr std::array kArms{Pair{ShoulderLeft, ShoulderRight}, Pair{ElbowLeft, ElbowRight},
+                           Pair{WristLeft, WristRight}};
+constexpr std::array kLegs{Pair{HipLeft, HipRight}, Pair{KneeLeft, KneeRight},
+                           Pair{AnkleLeft, AnkleRight}};
+
 }  // namespace
+
+Skeleton<SensorSpace> relabelled(Skeleton<SensorSpace> rays, Exchanged what) {
+  const auto exchange = [&](const auto& pairs) {
+    for (const auto& [left, right] : pairs) std::swap(rays[left], rays[right]);
+  };
+  if (what == Exchanged::Arms || what == Exchanged::Everything) exchange(kArms);
+  if (what == Exchanged::Legs || what == Exchanged::Everything) exchange(kLegs);
+  return rays;
+}
 
 std::optional<LandmarkFit> fit_landmarks(std::span<const SeenRays> cameras,
                                          const suit::SuitPose& pose, const HeadingPrior& prior) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
 #include "common/base/median.h"
+#include "common/geometry/rotation.h"
 #include "common/positioning/paper_smoothing.h"
 
 namespace chorus::positioning {
@@ -18,6 +20,7 @@ constexpr std::size_t kPictures = 120;  // Pictures that the search uses, spread
 // The best offset must fit better than the median of all by this share, or the take says nothing
 // about the clock: a person who stands still fits at any time.
 constexpr double kTelling = 0.93;
+constexpr double kHeadingSigma = 0.15;  // Of a heading that is tried [rad].
 
 struct Pictured {
   const CameraTake* camera;
@@ -47,7 +50,6 @@ double misfit_at(const std::vector<Pictured>& pictures, const suit::SuitTake& su
     double best = 2.0 * kLargestMisfit;
     for (const BodyFrame& body : one.frame->bodies) {
       const std::array<SeenRays, 1> rays{SeenRays{one.camera->world_from_sensor, body.skeleton}};
-      constexpr double kHeadingSigma = 0.15;
       const auto fit = fit_landmarks(rays, pose, {heading, kHeadingSigma});
       if (fit) best = std::min(best, fit->misfit);
     }
@@ -56,25 +58,47 @@ double misfit_at(const std::vector<Pictured>& pictures, const suit::SuitTake& su
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, pictures.size())));
 }
 
-/// The heading at which most pictures fit, at this offset of the clocks.
-double heading_at(const std::vector<Pictured>& pictures, const suit::SuitTake& suit,
-                  const TakeSettings& settings, double offset) {
-  double sine = 0.0;
-  double cosine = 0.0;
-  for (std::size_t i = 0; i < pictures.size(); i += 4) {
-    const double at = seconds(pictures[i].frame->captured - settings.start) - offset;
+/// The mean of the headings that the pictures find near this one.
+double refined_heading(const std::vector<Pictured>& pictures, const suit::SuitTake& suit,
+                       const TakeSettings& settings, double offset, double heading) {
+  double by = 0.0;
+  double weights = 0.0;
+  for (const Pictured& one : pictures) {
+    const double at = seconds(one.frame->captured - settings.start) - offset;
     const suit::SuitPose pose = pose_at(suit, from_seconds(at));
-    for (const BodyFrame& body : pictures[i].frame->bodies) {
-      const std::array<SeenRays, 1> rays{
-          SeenRays{pictures[i].camera->world_from_sensor, body.skeleton}};
-      const auto fit = fit_any_heading(rays, pose);
+    for (const BodyFrame& body : one.frame->bodies) {
+      const std::array<SeenRays, 1> rays{SeenRays{one.camera->world_from_sensor, body.skeleton}};
+      const auto fit = fit_landmarks(rays, pose, {heading, kHeadingSigma});
       if (!fit) continue;
       const double weight = 1.0 / std::pow(std::max(0.3, fit->misfit), 4);
-      sine += weight * std::sin(fit->heading);
-      cosine += weight * std::cos(fit->heading);
+      by += weight * wrap_angle(fit->heading - heading);
+      weights += weight;
     }
   }
-  return std::atan2(sine, cosine);
+  return weights > 0.0 ? wrap_angle(heading + by / weights) : heading;
+}
+
+/// The heading at which the pictures fit best together, at this offset of the clocks.  Pictures in
+/// which the network exchanged left and right fit best at the opposite one: a mean over the best
+/// heading of each picture would lie between the two.
+double heading_at(const std::vector<Pictured>& pictures, const suit::SuitTake& suit,
+                  const TakeSettings& settings, double offset) {
+  std::vector<Pictured> some;
+  for (std::size_t i = 0; i < pictures.size(); i += 4) some.push_back(pictures[i]);
+  constexpr int kHeadings = 24;
+  double best = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kHeadings; ++i) {
+    const double heading = wrap_angle(2.0 * std::numbers::pi * i / kHeadings);
+    const double misfit = misfit_at(some, suit, settings, offset, heading);
+    if (misfit >= least) continue;
+    least = misfit;
+    best = heading;
+  }
+  constexpr int kRefinements =
+      4;  // The fits of single pictures stay near the heading that is tried.
+  for (int i = 0; i < kRefinements; ++i) best = refined_heading(some, suit, settings, offset, best);
+  return best;
 }
 
 struct Tried {

@@ -17,7 +17,8 @@ constexpr int kInARow = 8;
 constexpr double kFirstMisfit = 1.8;
 // After so many pictures in a row in which nobody fits, the beginning was wrong: it begins anew.
 constexpr int kAnew = 12;
-constexpr double kKnownHeading = 0.3;        // Uncertainty of a heading that is stated [rad].
+constexpr double kKnownHeading = 0.3;  // Uncertainty of a heading that is stated [rad].
+constexpr double kMostFirstTurn = 2.0 * kKnownHeading;
 constexpr double kFirstHeadingSigma = 0.15;  // Of the first fit [rad].
 // After so long without a sight, an outline is looked for everywhere again.
 constexpr Duration kLost = std::chrono::milliseconds(700);
@@ -35,29 +36,48 @@ Tracker::Tracker(const TrackerSettings& settings)
       footing_(settings.stature),
       filter_(cameras_of(settings), settings.errors) {}
 
-/// The person in the picture who fits pose and expectation best.
+/// The person, with these labels of left and right, as the pose and the expectation have it.
+std::optional<Tracker::Found> Tracker::found_as(const SeenRays& seen, const suit::SuitPose& pose,
+                                                std::size_t camera) const {
+  const std::span<const SeenRays> rays(&seen, 1);
+  const Position now = filter_.position();
+  constexpr double kLeastSigma = 0.1;
+  HeadingPrior prior{now.heading, std::max(kLeastSigma, now.heading_sigma)};
+  if (!filter_.begun() && settings_.heading) prior = {*settings_.heading, kKnownHeading};
+  const auto fit = knows_heading() ? fit_landmarks(rays, pose, prior) : fit_any_heading(rays, pose);
+  if (!fit) return std::nullopt;
+  // A first picture that contradicts a known heading shows somebody else, or half a person.
+  if (!filter_.begun() && settings_.heading &&
+      std::abs(wrap_angle(fit->heading - prior.heading)) > kMostFirstTurn)
+    return std::nullopt;
+  return Found{{camera, seen.world_from_sensor.translation(), fit->place,
+                fit->covariance.topLeftCorner<3, 3>(), fit->heading},
+               fit->misfit,
+               fit->heading};
+}
+
+/// The person in the picture, and the labels of left and right, that fit pose and expectation best.
+/// While no heading is known, labels that are exchanged fit at the opposite one, so they are taken
+/// as they are.
 std::optional<Tracker::Found> Tracker::found_in(const Look& look,
                                                 const suit::SuitPose& pose) const {
   std::optional<Found> best;
   double best_cost = 0.0;
   for (const Skeleton<SensorSpace>& person : look.people) {
-    const std::array<SeenRays, 1> rays{SeenRays{look.world_from_sensor, person}};
-    const Position now = filter_.position();
-    constexpr double kLeastSigma = 0.1;
-    HeadingPrior prior{now.heading, std::max(kLeastSigma, now.heading_sigma)};
-    const bool known = filter_.begun() || settings_.heading;
-    if (!filter_.begun() && settings_.heading) prior = {*settings_.heading, kKnownHeading};
-    const auto fit = known ? fit_landmarks(rays, pose, prior) : fit_any_heading(rays, pose);
-    if (!fit) continue;
-    Found found{{look.camera, look.world_from_sensor.translation(), fit->place,
-                 fit->covariance.topLeftCorner<3, 3>(), fit->heading},
-                fit->misfit,
-                fit->heading};
-    const double surprise = filter_.begun() ? filter_.surprise(found.seen) : 0.0;
-    const double cost = fit->misfit * fit->misfit + surprise;
-    if (best && best_cost <= cost) continue;
-    best = found;
-    best_cost = cost;
+    for (const Exchanged what : kExchanges) {
+      // Labels that fit as they are cannot be beaten by exchanged ones, which cost something.
+      const bool fits = best && best_cost <= kExchangeCost;
+      if (what != Exchanged::Nothing && (fits || !knows_heading())) break;
+      const auto found =
+          found_as({look.world_from_sensor, relabelled(person, what)}, pose, look.camera);
+      if (!found) continue;
+      const double surprise = filter_.begun() ? filter_.surprise(found->seen) : 0.0;
+      const double cost = found->misfit * found->misfit + surprise +
+                          (what == Exchanged::Nothing ? 0.0 : kExchangeCost);
+      if (best && best_cost <= cost) continue;
+      best = found;
+      best_cost = cost;
+    }
   }
   return best;
 }

@@ -73,6 +73,9 @@ class Tracker {
     double misfit = 0.0;
     double heading = 0.0;
   };
+  [[nodiscard]] bool knows_heading() const { return filter_.begun() || settings_.heading; }
+  [[nodiscard]] std::optional<Found> found_as(const SeenRays& seen, const suit::SuitPose& pose,
+                                              std::size_t camera) const;
   [[nodiscard]] std::optional<Found> found_in(const Look& look, const suit::SuitPose& pose) const;
   [[nodiscard]] bool accept(const Found& found, Tracked& out);
   void begin(const Found& found);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "common/base/median.h"
 #include "common/base/units.h"
 #include "common/body/bones.h"
 #include "common/importers/formats.h"
@@ -141,6 +142,42 @@ Bodies without(const SensorId& judged, const importers::ImportedSet& set, const 
   return out;
 }
 
+/// As a suit holds a person: bones that do not change, and no jitter of single pictures, which
+/// would look like jumps.
+Bodies held(const Bodies& seen) {
+  constexpr double kSmoothing = 2.0;  // Instants: 33 ms.
+  constexpr std::ptrdiff_t kReach = 6;
+  const auto count = static_cast<std::ptrdiff_t>(seen.size());
+  Bodies smooth = seen;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    // As many instants before as after, or the ends would lag.
+    const std::ptrdiff_t reach = std::min({kReach, i, count - 1 - i});
+    for (std::size_t k = 0; k < kJointCount; ++k) {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      double weights = 0.0;
+      for (std::ptrdiff_t by = -reach; by <= reach; ++by) {
+        const double off = static_cast<double>(by) / kSmoothing;
+        const double weight = std::exp(-0.5 * off * off);
+        sum += weight * seen[static_cast<std::size_t>(i + by)].joints[k].position;
+        weights += weight;
+      }
+      smooth[static_cast<std::size_t>(i)].joints[k].position = sum / weights;
+    }
+  }
+  Bodies out = smooth;
+  for (const Bone& bone : kBones) {
+    std::vector<double> lengths;
+    for (const auto& body : smooth)
+      lengths.push_back((body[bone.child].position - body[bone.parent].position).norm());
+    const double usual = median(lengths);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const Eigen::Vector3d way = smooth[i][bone.child].position - smooth[i][bone.parent].position;
+      out[i][bone.child].position = out[i][bone.parent].position + usual * way.stableNormalized();
+    }
+  }
+  return out;
+}
+
 void add_methods(Report& report, const PixelCamera& camera, const PixelTruth& truth) {
   double beside = kNoRatio;
   for (const PixelMethod& method : kPixelMethods) {
@@ -180,7 +217,7 @@ Result<void> four_views_pixels(Report& report) {
   for (const auto& [id, place] : set->world_from_sensor) {
     const auto camera = looked_through(id, place);
     if (!camera) return pass(camera);
-    truth.suit = suit_of(without(id, *set, bodies), kTruthRate, {});
+    truth.suit = suit_of(held(without(id, *set, bodies)), kTruthRate, {});
     const double own = suit::stature_of(truth.suit.poses.front());
     if (own > 0.0) truth.stature = own;
     add_methods(report, *camera, truth);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/base/units.h"
 #include "tests/support/matchers.h"
 #include "tests/unit/positioning/scenes.h"
 
@@ -50,6 +51,36 @@ TEST(PlacedTake, FollowsAWalkWhoseClockAndHeadingNobodyTold) {
   EXPECT_NEAR(result->heading, 0.4, 0.05);
   EXPECT_GT(result->placed.size(), result->instants * 95 / 100);
   EXPECT_LT(worst_error(*result, stage.motion), 0.2);
+}
+
+TEST(PlacedTake, IsNotLedAwayByACameraThatExchangesLeftAndRight) {
+  for (const Exchanged what : {Exchanged::Everything, Exchanged::Legs}) {
+    Stage stage;
+    stage.settings.offset_s = 0.0;
+    stage.settings.tracker.heading = 0.0;
+    // Longer than the tracker waits before it begins anew.
+    for (std::size_t i = 15; i < stage.camera.frames.size(); ++i) {
+      for (BodyFrame& body : stage.camera.frames[i].bodies)
+        body.skeleton = relabelled(body.skeleton, what);
+    }
+    const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_NEAR(result->heading, 0.0, deg(8.0));
+    EXPECT_LT(worst_error(*result, stage.motion), 0.2);
+  }
+}
+
+TEST(PlacedTake, FindsTheHeadingAtWhichMostPicturesFit) {
+  Stage stage;
+  stage.settings.offset_s = 0.0;
+  for (std::size_t i = 0; i < stage.camera.frames.size(); ++i) {
+    if (i % 20 < 11) continue;
+    for (BodyFrame& body : stage.camera.frames[i].bodies)
+      body.skeleton = relabelled(body.skeleton, Exchanged::Everything);
+  }
+  const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_NEAR(result->clock.heading, 0.0, deg(4.0));
 }
 
 TEST(PlacedTake, GoesOnByTheSuitsStepsWhileThePersonIsHidden) {
