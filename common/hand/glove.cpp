@@ -18,11 +18,12 @@ using Contour = std::vector<cv::Point>;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNearest = 0.05;      // Nothing is rendered nearer to the camera [m].
-constexpr int kSubpixel = 4;           // fractional bits of OpenCV's coordinates
-constexpr double kCircleSigma = 0.5;   // of a radius [px]
-constexpr double kOutlineSigma = 1.0;  // of an outline's place [px], ...
-constexpr double kIndependent = 15.0;  // ... and one point in this many errs by itself
+constexpr double kNearest = 0.05;        // Nothing is rendered nearer to the camera [m].
+constexpr int kSubpixel = 4;             // fractional bits of OpenCV's coordinates
+constexpr double kCircleSigma = 0.5;     // of a radius [px]
+constexpr double kCircleEnough = 0.003;  // of a step of the circles [m]
+constexpr double kOutlineSigma = 1.0;    // of an outline's place [px], ...
+constexpr double kIndependent = 15.0;    // ... and one point in this many errs by itself
 
 Vector2d projected(const Vector3d& x, const Intrinsics& camera) {
   return {camera.cx + camera.fx * x.x() / x.z(), camera.cy + camera.fy * x.y() / x.z()};
@@ -73,13 +74,16 @@ Vector3d aligned(const Vector3d& wrist, const Circle& model, const Circle& image
   return rho * moved;  // Eq. (4)
 }
 
-/// Distance to the mask's outline, negative inside.
+/// Distance to the mask's outline, which lies half-way between its pixels and others; negative
+/// inside.
 cv::Mat signed_distance(const cv::Mat& mask) {
   cv::Mat outside, inside, inverse;
   cv::bitwise_not(mask, inverse);
   cv::distanceTransform(inverse, outside, cv::DIST_L2, cv::DIST_MASK_5);
   cv::distanceTransform(mask, inside, cv::DIST_L2, cv::DIST_MASK_5);
-  return outside - inside;
+  cv::Mat half;
+  mask.convertTo(half, CV_32F, 1.0 / 255.0, -0.5);  // 0.5 inside, -0.5 outside
+  return outside - inside + half;
 }
 
 struct Normal {
@@ -88,44 +92,71 @@ struct Normal {
   std::vector<double> distances;
 };
 
-/// The equations of the template's outline against the image's.  All of its points are taken to be
-/// as far away as the wrist: that scales their derivatives, not the place where the distances are
-/// least.
-Normal equations(const cv::Mat& distance, const cv::Mat& model, const Vector3d& wrist,
-                 const Intrinsics& camera) {
+std::vector<Contour> contours_of(const cv::Mat& mask) {
+  std::vector<Contour> out;
+  cv::findContours(mask, out, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  return out;
+}
+
+/// Adds one outline's equations in the other's distances.  `sign`: 1 when the outline is the
+/// template's, which moves; -1 when it is the image's, and the distances move.  All points are
+/// taken to be as far away as the wrist: that scales their derivatives, not the place where the
+/// distances are least.
+void add_outline(const cv::Mat& distance, const std::vector<Contour>& contours, double sign,
+                 const Vector3d& wrist, const Intrinsics& camera, Normal& out) {
   constexpr double kCauchy = 4.0;  // [px]
-  Normal out;
-  std::vector<Contour> contours;
-  cv::findContours(model, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  const double z = wrist.z(), fx = camera.fx / z, fy = camera.fy / z;
   for (const Contour& contour : contours) {
     for (const cv::Point& p : contour) {
       if (p.x < 2 || p.y < 2 || p.x >= distance.cols - 2 || p.y >= distance.rows - 2) continue;
       const double r = distance.at<float>(p.y, p.x);
       const double gx = 0.5 * (distance.at<float>(p.y, p.x + 1) - distance.at<float>(p.y, p.x - 1));
       const double gy = 0.5 * (distance.at<float>(p.y + 1, p.x) - distance.at<float>(p.y - 1, p.x));
-      const double fx = camera.fx / wrist.z(), fy = camera.fy / wrist.z();
-      const Vector3d row(gx * fx, gy * fy,
-                         -(gx * (p.x - camera.cx) + gy * (p.y - camera.cy)) / wrist.z());
+      const Vector3d row =
+          sign * Vector3d(gx * fx, gy * fy, -(gx * (p.x - camera.cx) + gy * (p.y - camera.cy)) / z);
       const double weight = 1.0 / (1.0 + r * r / (kCauchy * kCauchy));
       out.matrix += weight * row * row.transpose();
       out.vector += weight * r * row;
       out.distances.push_back(std::abs(r));
     }
   }
+}
+
+/// The part of a picture around a mask, and the camera that takes it.
+struct GlovePart {
+  cv::Mat mask;
+  Intrinsics camera;
+};
+
+GlovePart around(const cv::Mat& mask, const Intrinsics& camera) {
+  constexpr int kMargin = 32;  // The template lies so near when its refinement begins [px].
+  const cv::Rect box = cv::boundingRect(mask);
+  const cv::Rect wide(box.x - kMargin, box.y - kMargin, box.width + 2 * kMargin,
+                      box.height + 2 * kMargin);
+  const cv::Rect part = wide & cv::Rect(0, 0, mask.cols, mask.rows);
+  GlovePart out{mask(part), camera};
+  out.camera.cx -= part.x;
+  out.camera.cy -= part.y;
+  out.camera.width = part.width;
+  out.camera.height = part.height;
   return out;
 }
 
-/// Gauss-Newton on the distance between both outlines.
-void refine_place(GlovePlace& place, const cv::Mat& mask, PosedGlove glove,
-                  const Intrinsics& camera) {
+/// Gauss-Newton on the distances of each outline from the other.  Distances of the template's
+/// outline alone would pull it smaller: a finger that is too long is seen by all of its tip, one
+/// that is too short only by the tip's very end, because its sides are nearer to the sides.
+void refine_place(GlovePlace& place, const GlovePart& seen, PosedGlove glove) {
   constexpr int kSteps = 6;
-  constexpr double kFarthestStep = 0.05, kEnough = 2e-4;  // [m]
-  const cv::Mat distance = signed_distance(mask);
+  constexpr double kFarthestStep = 0.05, kEnough = 5e-4;  // [m]
+  const cv::Mat distance = signed_distance(seen.mask);
+  const auto outline = contours_of(seen.mask);
   for (int i = 0; i < kSteps; ++i) {
     glove.pose.wrist = place.wrist;
-    const Normal normal =
-        equations(distance, silhouette(glove.skeleton, glove.pose, camera), place.wrist, camera);
-    if (normal.distances.size() < 20) return;
+    const cv::Mat model = silhouette(glove.skeleton, glove.pose, seen.camera);
+    Normal normal;
+    add_outline(distance, contours_of(model), 1.0, place.wrist, seen.camera, normal);
+    add_outline(signed_distance(model), outline, -1.0, place.wrist, seen.camera, normal);
+    if (normal.distances.size() < 40) return;
     place.residual = median(normal.distances);
     const double damping = 1e-6 * normal.matrix.trace();
     const Eigen::Matrix3d matrix = normal.matrix + damping * Eigen::Matrix3d::Identity();
@@ -133,7 +164,9 @@ void refine_place(GlovePlace& place, const cv::Mat& mask, PosedGlove glove,
     if (step.norm() > kFarthestStep) step *= kFarthestStep / step.norm();
     if (place.wrist.z() + step.z() < 2.0 * kNearest) return;
     place.wrist += step;
-    place.covariance = kOutlineSigma * kOutlineSigma * kIndependent * matrix.inverse();
+    // Both outlines tell the same twice; outlines that do not fit tell less.
+    const double sigma = std::max(kOutlineSigma, place.residual);
+    place.covariance = 2.0 * sigma * sigma * kIndependent * matrix.inverse();
     if (step.norm() < kEnough) return;
   }
 }
@@ -249,10 +282,13 @@ Result<GlovePlace> place_glove(const cv::Mat& mask, const PosedGlove& glove,
     pose.wrist = out.wrist;
     const auto model = inscribed(silhouette(glove.skeleton, pose, camera));
     if (!model) return fail(ErrorCode::NotFound, "glove", "is outside the picture");
+    const Vector3d before = out.wrist;
     out.wrist = aligned(out.wrist, *model, *image, camera);
+    // What is left is for the refinement.
+    if (options.refine && (out.wrist - before).norm() < kCircleEnough) break;
   }
   out.facing = facing_of(glove, out.wrist);
-  if (options.refine) refine_place(out, mask, glove, camera);
+  if (options.refine) refine_place(out, around(mask, camera), glove);
   widen(out, image->radius, camera, options);
   return out;
 }
