@@ -54,14 +54,6 @@ JointPairs pairs_of(const Candidate& person, const Candidate& image, Sides sides
   return pairs;
 }
 
-/// The plane halfway between the cores: where a mirror would be.
-std::optional<Mirror> between(const Candidate& person, const Candidate& image) {
-  const Eigen::Vector3d way = image.track.core - person.track.core;
-  if (!(way.norm() > kApart)) return std::nullopt;
-  const Eigen::Vector3d normal = way.normalized();
-  return Mirror{normal, normal.dot(0.5 * (image.track.core + person.track.core))};
-}
-
 struct Likeness {
   const Candidate* person = nullptr;
   Reflection reflection = {};
@@ -84,12 +76,13 @@ void refine(Mirror& mirror, const Mirror& shown) {
 
 /// How the candidate is the image of `person` at this instant, if it is.
 std::optional<Likeness> likeness_to(const Candidate& person, const Candidate& image,
-                                    Mirrors& mirrors) {
+                                    const std::vector<Observer>& observers, Mirrors& mirrors) {
   std::optional<Likeness> best;
   for (const Sides sides : {Sides::Exchanged, Sides::Kept}) {
     const JointPairs pairs = pairs_of(person, image, sides);
     const auto found = pairs.reflection();
     if (!found || (best && found->rms >= best->reflection.rms)) continue;
+    if (!look_into(found->mirror, image, person, observers)) continue;
     Mirror* known = mirror_of(pairs, mirrors);
     if (found->rms < kLike || known) best = Likeness{&person, *found, known};
   }
@@ -102,9 +95,7 @@ std::optional<Likeness> likeness_of(const Candidate& image, const std::vector<Ca
   std::optional<Likeness> best;
   for (const Candidate& person : all) {
     if (&person == &image || person.track.image.sure) continue;
-    const auto middle = between(person, image);
-    if (!middle || !look_into(*middle, image, person, observers)) continue;
-    const auto found = likeness_to(person, image, mirrors);
+    const auto found = likeness_to(person, image, observers, mirrors);
     if (found && (!best || found->reflection.rms < best->reflection.rms)) best = found;
   }
   return best;

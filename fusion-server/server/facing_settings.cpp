@@ -67,11 +67,6 @@ void read_telling(ConfigReader reader, facing::TellingPrior& out) {
   reader.read("same_s", out.same, 1e-3, kMaxTime);
 }
 
-void read_worn_cue(ConfigReader reader, facing::WornCue& out) {
-  reader.read("misleads", out.misleads, 1e-3, 0.5);
-  reader.read("same_s", out.same, 1e-3, kMaxTime);
-}
-
 void read_limbs(ConfigReader reader, facing::LimbLimits& out) {
   reader.read("mend", out.mend);
   reader.read("apart_m", out.apart, 0.01, 1.0);
@@ -93,7 +88,6 @@ void read_facing(ConfigReader reader, facing::SidesConfig& out) {
   reader.read("lost_per_s", out.person.lost, 0.0, kMaxRate);
   read_habit(reader.child("habit"), out.habit);
   read_telling(reader.child("telling"), out.telling);
-  read_worn_cue(reader.child("worn"), out.worn);
   read_limbs(reader.child("limbs"), out.limbs);
   reader.read("change_log_odds", out.change_odds, 0.0, kMaxLogOdds);
   reader.read_deg("turn_sigma_deg", out.turn_sigma, 10.0, 90.0);
