@@ -16,9 +16,10 @@ constexpr std::size_t kWorst = 3;
 /// Errors of joints last for about half a second (docs/benchmarks/model.md), so neighbouring
 /// instants do not average out, ...
 constexpr double kErrorLasts = 0.5;  // [s]
-/// ... and a part of their variance, differences between two trackers' ideas of a joint, never
-/// does.  Measured on the two takes with Vicon of docs/benchmarks/ergonomics.md.
-constexpr double kLasting = 0.25;
+/// ... and what the own stance leaves of them goes with the posture (bends are measured too small),
+/// so it lasts as long as the posture does.  Measured on the two takes with Vicon of
+/// docs/benchmarks/ergonomics.md.
+constexpr double kLasting = 1.0;
 
 double since(Timestamp start, Timestamp at) {
   return std::chrono::duration<double>(at - start).count();
