@@ -23,9 +23,9 @@ struct Change {
   double later = 0.0;  ///< [s]
 };
 
-People people_of(const FusedFrames& frames, const Change& change) {
+/// Times are those of the room, which both recordings share.
+People people_of(const FusedFrames& frames, Timestamp origin, const Change& change) {
   People out;
-  const Timestamp origin = frames.front().captured;
   for (const auto& frame : frames)
     for (const auto& body : frame.bodies) {
       comparison::Moment moment;
@@ -82,12 +82,13 @@ struct PairOutcome {
 Result<PairOutcome> compared(std::uint64_t seed) {
   const auto pair = pair_of(seed);
   if (!pair) return pass(pair);
-  const People a = people_of(pair->a, {});
+  const Timestamp begin = pair->a.front().captured;
+  const People a = people_of(pair->a, begin, {});
   PairOutcome out;
-  const auto same = comparison::compare(a, people_of(pair->b, {}));
+  const auto same = comparison::compare(a, people_of(pair->b, begin, {}));
   if (!same) return pass(same);
   if (!same->differences.empty()) out.identical = same->differences.front();
-  const auto other = comparison::compare(a, people_of(pair->b, planted(seed)));
+  const auto other = comparison::compare(a, people_of(pair->b, begin, planted(seed)));
   if (!other) return pass(other);
   out.planted_found = !other->differences.empty();
   std::mt19937_64 random(seed);
@@ -95,7 +96,8 @@ Result<PairOutcome> compared(std::uint64_t seed) {
   Change change;
   change.later = drawn(random);
   change.world.translation() = Eigen::Vector3d(drawn(random), 0.0, drawn(random));
-  const auto moved = comparison::compare(a, people_of(pair->b, change), {.clock_range = 2.0});
+  const auto moved =
+      comparison::compare(a, people_of(pair->b, begin, change), {.clock_range = 2.0});
   if (!moved) return pass(moved);
   out.lag_error = std::abs(moved->lag + change.later);
   for (int axis = 0; axis < 3; ++axis)

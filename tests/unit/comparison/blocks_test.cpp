@@ -8,11 +8,11 @@
 namespace chorus::comparison {
 namespace {
 
-/// Noise of first order that lasts for a second, 30 values a second.
-Series lasting_noise(unsigned seed, double mean, double seconds) {
+/// Noise of first order that lasts for so long [s], 30 values a second.
+Series lasting_noise(unsigned seed, double mean, double seconds, double lasts = 1.0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> white(0.0, 1.0);
-  const double keep = std::exp(-1.0 / 30.0);
+  const double keep = std::exp(-1.0 / (30.0 * lasts));
   Series series;
   double value = white(random);
   for (int i = 0; i < static_cast<int>(30.0 * seconds); ++i) {
@@ -32,6 +32,16 @@ TEST(Blocks, HoldTheMeanOfNoiseThatLastsAsOftenAsStated) {
   }
   EXPECT_GT(held, 0.84 * kDraws);
   EXPECT_LT(held, 0.95 * kDraws);
+}
+
+TEST(Blocks, CountFewerOfThemWhenNoiseOutlastsABlock) {
+  int held = 0;
+  constexpr int kDraws = 300;
+  for (unsigned seed = 1; seed <= kDraws; ++seed) {
+    const Estimate found = mean_of(lasting_noise(seed, 2.0, 120.0, 5.0), 5.0, 0.9);
+    held += std::abs(found.mean - 2.0) <= found.half ? 1 : 0;
+  }
+  EXPECT_GT(held, 0.82 * kDraws);  // Blocks taken as independent: below 0.75.
 }
 
 TEST(Blocks, FindASlope) {
