@@ -31,6 +31,7 @@ TEST(Sniff, KnowsFilesByTheirBeginning) {
       {"HIERARCHY\nROOT"sv, "bvh", "BVH"},
       {"\xEF\xBB\xBFhierarchy\n"sv, "bvh", "BVH"},
       {"PathFileType\t4"sv, "trc", "TRC"},
+      {"# made by hand\n[Header]\nFileType htr\nEulerRotationOrder ZYX\n"sv, "htr", "HTR"},
       {"<?xml version=\"1.0\"?>\n<mvnx version=\"4\">"sv, "mvnx", "MVNX"},
       {"version https://git-lfs.github.com/spec/v1"sv, "", "Git LFS"},
       {"<!DOCTYPE html>"sv, "", "web page"},
