@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/support"))
 from ports import free_ports  # noqa: E402
 
-PATIENCE_S = 60
+PATIENCE_S = 120
 BIN = Path(os.environ.get("CHORUS_BIN", ROOT / "build/dev/bin"))
 GUIDE = ROOT / "docs/guide/inertial.md"
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
@@ -226,6 +226,8 @@ class LiveService(unittest.TestCase):
         self.started = []
 
     def adapted(self, line):
+        # On a busy machine every sensor is calibrated later, and one that slipped before is told of never.
+        line = line.replace("slips_after_s=20", "slips_after_s=45")
         return re.sub(r"\b80\d\d\b", lambda port: self.ports[port.group(0)], line)
 
     def start(self, line):

@@ -117,6 +117,10 @@ class NatNet(Rig):
         lines = get(fusion.url + "metrics", accept="text/plain")[2].decode().splitlines()
         return next(float(line.split()[-1]) for line in lines if line.startswith(f'chorus_output_{name}{{output="natnet"}}'))
 
+    def stated_rate(self, client):
+        rate, = struct.unpack("<f", client.ask(2, natnet.RESPONSE, b"FrameRate\0"))
+        return rate
+
     def test_a_client_gets_the_poses_of_frame_while_others_misbehave(self):
         fusion = self.tracker()
         client = Client(self, self.port)
@@ -127,7 +131,9 @@ class NatNet(Rig):
         stamp, ticks = natnet.echo(client.ask(ECHO, natnet.ECHO, struct.pack("<Q", 7)))
         self.assertEqual(stamp, 7)
         self.assertLess(abs(ticks - time.time_ns()), 10**9)
-        rate, = struct.unpack("<f", client.ask(2, natnet.RESPONSE, b"FrameRate\0"))
+        end = time.monotonic() + 20  # Of the first second a busy machine publishes fewer.
+        while abs((rate := self.stated_rate(client)) - 30) > 3 and time.monotonic() < end:
+            time.sleep(0.3)
         self.assertAlmostEqual(rate, 30, delta=3)
         done = threading.Event()
         noise = threading.Thread(target=self.misbehave, args=(done,))
