@@ -7,7 +7,7 @@
 // world, and every point x of such a sensor s x, about the sensor's origin.  The variance of s is
 // added to each covariance: sigma^2 t t^T, rank one; with measured distances the covariances of all
 // places with each other are conditioned on these instead, which leaves no common factor in them.
-// docs/decisions/0082-the-scale-of-cameras.md.
+// docs/decisions/0082-scale-of-cameras-that-guess-depth.md.
 #pragma once
 
 #include "fusion-server/registration/registration.h"
