@@ -12,7 +12,7 @@ namespace chorus::importers {
 namespace {
 
 /// Where nose, eyes, ears and mouth, the first landmarks, lie in head axes [m]: as four cameras
-/// place them in the person of shared/data/pose2sim_mediapipe, made symmetric.  Eight other cameras
+/// place them in the person of tests/data/pose2sim_mediapipe, made symmetric.  Eight other cameras
 /// and two other people (docs/benchmarks/ergonomics.md) give the same within 6 mm (ears: 10 mm).
 const std::vector<cv::Point3d> kFace{
     {0.0, -0.014, 0.025},     {0.0145, 0.015, 0.0105},  {0.0235, 0.015, 0.007},

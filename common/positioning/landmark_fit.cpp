@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "common/body/bones.h"
 #include "common/geometry/rotation.h"
 
 namespace chorus::positioning {
@@ -179,23 +180,17 @@ std::optional<LandmarkFit> fit(const std::vector<Sighting>& seen, const HeadingP
   return out;
 }
 
-struct Pair {
-  JointId left;
-  JointId right;
-};
-constexpr std::array kArms{Pair{ShoulderLeft, ShoulderRight}, Pair{ElbowLeft, ElbowRight},
-                           Pair{WristLeft, WristRight}};
-constexpr std::array kLegs{Pair{HipLeft, HipRight}, Pair{KneeLeft, KneeRight},
-                           Pair{AnkleLeft, AnkleRight}};
+constexpr std::array kArm{ShoulderLeft, ElbowLeft, WristLeft};
+constexpr std::array kLeg{HipLeft, KneeLeft, AnkleLeft};
 
 }  // namespace
 
 Skeleton<SensorSpace> relabelled(Skeleton<SensorSpace> rays, Exchanged what) {
-  const auto exchange = [&](const auto& pairs) {
-    for (const auto& [left, right] : pairs) std::swap(rays[left], rays[right]);
+  const auto exchange = [&](const auto& limb) {
+    for (const JointId joint : limb) std::swap(rays[joint], rays[mirror(joint)]);
   };
-  if (what == Exchanged::Arms || what == Exchanged::Everything) exchange(kArms);
-  if (what == Exchanged::Legs || what == Exchanged::Everything) exchange(kLegs);
+  if (what == Exchanged::Arms || what == Exchanged::Everything) exchange(kArm);
+  if (what == Exchanged::Legs || what == Exchanged::Everything) exchange(kLeg);
   return rays;
 }
 

@@ -95,8 +95,8 @@ double heading_at(const std::vector<Pictured>& pictures, const suit::SuitTake& s
     least = misfit;
     best = heading;
   }
-  constexpr int kRefinements =
-      4;  // The fits of single pictures stay near the heading that is tried.
+  // The fits of single pictures stay near the heading that is tried.
+  constexpr int kRefinements = 4;
   for (int i = 0; i < kRefinements; ++i) best = refined_heading(some, suit, settings, offset, best);
   return best;
 }

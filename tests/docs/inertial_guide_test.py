@@ -214,7 +214,7 @@ class InertialGuide(unittest.TestCase):
 
 
 class LiveService(unittest.TestCase):
-    """The lines of "Live" run as printed, on free ports, until the slipped sensor is told."""
+    """The lines of "Live" run on free ports until the slipped sensor is told; it slips later, and the recording is longer, than printed."""
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()

@@ -214,15 +214,7 @@ Section refusals(const evaluation::Judgement& found) {
   return out;
 }
 
-}  // namespace
-
-double error_percent(const JudgedLimb& limb) {
-  double inside_count = 0.0;
-  for (const auto& each : limb.errors) inside_count += inside(limb.detected, each.time) ? 1.0 : 0.0;
-  return limb.errors.empty() ? 0.0 : 100.0 * inside_count / static_cast<double>(limb.errors.size());
-}
-
-static std::string verdict_of(const evaluation::Judgement& found, const EvaluationInputs& inputs) {
+std::string verdict_of(const evaluation::Judgement& found, const EvaluationInputs& inputs) {
   std::string bad;
   for (const JudgedLimb& limb : found.limbs)
     if (error_percent(limb) > inputs.most_percent)
@@ -231,6 +223,14 @@ static std::string verdict_of(const evaluation::Judgement& found, const Evaluati
                                 : "In error for too long: " + bad + ".";
   if (inputs.reference) out += " " + reference_verdict(*inputs.reference);
   return out;
+}
+
+}  // namespace
+
+double error_percent(const JudgedLimb& limb) {
+  double inside_count = 0.0;
+  for (const auto& each : limb.errors) inside_count += inside(limb.detected, each.time) ? 1.0 : 0.0;
+  return limb.errors.empty() ? 0.0 : 100.0 * inside_count / static_cast<double>(limb.errors.size());
 }
 
 report::Report evaluation_report(const evaluation::Judgement& found,
