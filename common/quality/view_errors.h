@@ -1,16 +1,22 @@
 // How large the errors of the fused joints are, from how their views disagree; beside what was
 // stated.
 //
-// The fused joint is a mean of its views with known shares w.  Views i, j of one joint at one
-// instant lie r_i, r_j beside it.  If the errors of views are independent, with variance s_i per
-// axis, and the mean's own is e, then  E[r_i r_i] = s_i (1 - 2 w_i) + e  and
-// E[r_i r_j] = e - w_i s_i - w_j s_j  (per axis; both follow from r_i = x_i - sum w_k x_k).  Least
-// squares over all pairs give e.  Errors that all views share, such as a wrong floor, show in no
-// disagreement: e is too small then.
+// Views i of one joint at one instant err by x_i = a_i + b_i, independent of one another: a_i is
+// new in every instant, with variance s_i per axis, b_i lasts, with variance l_i.  The tracker
+// follows their mean m = sum w_i x_i with a gain g a step:  f(t) = f(t-1) + g (m(t) - f(t-1)).
+// Differences of two views are free of f and of motion:
+//   E[d_ik(t) d_ik(t)]   = s_i + l_i + s_k + l_k      and      E[d_ik(t) d_ik(t-1)] = l_i + l_k,
+// least squares over all pairs give s and l.  With S = sum w_i^2 s_i, L = sum w_i^2 l_i and
+// r = m - f the weighted mean of the residuals, the gain follows from how r changes in a step,
+// which hides what is slow, motion that f lags behind included:
+//   E[(r(t) - r(t-1))^2] = S (1-g)^2 (1 + (1+g)^2 + g^3 / (2-g)),
+// and the error of f from  E[r^2] = (S + L) + E[f^2] - 2 (g S + L).  Errors that all views share,
+// such as a wrong floor, show in no disagreement: what is found is too small then.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
@@ -37,23 +43,21 @@ struct ViewError {
 
 class ViewErrors {
  public:
+  ViewErrors();
+  ~ViewErrors();
+  ViewErrors(ViewErrors&&) noexcept;
+  ViewErrors& operator=(ViewErrors&&) noexcept;
+
   /// All views of one step; of several views of one joint by one sensor the last one counts.
+  /// Steps follow one another as the output does.
   void add(const std::vector<ViewResidual>& step);
   [[nodiscard]] std::array<ViewError, kJointCount> finish() const;
 
  private:
-  /// Normal equations of one joint: unknown are the sensors' variances and, last, the mean's.
-  struct Equations {
-    Eigen::MatrixXd squares;
-    Eigen::VectorXd values;
-    std::size_t rows = 0;
-    double stated = 0.0;
-    std::size_t instants = 0;
-  };
+  struct OfJoint;
 
-  void add_joint(const ViewResidual* first, std::size_t count);
-
-  std::array<Equations, kJointCount> joints_;
+  std::array<std::unique_ptr<OfJoint>, kJointCount> joints_;
+  std::vector<ViewResidual> before_;  ///< Of the last step, in order of person, joint, sensor.
 };
 
 }  // namespace chorus::quality
