@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PATH = re.compile(r"`((?:common|services|fusion-server|proto|tests|deploy|docs)/[A-Za-z0-9_./-]*)`")
 BUILT = ("build/",)
-RECIPES = 11
+RECIPES = 13
 
 
 def recipes():
