@@ -1,5 +1,5 @@
 // "Origin here": one person stands where the world shall begin, facing the front, while the frames are watched.
-// The same rules as `chorus origin --here` (services/ctl/align/stance.cpp).
+// The same rules as `chorus origin --here` (services/ctl/align/origin_command.cpp).
 import { request } from './request.js';
 
 const SURE = 0.95; // smallest certainty of left and right
