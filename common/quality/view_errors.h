@@ -1,17 +1,20 @@
 // How large the errors of the fused joints are, from how their views disagree; beside what was
 // stated.
 //
-// Views i of one joint at one instant err by x_i = a_i + b_i, independent of one another: a_i is
-// new in every instant, with variance s_i per axis, b_i lasts, with variance l_i.  The tracker
-// follows their mean m = sum w_i x_i with a gain g a step:  f(t) = f(t-1) + g (m(t) - f(t-1)).
-// Differences of two views are free of f and of motion:
-//   E[d_ik(t) d_ik(t)]   = s_i + l_i + s_k + l_k      and      E[d_ik(t) d_ik(t-1)] = l_i + l_k,
-// least squares over all pairs give s and l.  With S = sum w_i^2 s_i, L = sum w_i^2 l_i and
-// r = m - f the weighted mean of the residuals, the gain follows from how r changes in a step,
-// which hides what is slow, motion that f lags behind included:
-//   E[(r(t) - r(t-1))^2] = S (1-g)^2 (1 + (1+g)^2 + g^3 / (2-g)),
-// and the error of f from  E[r^2] = (S + L) + E[f^2] - 2 (g S + L).  Errors that all views share,
-// such as a wrong floor, show in no disagreement: what is found is too small then.
+// Views i of one joint at one instant err independently of one another; their shares w_i (the sum
+// is 1) weigh them by how well each is known in that instant. So the variance per axis of their
+// mean m is  M = E[sum w_i w_k (x_i - x_k)^2 / (n - 1)]  over pairs i < k of n views.  Differences
+// of views are free of what is fused and of motion.
+//
+// The fused joint f follows m over several instants.  The error e of a best linear estimate is
+// uncorrelated with its residual r = m - f (orthogonality principle), so that it is smaller than
+// m's by the variance of r.  That holds for what is new in every instant; what lasts in r, such as
+// the lag behind a motion, makes nothing better.  Half of E[(r(t) - r(t-1))^2] is the part of
+// E[r^2] that does not last:
+//   E[e^2] = M - min(E[r^2], E[(r(t) - r(t-1))^2] / 2).
+//
+// Errors that all views share, such as a wrong floor, show in no disagreement: what is found is too
+// small then.
 #pragma once
 
 #include <array>

@@ -235,7 +235,7 @@ Result<int> run_status(const StatusArguments& arguments) {
 
 Run add_status(CLI::App& options) {
   const auto arguments = std::make_shared<StatusArguments>();
-  add_server_option(options, arguments->url, "The fusion server");
+  add_server_option(options, arguments->url, "The fusion server", "url,--url");
   options
       .add_option(
           "--evaluation", arguments->evaluation,
