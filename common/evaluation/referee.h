@@ -18,7 +18,7 @@ enum class Right : std::uint8_t { Tracker, Sensor, Neither };
 [[nodiscard]] std::string_view name_of(Right right);
 [[nodiscard]] Right who_is_right(double tracker_error, double sensor_error, double tau);
 
-/// Median and 90th percentile [rad]; 0 of nothing.
+/// Median and 90th percentile [rad, or m of places]; 0 of nothing.
 struct ErrorSpread {
   double median = 0.0;
   double p90 = 0.0;

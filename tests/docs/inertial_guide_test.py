@@ -4,6 +4,7 @@ shank wrongly from 14 to 16 s; the report names that limb and no other."""
 import json
 import math
 import os
+import random
 import re
 import subprocess
 import sys
@@ -189,14 +190,27 @@ class InertialGuide(unittest.TestCase):
         self.assertIn("the tracker errs in 1, the sensor in 0, both in 0", report["verdict"])
         table = (folder / "refereed/evaluation.csv").read_text(encoding="utf-8")
         self.assertIn("left_shank.sensor_error", table)
-        self.assertIn("Who is right", (folder / "refereed/evaluation.html").read_text(encoding="utf-8"))
+        self.assertIn("left_shank.position_error", table)
+        page = (folder / "refereed/evaluation.html").read_text(encoding="utf-8")
+        self.assertIn("Who is right", page)
+        self.assertIn("left shank: position error of the tracker", page)
+        # The shank swings: the sensor shows it without a reference, and positions with one.
+        self.assertGreater(figures["left_shank.faults_by_orientation"], 0.95)
+        self.assertGreater(figures["left_shank.faults_by_position"], 0.95)
+        self.assertNotIn("right_shank.faults_by_position", {k for k, v in figures.items() if v is not None})
+        for limb in ("left_thigh", "left_shank", "right_thigh", "right_shank", "right_upper_arm"):
+            self.assertLess(figures[f"{limb}.position_error"], 30, limb)
 
     def refusals(self, folder, paths):
         """A reference that cannot serve is refused, with what to do."""
         (folder / "other.trc").write_text(TRC_WITHOUT_NAMES, encoding="utf-8")
+        (folder / "vicon.c3d").rename(folder / "inches.c3d")
         write_reference(folder, speed=0.0)  # somebody who stands
-        for reference, said in (("vicon.c3d", "do not move alike"), ("other.trc", "other.joints.txt lists the file's names"), ("none.c3d", "none.c3d")):
-            done = subprocess.run(["chorus", "evaluate", "--tracking", "walk.ndjson", "--inertial", "suit.sto", "--reference", reference,
+        for reference, more, said in (("vicon.c3d", [], "do not move alike"), ("other.trc", [], "other.joints.txt lists the file's names"),
+                                      ("none.c3d", [], "none.c3d"), ("vicon.c3d", ["--reference-unit", "ell"], "--reference-unit: is a unit"),
+                                      ("walk.ndjson", ["--reference-unit", "mm"], "is for motion files"),
+                                      ("inches.c3d", ["--reference-unit", "in"], "has bones 25.4 times as long as the tracker's")):
+            done = subprocess.run(["chorus", "evaluate", "--tracking", "walk.ndjson", "--inertial", "suit.sto", "--reference", reference, *more,
                                    "--most", "100", "--out", "refused"], cwd=folder, env=paths, capture_output=True, text=True, timeout=60, check=False)
             self.assertEqual(done.returncode, 1)
             self.assertIn(said, done.stderr)
@@ -211,6 +225,64 @@ class InertialGuide(unittest.TestCase):
         self.assertEqual(report["judgement"], "bad")
         clocks = report["subject"]["clocks"]
         self.assertAlmostEqual(float(re.search(r"sensors ([+-][\d.]+)", clocks).group(1)), 80, delta=12)
+
+
+class RealReference(unittest.TestCase):
+    """Real sensors and a real C3D of one walk (Sy et al. 2020: Xsens, Vicon; never shipped).  The tracker is what Vicon's table says of
+    the joints, with noise; from 5 to 6 s its left shank swings ahead."""
+
+    FOLDER = Path(os.environ.get("CHORUS_SHARED", ROOT.parent / "shared")) / "data/gait_imu_vicon"
+    JOINTS = {"SpineBase": 0, "HipLeft": 3, "KneeLeft": 6, "AnkleLeft": 9, "FootLeft": 12, "HipRight": 15, "KneeRight": 18, "AnkleRight": 21,
+              "FootRight": 24}
+    WORN = {"L_UpLeg": "femur_l_imu", "R_UpLeg": "femur_r_imu", "L_LowLeg": "tibia_l_imu", "R_LowLeg": "tibia_r_imu"}
+
+    def numbers(self, name):
+        lines = (self.FOLDER / "data/sample" / name).read_text(encoding="utf-8").splitlines()
+        return [[float(cell) for cell in line.split(",")] for line in lines if line[:1] in "-0123456789"]
+
+    def write_tracker(self, file):
+        """Every third row, in our axes: +y up."""
+        draw = random.Random(1)
+        lines = []
+        for i, row in list(enumerate(self.numbers("vicon/S02-Trial-Walk-1.csv")))[::3]:
+            joints = {name: [row[at + 1], row[at + 2], row[at]] for name, at in self.JOINTS.items()}
+            if 5 <= i / 100 <= 6:
+                knee, ankle = joints["KneeLeft"], joints["AnkleLeft"]
+                joints["AnkleLeft"] = [knee[0] + (ankle[1] - knee[1]), knee[1] - (ankle[0] - knee[0]), ankle[2]]
+            ns = str(1795246200000000000 + i * 10_000_000)
+            placed = {name: {axis: round(p[k] + draw.gauss(0, 0.005), 4) for k, axis in enumerate("xyz")} | {"state": "Tracked"}
+                      for name, p in joints.items()}
+            lines.append(json.dumps({"@type": "Frame", "sequence": i + 1, "capturedNanoseconds": ns, "source": "fusion", "space": "WorldSpace",
+                                     "sensors": ["s1"], "bodies": [{"bodyId": 1, "capturedNanoseconds": ns, "joints": placed}]}))
+        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    def write_suit(self, file):
+        tables = {sensor: self.numbers(f"imu/S02-Trial-Walk-1-{name}.csv") for name, sensor in self.WORN.items()}
+        rows = ["DataRate=100.000000", "DataType=Quaternion", "version=3", "endheader", "\t".join(["time", *tables])]
+        for i in range(min(map(len, tables.values()))):
+            rows.append("\t".join([f"{i / 100:.3f}", *(",".join(f"{part:.6f}" for part in table[i][:4]) for table in tables.values())]))
+        file.write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+    def test_positions_and_orientations_of_a_real_walk(self):
+        if not self.FOLDER.is_dir():
+            self.skipTest("runs where ../shared/data stands beside the checkout")
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            self.write_tracker(folder / "walk.ndjson")
+            self.write_suit(folder / "suit.sto")
+            done = subprocess.run([BIN / "chorus", "evaluate", "--tracking", "walk.ndjson", "--inertial", "suit.sto", "--from-start", "--same-clock",
+                                   "--reference", self.FOLDER / "S02-Trial-Walk-1-vicon.c3d", "--most", "100", "--out", "real"],
+                                  cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+            report = json.loads((folder / "real/evaluation.json").read_text(encoding="utf-8"))
+        figures = {f["key"]: f.get("value") for section in report["sections"] for f in section["figures"]}
+        for limb in ("left_shank", "right_shank"):
+            self.assertLess(figures[f"{limb}.position_error"], 25, limb)
+            self.assertLess(figures[f"{limb}.tracker_error"], 3, limb)
+            self.assertLess(figures[f"{limb}.sensor_error"], 12, limb)
+        self.assertGreater(figures["left_shank.faults_by_orientation"], 0.95)
+        self.assertGreater(figures["left_shank.faults_by_position"], 0.95)
+        self.assertEqual(figures["left_shank.sensor_right"], 100)
 
 
 class LiveService(unittest.TestCase):

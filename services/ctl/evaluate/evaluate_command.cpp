@@ -28,7 +28,8 @@ namespace {
 constexpr std::uintmax_t kMostAnnotationBytes = 16u << 20;
 
 struct EvaluateArguments {
-  std::string tracking, calibration, reference, reference_joints, out = "evaluation";
+  std::string tracking, calibration, reference, reference_joints, reference_unit,
+      out = "evaluation";
   std::vector<std::string> inertial, calibration_inertial, annotations, limbs;
   std::optional<std::uint64_t> person;
   double tau_deg = to_deg(evaluation::kPaperTau);
@@ -185,18 +186,36 @@ void print_limbs(const evaluation::Judgement& found) {
   for (const Error& error : found.refused) std::cout << "not judged: " << to_string(error) << '\n';
 }
 
+/// The position errors of the limbs that are refereed.
+void add_places(const EvaluateArguments& arguments, const Loaded& take,
+                const evaluation::Judgement& found, const evaluation::BodyTrack& reference,
+                RefereedTake& out) {
+  const evaluation::BodyTrack tracked = places_of(take.joints);
+  for (const auto& limb : out.limbs) {
+    const auto judged = std::ranges::find(found.limbs, limb.limb, &evaluation::JudgedLimb::limb);
+    out.places.push_back(evaluation::placed_limb(
+        limb, *judged, evaluation::place_errors(limb.limb, tracked, reference),
+        deg(arguments.tau_deg)));
+  }
+}
+
 /// Errors of tracker and sensors against --reference; nothing without it.
 Result<std::optional<RefereedTake>> refereed_take(const EvaluateArguments& arguments,
                                                   const Loaded& take,
                                                   const evaluation::Judgement& found) {
   if (arguments.reference.empty()) return std::nullopt;
-  const auto reference =
-      read_reference({arguments.reference, arguments.reference_joints, arguments.out}, take.joints);
+  const auto reference = read_reference(
+      {arguments.reference, arguments.reference_joints, arguments.out, arguments.reference_unit},
+      take.joints);
   if (!reference) return pass(reference);
   for (const std::string& note : reference->notes) std::cerr << "note: " << note << '\n';
-  RefereedTake out{arguments.reference, reference->shift, reference->joints, reference->rms,
-                   evaluation::refereed(found, take.body, take.sensors, reference->body,
-                                        deg(arguments.tau_deg))};
+  RefereedTake out{
+      arguments.reference,
+      reference->shift,
+      reference->joints,
+      reference->rms,
+      evaluation::refereed(found, take.body, take.sensors, reference->body, deg(arguments.tau_deg)),
+      {}};
   if (out.limbs.empty())
     return fail(ErrorCode::NotFound, arguments.reference,
                 "shows none of the limbs that are judged, while they are judged");
@@ -208,19 +227,24 @@ Result<std::optional<RefereedTake>> refereed_take(const EvaluateArguments& argum
         fmt::format("its limbs are {:.0f} degrees from the tracker's in the median: does it "
                     "show the same motion?",
                     middle));
+  add_places(arguments, take, found, reference->places, out);
   return out;
 }
 
 void print_reference(const RefereedTake& reference) {
-  std::vector<std::vector<std::string>> rows{
-      {"limb", "tracker off deg", "sensor off deg", "disagree", "tracker errs", "sensor errs"}};
-  for (const auto& limb : reference.limbs) {
+  std::vector<std::vector<std::string>> rows{{"limb", "tracker off deg", "sensor off deg",
+                                              "position off mm", "disagree", "tracker errs",
+                                              "sensor errs"}};
+  for (std::size_t i = 0; i < reference.limbs.size(); ++i) {
+    const auto& limb = reference.limbs[i];
+    const auto& place = reference.places[i];
     const auto count = [&](evaluation::Right right) {
       return std::to_string(
           std::ranges::count(limb.segments, right, &evaluation::RefereedSegment::right));
     };
     rows.push_back({std::string(words_for(limb.limb)), shown(to_deg(limb.tracker_spread.median), 1),
                     shown(to_deg(limb.sensor_spread.median), 1),
+                    place.errors.empty() ? "-" : shown(to_mm(place.spread.median), 0),
                     std::to_string(limb.segments.size()), count(evaluation::Right::Sensor),
                     count(evaluation::Right::Tracker)});
   }
@@ -266,6 +290,12 @@ void add_reference_options(CLI::App& options, EvaluateArguments& arguments) {
                          "Optical markers or joints of the same take (C3D, TRC, BVH, HTR, MVNX, or "
                          "fused frames of another tracker): "
                          "says who errs where tracker and sensor disagree");
+  options
+      .add_option(
+          "--reference-unit", arguments.reference_unit,
+          "Of the reference's lengths, where the file does not say, or is wrong: mm, cm, m, "
+          "in, or a number of metres")
+      ->needs(reference);
   options
       .add_option("--reference-joints", arguments.reference_joints,
                   "Lines such as \"HipLeft = LASI, LPSI\": points of the reference's joints, where "

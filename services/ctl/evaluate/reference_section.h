@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/evaluation/referee.h"
+#include "common/evaluation/place_error.h"
 #include "common/report/report.h"
 
 namespace chorus::ctl {
@@ -15,6 +15,7 @@ struct RefereedTake {
   std::size_t joints = 0;       ///< That tracker and reference both show.
   double rms = 0.0;             ///< Distance of these joints, worlds aligned [m].
   std::vector<evaluation::RefereedLimb> limbs;
+  std::vector<evaluation::PlacedLimb> places;  ///< Of the same limbs, in the same order.
 };
 
 /// A limb's name in the keys of figures: "left_forearm".

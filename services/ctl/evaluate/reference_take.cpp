@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "common/base/file.h"
+#include "common/base/median.h"
+#include "common/base/unit_name.h"
 #include "common/body/located.h"
 #include "common/evaluation/limb_frame.h"
 #include "common/evaluation/referee.h"
@@ -18,9 +20,18 @@ namespace {
 
 constexpr std::uintmax_t kMostJointBytes = 1u << 20;
 constexpr std::size_t kFewestJoints = 3;
+// Markers and trackers place joints differently, and so bones are up to a quarter longer or
+// shorter; the nearest mistake of a unit, inches for centimetres, is a factor of 2.5.
+constexpr double kMostScale = 1.6;
 
 Result<importers::ImportOptions> import_options(const ReferenceFile& source) {
   importers::ImportOptions options;
+  if (!source.unit.empty()) {
+    options.metres_per_unit = unit_or_factor(source.unit);
+    if (!options.metres_per_unit)
+      return fail(ErrorCode::InvalidArgument, "--reference-unit",
+                  "is a unit (mm, cm, m, in) or a number of metres");
+  }
   if (source.joints.empty()) return options;
   const auto text = read_file(source.joints, kMostJointBytes);
   if (!text) return pass(text);
@@ -55,15 +66,27 @@ Error with_template(Error error, const ReferenceFile& source) {
   return error;
 }
 
+/// Importers name the option of their own command.
+Error with_our_option(Error error) {
+  constexpr std::string_view kTheirs = "--unit";
+  const std::size_t at = error.message.find(kTheirs);
+  if (at != std::string::npos) error.message.replace(at, kTheirs.size(), "--reference-unit");
+  return error;
+}
+
 Result<ComparedSource> read_source(const ReferenceFile& source) {
   const auto format = motion_format(source.file);
+  if (!format && !source.unit.empty())
+    return fail(ErrorCode::InvalidArgument, "--reference-unit",
+                "is for motion files; fused frames are in metres: leave it out");
   if (!format) return read_compared(source.file, 0.0);
   const auto options = import_options(source);
   if (!options) return pass(options);
   auto read = read_motion(source.file, *format, *options);
-  if (!read && read.error().code == ErrorCode::Unsupported)
-    return tl::unexpected(with_template(read.error(), source));
-  return read;
+  if (read) return read;
+  if (read.error().code == ErrorCode::Unsupported)
+    return tl::unexpected(with_template(with_our_option(read.error()), source));
+  return tl::unexpected(with_our_option(read.error()));
 }
 
 /// Times from 0, so that a shift is a number that says something.
@@ -118,6 +141,39 @@ Result<Candidate> best_candidate(const comparison::People& people,
   return std::move(*best);
 }
 
+/// The usual length of each limb's bone [m]; none where it is not shown.
+std::array<std::optional<double>, inertial::kLimbCount> bone_lengths(
+    const comparison::Track& track) {
+  std::array<std::optional<double>, inertial::kLimbCount> out;
+  for (std::size_t i = 0; i < inertial::kLimbCount; ++i) {
+    const auto bone = evaluation::bone_of(static_cast<inertial::Limb>(i));
+    std::vector<double> lengths;
+    for (const auto& moment : track) {
+      const Joint& from = moment.body[bone.from];
+      const Joint& to = moment.body[bone.to];
+      if (from.seen() && to.seen()) lengths.push_back((to.position - from.position).norm());
+    }
+    if (!lengths.empty()) out[i] = median(std::move(lengths));
+  }
+  return out;
+}
+
+/// Refuses bones that are of another length than the tracker's: a wrong unit.
+Result<void> check_scale(const comparison::Track& tracked, const comparison::Track& reference) {
+  const auto ours = bone_lengths(tracked);
+  const auto theirs = bone_lengths(reference);
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < inertial::kLimbCount; ++i)
+    if (ours[i] && theirs[i] && *ours[i] > 0.0) ratios.push_back(*theirs[i] / *ours[i]);
+  if (ratios.empty()) return {};
+  const double scale = median(std::move(ratios));
+  if (scale <= kMostScale && scale >= 1.0 / kMostScale) return {};
+  return fail(ErrorCode::Conflict, "reference",
+              fmt::format("has bones {:.3g} times as long as the tracker's: are its lengths in "
+                          "another unit than it says? --reference-unit says which",
+                          scale));
+}
+
 double rms_of(const comparison::PairComparison& pair) {
   double sum = 0.0, count = 0.0;
   for (const auto& joint : pair.joints) {
@@ -130,15 +186,16 @@ double rms_of(const comparison::PairComparison& pair) {
 
 /// Brings the reference's person into the tracker's time and world.
 Result<ReferenceTake> placed(Candidate candidate, const comparison::Track& tracked) {
+  if (auto ok = check_scale(tracked, *candidate.track); !ok) return pass(ok);
   comparison::Track moved = *candidate.track;
   for (auto& moment : moved) moment.time += candidate.shift.shift;
   comparison::CompareOptions options;
   options.same_clock = true;
   options.other_world = true;
-  const auto compared = comparison::compare({{1, tracked}}, {{1, std::move(moved)}}, options);
+  const auto compared = comparison::compare({{1, tracked}}, {{1, moved}}, options);
   if (!compared) return fail(compared.error().code, "reference", compared.error().message);
-  ReferenceTake out{
-      std::move(candidate.body), candidate.shift, 0, rms_of(compared->pairs.front()), {}};
+  ReferenceTake out{std::move(candidate.body),       {}, candidate.shift, 0,
+                    rms_of(compared->pairs.front()), {}};
   const Eigen::Quaterniond turn(compared->a_from_b.linear());
   for (auto& [limb, track] : out.body) {
     for (auto& each : track) {
@@ -146,6 +203,9 @@ Result<ReferenceTake> placed(Candidate candidate, const comparison::Track& track
       each.value.world_from_limb = turn * each.value.world_from_limb;
     }
   }
+  for (auto& moment : moved)
+    for (Joint& joint : moment.body.joints) joint.position = compared->a_from_b * joint.position;
+  out.places = places_of(moved);
   return out;
 }
 
@@ -160,6 +220,13 @@ evaluation::TrackedBody limbs_of(const comparison::Track& track) {
         out[limb].push_back({moment.time, *seen});
     }
   }
+  return out;
+}
+
+evaluation::BodyTrack places_of(const comparison::Track& track) {
+  evaluation::BodyTrack out;
+  out.reserve(track.size());
+  for (const auto& moment : track) out.push_back({moment.time, moment.body});
   return out;
 }
 
