@@ -6,8 +6,12 @@
 // and the clock c of every cell but the first.  Two cells differ by an error that lasts for
 // seconds, so what counts is what is new: r_i - k r_(i-1), k = exp(-dt / 2 s); and the variance is
 // that of the residuals.  So a place that hangs on a clock nobody knows is known as badly as it is.
+//
+// Clocks are told by arms and legs, too: by where they are relative to the middle of the body, as
+// they swing.  A cell's error there does not last as long as that of the place of a body.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,11 +21,16 @@
 
 namespace chorus::site {
 
+/// Elbows, wrists, knees and ankles, left before right; NaN: not seen.
+inline constexpr std::size_t kLimbs = 8;
+using Limbs = std::array<Eigen::Vector3d, kLimbs>;
+
 /// Where one person was, as a cell saw them, by its clock and in its world [m].
 struct CellPath {
   CellId cell;
-  std::vector<Timestamp> at;  ///< In order.
-  std::vector<Eigen::Vector3d> places;
+  std::vector<Timestamp> at;            ///< In order.
+  std::vector<Eigen::Vector3d> places;  ///< Of the middle of the body.
+  std::vector<Limbs> limbs = {};        ///< From there; empty: of none.
 };
 
 /// The frames that show one person alone.
@@ -29,7 +38,7 @@ struct CellPath {
 
 struct JointPlaces {
   std::vector<CellPlace> cells;  ///< In the order they were given, with covariance and clock_sigma.
-  double rms = 0.0;              ///< Of r [m].
+  double rms = 0.0;              ///< Of r of the middle [m].
   std::size_t points = 0;        ///< Instants, a quarter of a second apart.
 };
 

@@ -12,6 +12,8 @@
 #include "common/time/clock_estimate.h"
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/site/joint_places.h"
+#include "fusion-server/site/joint_terms.h"
+#include "fusion-server/site/late_cells.h"
 #include "fusion-server/site/loops.h"
 
 namespace chorus::site {
@@ -173,12 +175,27 @@ void refuse_wide(SitePlaces& places, const PlacesConfig& config) {
   places.cells = std::move(kept);
 }
 
+/// Gives cells that the solver left out a place to begin from, where they fit to the others.
+void take_late_cells(std::span<const CellPath> paths, SitePlaces& places) {
+  const std::vector<CellPlace> placed = places.cells;
+  std::erase_if(places.refused, [&](const CellRefusal& each) {
+    const CellPath* path = path_in(paths, each.cell);
+    auto place = path == nullptr ? std::nullopt : place_beside(*path, paths, placed);
+    if (!place) return false;
+    place->version = placed.back().version;
+    place->covariance = placed.back().covariance;  // of tilt and height; the rest is found
+    places.cells.push_back(std::move(*place));
+    return true;
+  });
+}
+
 /// The places that the solver found, made better with all cells and clocks at once.
 Found all_together(const Registration& found, std::span<const CellPath> paths,
                    const PlacesConfig& config) {
   Found out{places_of(found, config.version), {}};
   std::ranges::partition(out.places.cells,
                          [&](const CellPlace& each) { return each.cell == out.places.origin; });
+  take_late_cells(paths, out.places);
   if (auto joint = joint_places(paths, out.places.cells, kWalkClock)) {
     out.pairs = pairs_of(paths, *joint);
     out.places.cells = std::move(joint->cells);

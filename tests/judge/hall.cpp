@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/geometry/rotation.h"
 #include "common/synthetic/coloured_noise.h"
@@ -24,6 +25,9 @@ constexpr double kLearned = 0.3;  // [s] in view that double the variance of a l
 /// Trunk, neck and head, shoulders, upper arm, forearm, thigh, shank of an adult [m].
 constexpr std::array<double, associate::kSpans> kAdult{0.50, 0.26, 0.36, 0.29, 0.26, 0.42, 0.41};
 
+constexpr double kLimbErrorLasts = 0.35;  // [s]
+constexpr double kGait = 1.1;             // [s] for two steps
+
 double noise_at(std::initializer_list<std::uint64_t> key, double tau, double time) {
   return ColouredNoise(Draw(key), tau).at(time);
 }
@@ -36,6 +40,20 @@ Eigen::Vector2d velocity_at(const HallPath& path, double time) {
   if (!before || !after) return Eigen::Vector2d::Zero();
   return (*after - *before) / (2.0 * kStep);
 }
+
+/// What swings about the middle of the body, and by how much of what an ankle does.
+struct Swinging {
+  JointId joint;
+  double share;
+};
+constexpr std::array<Swinging, 8> kSwinging{{{JointId::AnkleLeft, 1.0},
+                                             {JointId::AnkleRight, -1.0},
+                                             {JointId::KneeLeft, 0.5},
+                                             {JointId::KneeRight, -0.5},
+                                             {JointId::WristLeft, -0.6},
+                                             {JointId::WristRight, 0.6},
+                                             {JointId::ElbowLeft, -0.3},
+                                             {JointId::ElbowRight, 0.3}}};
 
 }  // namespace
 
@@ -151,7 +169,8 @@ site::Person Hall::seen(std::size_t cell, std::size_t person, const Visit& visit
   }
   const double yaw = std::atan2(walking.x(), walking.y());
   const Eigen::Isometry3d cell_from_site = cells_[cell].site_from_cell.inverse();
-  const Skeleton<WorldSpace> body = standing_body(place, yaw, build);
+  Skeleton<WorldSpace> body = standing_body(place, yaw, build);
+  if (people_[person].swings) swing(cell, person, walking, body);
   told.body = visit.body;
   told.since = kHallBegins + from_seconds(visit.since) + cells_[cell].clock_ahead;
   for (std::size_t i = 0; i < kJointCount; ++i)
@@ -160,6 +179,20 @@ site::Person Hall::seen(std::size_t cell, std::size_t person, const Visit& visit
   told.velocity = cell_from_site.linear() * Eigen::Vector3d(walking.x(), 0, walking.y());
   told.covariance = errors_.stated * errors_.stated * Eigen::Matrix3d::Identity();
   return told;
+}
+
+/// A foot that stands stays where it is for half of a gait cycle, so an ankle goes a quarter of the
+/// way of a cycle to and fro.
+void Hall::swing(std::size_t cell, std::size_t person, const Eigen::Vector2d& walking,
+                 Skeleton<WorldSpace>& body) const {
+  const double ahead = 0.25 * kGait * std::sin(2.0 * std::numbers::pi * time_ / kGait);
+  for (std::size_t i = 0; i < kSwinging.size(); ++i) {
+    Eigen::Vector3d& at = body[kSwinging[i].joint].position;
+    at += kSwinging[i].share * ahead * Eigen::Vector3d(walking.x(), 0, walking.y());
+    for (std::uint64_t axis = 0; axis < 3; ++axis)
+      at[static_cast<Eigen::Index>(axis)] +=
+          errors_.limb * noise_at({seed_, 15, cell, person, i, axis}, kLimbErrorLasts, time_);
+  }
 }
 
 void Hall::look(std::size_t cell) {

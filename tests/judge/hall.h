@@ -24,6 +24,8 @@ using HallPath = std::function<std::optional<Eigen::Vector2d>(double)>;
 struct HallPerson {
   HallPath path;
   double size = 1.0;  ///< Relative to an adult of 1.75 m.
+  /// Whether arms and legs swing as the person walks; otherwise they glide like a statue.
+  bool swings = false;
   /// What each length differs by, relative (associate::kSpans).
   std::array<double, associate::kSpans> build{};
 };
@@ -43,6 +45,9 @@ struct HallErrors {
   double noise = 0.008;   ///< Of a place, per axis [m].
   double stated = 0.025;  ///< What the cell states [m].
   double length = 0.02;   ///< Of a length, for a whole visit, relative.
+  /// Of elbows, wrists, knees and ankles beside that of the place, per axis [m].  Lasts 0.35 s.
+  /// Measured between four real cameras and four others: 19 mm (docs/benchmarks/site.md).
+  double limb = 0.0135;
 };
 
 /// What was forged, cut or delayed; all optional.
@@ -107,6 +112,8 @@ class Hall {
   };
   void look(std::size_t cell);
   [[nodiscard]] site::Person seen(std::size_t cell, std::size_t person, const Visit& visit) const;
+  void swing(std::size_t cell, std::size_t person, const Eigen::Vector2d& walking,
+             Skeleton<WorldSpace>& body) const;
   void send(std::size_t cell);
   void deliver();
   void decide(std::size_t cell);
