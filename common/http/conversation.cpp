@@ -99,8 +99,8 @@ Orders Conversation::woken(SteadyTime now) {
   return resume(now, [this] { on_woken(); });
 }
 
-Orders Conversation::look(SteadyTime now) {
-  return resume(now, [this] { on_look(); });
+Orders Conversation::look(SteadyTime now, DocumentPtr newest) {
+  return resume(now, [&] { on_look(std::move(newest)); });
 }
 
 Orders Conversation::expired(SteadyTime now) {

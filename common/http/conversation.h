@@ -50,7 +50,8 @@ class Conversation {
   /// registered.
   [[nodiscard]] Orders woken(SteadyTime now);
   /// Call this when the wait has just been registered: checks for a version published before that.
-  [[nodiscard]] Orders look(SteadyTime now);
+  /// `newest`: what a stream takes for the newest version; null: what the entry has.
+  [[nodiscard]] Orders look(SteadyTime now, DocumentPtr newest = nullptr);
   [[nodiscard]] Orders expired(SteadyTime now);
   /// The server is stopping: finishes the body or answer under way, refuses a waiting long poll,
   /// and otherwise hangs up.
@@ -92,12 +93,12 @@ class Conversation {
   void linger();
   void begin_wait();
   void on_woken();
-  void on_look();
+  void on_look(DocumentPtr newest);
   void on_settled();
   void end_wait(Answer answer);
   void watch();
   void begin_stream();
-  void push_event();
+  void push_event(DocumentPtr newest = nullptr);
   void answer();
   void send_now();
   void on_deadline();

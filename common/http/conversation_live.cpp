@@ -40,8 +40,8 @@ void Conversation::on_woken() {
 }
 
 /// A publish wakes only registered waits, so this looks for a version published just before.
-void Conversation::on_look() {
-  if (state_ == State::Streaming) return push_event();
+void Conversation::on_look(DocumentPtr newest) {
+  if (state_ == State::Streaming) return push_event(std::move(newest));
   if (state_ != State::Waiting) return;
   auto answer = context_.responder.waited(*reaction_.entry, head_);
   if (!answer) return watch();
@@ -68,7 +68,7 @@ void Conversation::begin_stream() {
   send(std::move(reaction_.answer));
 }
 
-void Conversation::push_event() {
+void Conversation::push_event(DocumentPtr newest) {
   if (event_under_way_) {
     // If the last event is still being written when new versions are published, only the newest
     // version waits; those in between are skipped.
@@ -79,12 +79,14 @@ void Conversation::push_event() {
   }
   const Coding coding = coding_for(head_.accept_encoding);
   const bool due = now_ >= deadline_;
-  event_ = reader_->event(reaction_.event_type, coding, now_);
+  event_ = reader_->event(reaction_.event_type, coding, now_, std::move(newest));
   if (const auto held = reader_->held_until()) deadline_ = std::min(deadline_, *held);
   if (!event_ && !due) return;
   if (!event_) event_ = heartbeat(coding);
   event_under_way_ = true;
   write(*event_);
+  // Not where more follows: each would be sent out of the sending of the one before.
+  orders_.at_once = !reader_->has_more();
 }
 
 void Conversation::on_settled() {

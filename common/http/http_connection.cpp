@@ -77,11 +77,12 @@ void HttpConnection::carry_out(const Orders& orders) {
     if (stream_.end_saying()) return close();
   }
   if (orders.read) read();
-  if (orders.write) write();
+  if (orders.write) orders.at_once ? write_at_once() : write();
   if (orders.settle) settle();
   if (orders.wait) {
-    core_.wait_for(conversation_.reaction().entry->index, shared_from_this());
-    carry_out(conversation_.look(core_.now));
+    const std::size_t entry = conversation_.reaction().entry->index;
+    core_.wait_for(entry, shared_from_this());
+    carry_out(conversation_.look(core_.now, core_.woken_for(entry)));
   }
 }
 
@@ -96,17 +97,30 @@ void HttpConnection::read() {
       });
 }
 
-void HttpConnection::write() {
+/// `done`: how much of the first part has been sent.
+void HttpConnection::write(std::size_t done) {
   std::array<asio::const_buffer, 4> buffers;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const std::string_view part = conversation_.output()[i];
     buffers[i] = asio::buffer(part.data(), part.size());
   }
-  asio::async_write(stream_, buffers, [me = self()](net::error_code failed, std::size_t size) {
-    Conversation& conversation = me->conversation_;
-    me->carry_out(failed ? conversation.send_failed(size, me->core_.now)
-                         : conversation.sent(size, me->core_.now));
-  });
+  buffers[0] += done;
+  asio::async_write(stream_, buffers,
+                    [me = self(), done](net::error_code failed, std::size_t rest) {
+                      Conversation& conversation = me->conversation_;
+                      const std::size_t size = done + rest;
+                      me->carry_out(failed ? conversation.send_failed(size, me->core_.now)
+                                           : conversation.sent(size, me->core_.now));
+                    });
+}
+
+/// Nearly every reader of a stream takes an event at once.  An asynchronous write would come back
+/// to each of thousands of connections once more, when all have been served.
+void HttpConnection::write_at_once() {
+  const std::string_view event = conversation_.output()[0];
+  const std::size_t size = stream_.say_some_now(event);
+  if (size < event.size()) return write(size);
+  carry_out(conversation_.sent(size, core_.now));
 }
 
 void HttpConnection::settle() {

@@ -36,7 +36,8 @@ class HttpConnection final : public Connection {
   void seal(Beginning beginning);
   void carry_out(const Orders& orders);
   void read();
-  void write();
+  void write(std::size_t done = 0);
+  void write_at_once();
   void settle();
   void upgrade();
   void hang_up();

@@ -61,10 +61,10 @@ LiveReader::LiveReader(const Router::Entry& entry, LiveWish wish)
 }
 
 /// The newest version, unless the reader has it or has to wait for it.
-DocumentPtr LiveReader::newest(SteadyTime now) {
+DocumentPtr LiveReader::next(SteadyTime now, DocumentPtr newest) {
   held_ = now < not_before_;
   if (held_) return nullptr;
-  DocumentPtr newest = entry_->live->current();
+  if (!newest) newest = entry_->live->current();
   if (!newest || newest == shown_) return nullptr;
   shown_ = newest;
   const auto interval = std::chrono::duration_cast<SteadyTime::duration>(wish_.interval);
@@ -80,9 +80,9 @@ std::optional<LoggedEvents::One> LiveReader::next_logged() {
 }
 
 std::shared_ptr<const std::string> LiveReader::event(std::string_view media_type, Coding coding,
-                                                     SteadyTime now) {
+                                                     SteadyTime now, DocumentPtr newest) {
   if (!entry_->log) {
-    const DocumentPtr document = newest(now);
+    const DocumentPtr document = next(now, std::move(newest));
     return document ? document->event(media_type, wish_.form, coding) : nullptr;
   }
   const auto next = next_logged();
@@ -91,7 +91,7 @@ std::shared_ptr<const std::string> LiveReader::event(std::string_view media_type
   return std::make_shared<const std::string>(coding == Coding::Gzip ? gzip_piece(text) : text);
 }
 
-std::shared_ptr<const std::string_view> LiveReader::message(SteadyTime now) {
+std::shared_ptr<const std::string_view> LiveReader::message(SteadyTime now, DocumentPtr newest) {
   constexpr std::string_view kJson = "application/json";
   if (entry_->log) {
     auto next = next_logged();
@@ -102,7 +102,7 @@ std::shared_ptr<const std::string_view> LiveReader::message(SteadyTime now) {
     return view_of(kept);
   }
   const auto kept = std::make_shared<Message>();
-  kept->document = newest(now);
+  kept->document = next(now, std::move(newest));
   if (!kept->document) return nullptr;
   const auto chosen = kept->document->choose(kJson, wish_.form);
   if (!chosen) return nullptr;  // This version cannot be had in JSON: nothing is sent.

@@ -35,11 +35,14 @@ class LiveReader {
   /// `entry` must outlive the reader.
   LiveReader(const Router::Entry& entry, LiveWish wish);
 
-  /// What to send as a server-sent event now; null: nothing.
+  /// What to send as a server-sent event now; null: nothing.  `newest`: what to take for the newest
+  /// version; null: what the entry has.
   [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type, Coding coding,
-                                                         SteadyTime now);
-  /// What to send as a message in JSON now; null: nothing.
-  [[nodiscard]] std::shared_ptr<const std::string_view> message(SteadyTime now);
+                                                         SteadyTime now,
+                                                         DocumentPtr newest = nullptr);
+  /// The same as a message in JSON.
+  [[nodiscard]] std::shared_ptr<const std::string_view> message(SteadyTime now,
+                                                                DocumentPtr newest = nullptr);
 
   /// Whether another one can be sent at once.
   [[nodiscard]] bool has_more() const;
@@ -47,7 +50,7 @@ class LiveReader {
   [[nodiscard]] std::optional<SteadyTime> held_until() const;
 
  private:
-  [[nodiscard]] DocumentPtr newest(SteadyTime now);
+  [[nodiscard]] DocumentPtr next(SteadyTime now, DocumentPtr newest);
   [[nodiscard]] std::optional<LoggedEvents::One> next_logged();
 
   const Router::Entry* entry_;

@@ -12,6 +12,7 @@ struct Orders {
   bool half_close = false;  ///< Shut down sending; close() if that fails.
   bool read = false;        ///< Read some bytes into room(), then call received() or input_ended().
   bool write = false;       ///< Write all of output(), then call sent() or send_failed().
+  bool at_once = false;     ///< With `write`: if all of it can be sent now, do so and call sent().
   bool settle = false;      ///< Call settled() as soon as the kernel's send queue is small.
   bool wait = false;        ///< Register for the entry's next version, then call look().
 };

@@ -81,10 +81,28 @@ void ServerCore::post_wake(std::size_t entry) {
 void ServerCore::wake(std::size_t entry) {
   wake_posted[entry].store(false);
   now = std::chrono::steady_clock::now();
+  const auto& live = responder.router().entries()[entry]->live;
+  waking_ = entry;
+  woken_for_ = live ? live->current() : nullptr;
   std::vector<std::shared_ptr<Connection>> woken;
   woken.swap(waiting[entry]);
-  for (const auto& connection : woken) connection->wake();
+  auto chosen = now;
+  for (const auto& connection : woken) {
+    if (woken_for_ && wake_posted[entry].load(std::memory_order_relaxed)) {
+      const auto time = std::chrono::steady_clock::now();
+      if (time - chosen >= stale_after) {
+        woken_for_ = live->current();
+        chosen = time;
+      }
+    }
+    connection->wake();
+  }
+  woken_for_ = nullptr;
   waiters[entry].store(waiting[entry].size());
+}
+
+DocumentPtr ServerCore::woken_for(std::size_t entry) const {
+  return entry == waking_ ? woken_for_ : nullptr;
 }
 
 void ServerCore::wait_for(std::size_t entry, std::shared_ptr<Connection> connection) {

@@ -39,6 +39,11 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   /// before the waking count as one.  When no connection waits, the server's thread is not woken.
   void post_wake(std::size_t entry);
   void wake(std::size_t entry);
+  /// While connections are woken for the entry, the version that was the newest when that began;
+  /// null otherwise.  Streams send that one: to serve thousands takes as long as the next version
+  /// needs to come, and those that come last would miss one that the first ones got.  If it takes
+  /// longer than `stale_after`, the rest get what is the newest then.
+  [[nodiscard]] DocumentPtr woken_for(std::size_t entry) const;
   /// Registers a connection that waits for the entry.  Look at the document again afterwards: a
   /// publish just before this call did not wake the connection.
   void wait_for(std::size_t entry, std::shared_ptr<Connection> connection);
@@ -59,6 +64,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   std::optional<net::AddressAllowance> allowance;  ///< Of requests, for each address.
   RateReport failed_handshakes{"TLS handshake failed"};
 
+  SteadyTime::duration stale_after = std::chrono::milliseconds(30);  ///< Of what streams send.
   SteadyTime now;  ///< The time of the last sweep or wake.
   bool stopping = false;
   SteadyTime stop_deadline{};
@@ -72,6 +78,9 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   std::unique_ptr<std::atomic<std::size_t>[]> waiters;            ///< By entry: size of `waiting`.
 
  private:
+  DocumentPtr woken_for_;  ///< See woken_for(); of the entry `waking_`.
+  std::size_t waking_ = 0;
+
   void fit_descriptors();
   [[nodiscard]] bool close_an_idle_one(const Connection* newcomer, bool of_its_address);
 };

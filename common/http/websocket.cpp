@@ -95,7 +95,7 @@ void WebSocketConnection::push() {
     return;
   }
   pending_ = false;
-  message_ = reader_.message(core_.now);
+  message_ = reader_.message(core_.now, core_.woken_for(entry_->index));
   if (!message_) return;
   writing_ = true;
   deadline_ = core_.now + core_.config.limits.write_timeout;

@@ -1,5 +1,7 @@
 #include "common/net/stream.h"
 
+#include <sys/socket.h>
+
 #include <array>
 #include <span>
 
@@ -172,6 +174,13 @@ bool Stream::say_now(std::string_view said) {
   socket_.non_blocking(true, failed);
   return !failed &&
          socket_.write_some(asio::buffer(said.data(), said.size()), failed) == said.size();
+}
+
+std::size_t Stream::say_some_now(std::string_view said) {
+  if (sealed()) return 0;
+  const ssize_t size =
+      ::send(socket_.native_handle(), said.data(), said.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  return size < 0 ? 0 : static_cast<std::size_t>(size);
 }
 
 error_code Stream::end_saying() {

@@ -85,6 +85,9 @@ class Stream {
   /// Sends all of `said` at once or returns false: then close the stream.  Do not call it during
   /// another write.
   [[nodiscard]] bool say_now(std::string_view said);
+  /// Sends as much of `said` as goes without waiting; nothing if the stream is sealed or broken.
+  /// Do not call it during another write.
+  [[nodiscard]] std::size_t say_some_now(std::string_view said);
   /// Tells the other side that nothing more will be sent; incoming bytes can still be read.
   error_code end_saying();
   /// Cancels what is under way; afterwards the stream is unsealed and may be connected again.

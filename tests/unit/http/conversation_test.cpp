@@ -231,6 +231,22 @@ TEST_F(ConversationTest, AStreamCarriesEveryVersionAndSkipsForASlowReader) {
   EXPECT_EQ(heard(), "id: 3\ndata: 3\n\nid: 5\ndata: 5\n\n");
 }
 
+TEST_F(ConversationTest, AStreamTakesTheVersionForWhichAllAreWoken) {
+  begin();
+  say(kStream);
+  (void)heard();
+  publish(2);
+  const DocumentPtr second = frame_->current();
+  publish(3);
+  (void)talk_->woken(now_);
+  const Orders orders = talk_->look(now_, second);
+  EXPECT_TRUE(orders.at_once) << "an event is sent without a wait where that is possible";
+  obey(orders);
+  EXPECT_EQ(heard(), "id: 2\ndata: 2\n\n");
+  obey(talk_->look(now_));
+  EXPECT_EQ(heard(), "id: 3\ndata: 3\n\n");
+}
+
 TEST_F(ConversationTest, AStreamOfASlowRateSendsTheNewestWhenItIsTime) {
   begin();
   say("GET /frame?max_rate=1 HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n");
