@@ -6,6 +6,7 @@ import calendar
 import json
 import math
 import pathlib
+import re
 import selectors
 import sys
 import time
@@ -31,15 +32,13 @@ class Ages:
     """Of people read in a neighbour cell, and of the same people in the message of their own cell [ms]."""
 
     def __init__(self):
-        self.site, self.nats, self.own, self.newest = [], [], [], {}
+        self.site, self.nats, self.newest = [], [], {}
 
     def take(self, name, arrival, document):
         if name == "nats":
             if document.get("people"):
                 self.nats.append((arrival - int(document["at"])) / 1e6)
-        elif name.startswith("frame-"):
-            self.own.append((arrival - int(document["capturedNanoseconds"])) / 1e6)
-        else:
+        elif name != "frame-a":
             for site_id, person in document.get("sitePeople", {}).items():
                 if person["cell"] == name or self.newest.get((name, site_id)) == person["captured"]:
                     continue
@@ -93,22 +92,49 @@ def share_of_core(pid, seconds):
     return (cpu_seconds(pid) - begin) / seconds
 
 
-def own_ages_alone(bin_folder, sensors, seconds):
-    """Of one cell's own frame without a site [ms], and its share of a core with one reader and with none."""
+def twin_ages(hall, sensor_ports, seconds):
+    """Of the frames of cell a and of a twin of it that is in no site [ms]: the same sensors and instants, at the same time on the same machine."""
+    names = ("a", hall.start_twin(0, sensor_ports))
+    wait_for("the twin answers", lambda: get(hall.urls[names[1]] + "frame")["bodies"])
+    time.sleep(3)
+    chooser, came = selectors.DefaultSelector(), {name: [] for name in names}
+    for name in names:
+        chooser.register(Stream(hall.urls[name], "frame").socket, selectors.EVENT_READ, name)
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        for key, _ in chooser.select(left):
+            came[key.data].append((key.fileobj.recv(1 << 20), time.time_ns()))  # read later: whichever came second would wait for that
+    ages = {name: dict(ages_of(pieces)) for name, pieces in came.items()}
+    both = ages[names[0]].keys() & ages[names[1]].keys()
+    return [ages[names[0]][at] for at in both], [ages[names[1]][at] for at in both]
+
+
+def ages_of(pieces):
+    """(capture time, age [ms] when all of it was there) of each frame in the pieces of an event stream, each with its time of arrival."""
+    begun = b""
+    for piece, arrival in pieces:
+        *whole, begun = (begun + piece).split(b"\n\n")
+        for event in whole:
+            if found := re.search(rb'"capturedNanoseconds": ?"?(\d+)', event):
+                yield int(found[1]), (arrival - int(found[1])) / 1e6
+
+
+def cost_alone(bin_folder, sensors, seconds):
+    """The share of a core that one cell without a site takes, with one reader and with none."""
     with RealHall(bin_folder, 1, sensors) as hall:
         hall.start_cell(0, hall.start_sensors(0), in_site=False)
         wait_for("the cell answers", lambda: get(hall.urls["a"] + "frame")["capturedNanoseconds"])
         time.sleep(5)
         unread = share_of_core(hall.fusion_pid("a"), seconds)
-        ages, begin = Ages(), cpu_seconds(hall.fusion_pid("a"))
-        listen({"frame-a": Stream(hall.urls["a"], "frame")}, seconds, ages.take)
-        return ages.own, (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds, unread
+        begin = cpu_seconds(hall.fusion_pid("a"))
+        listen({"frame-a": Stream(hall.urls["a"], "frame")}, seconds, lambda *_: None)
+        return (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds, unread
 
 
 def line(bin_folder, quick):
     cells, sensors, seconds = (2, 3, 20) if quick else (4, 4, 60)
     with RealHall(bin_folder, cells, sensors) as hall:
-        hall.start_all()
+        sensor_ports = hall.start_all()
         time.sleep(5)
         cpu_alone_in_site = share_of_core(hall.fusion_pid("a"), seconds / 3)  # nobody reads
         ages, steps, nats = Ages(), Steps(), NatsReader(hall.server_port, "reader", hall.password("reader"), "chorus.hall.*.people")
@@ -117,12 +143,16 @@ def line(bin_folder, quick):
         begin = cpu_seconds(hall.fusion_pid("a"))
         listen(sources, seconds, lambda name, *said: steps.take(said[1]) if name == "site" else ages.take(name, *said))
         cpu = (cpu_seconds(hall.fusion_pid("a")) - begin) / seconds
-    alone, cpu_alone, cpu_unread = own_ages_alone(bin_folder, sensors, seconds / 2)
+        sources.clear()  # hangs up
+        own, twin = twin_ages(hall, sensor_ports[0], seconds)
+    cpu_alone, cpu_unread = cost_alone(bin_folder, sensors, seconds / 2)
     rows = [["age_neighbour_p50", percentile(ages.site, 0.5), "ms"], ["age_neighbour_p99", percentile(ages.site, 0.99), "ms"],
             ["age_nats_p50", percentile(ages.nats, 0.5), "ms"], ["age_nats_p99", percentile(ages.nats, 0.99), "ms"],
             ["age_ratio_p50", percentile(ages.site, 0.5) / percentile(ages.nats, 0.5), ""],
             ["age_ratio_p99", percentile(ages.site, 0.99) / percentile(ages.nats, 0.99), ""],
-            ["own_frame_p99", percentile(ages.own, 0.99), "ms"], ["own_frame_p99_without_site", percentile(alone, 0.99), "ms"],
+            ["own_frame_p50", percentile(own, 0.5), "ms"], ["own_frame_p50_without_site", percentile(twin, 0.5), "ms"],
+            ["own_frame_p99", percentile(own, 0.99), "ms"], ["own_frame_p99_without_site", percentile(twin, 0.99), "ms"],
+            ["own_frame_later_p50", percentile([a - b for a, b in zip(own, twin)], 0.5), "ms"],
             ["handovers", len(steps.moved_mm), ""], ["handover_moved_max", max(steps.moved_mm, default=math.nan), "mm"],
             ["handover_fading_max", max(steps.fading_mm, default=math.nan), "mm"], ["elsewhere_moved_p99", percentile(steps.usual_mm, 0.99), "mm"],
             ["handover_stated_min", min(steps.stated_mm, default=math.nan), "mm"], ["handover_gap_max", max(steps.late_ms, default=math.nan), "ms"], ["frame_gap_p99", percentile(steps.period, 0.99), "ms"],

@@ -2,6 +2,7 @@
 import json
 import math
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -74,8 +75,15 @@ class RealHall(NatsHall):
         (self.place / f"{name}.registration.json").write_text(json.dumps({"sensors": registration}))
         return ports
 
-    def start_cell(self, index, sensor_ports, in_site=True, server_port=None, more=()):
-        name, port = self.names[index], free_port()
+    def start_twin(self, index, sensor_ports):
+        """A cell of the same sensors that is in no site; its name."""
+        twin = f"{self.names[index]}-twin"
+        shutil.copy(self.place / f"{self.names[index]}.registration.json", self.place / f"{twin}.registration.json")
+        self.start_cell(index, sensor_ports, in_site=False, name=twin)
+        return twin
+
+    def start_cell(self, index, sensor_ports, in_site=True, server_port=None, more=(), name=None):
+        name, port = name or self.names[index], free_port()
         words = demo_hall.fusion_arguments(name, port, sensor_ports, self.place)
         if in_site:
             config = self.joined(name)
