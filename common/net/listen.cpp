@@ -6,6 +6,9 @@
 namespace chorus::net {
 namespace {
 
+// Connections that are accepted in one turn, so that thousands who come at once do not wait for a
+// turn each; in between, the thread does its other work.
+constexpr std::size_t kAtOnce = 64;
 // Pause after a failed attempt to accept, for example because there are no descriptors left.
 constexpr std::chrono::milliseconds kPause{100};
 
@@ -94,10 +97,28 @@ void AcceptLoop::on_accepted(error_code failed, Socket socket) {
     trouble_.hit(failed.message());
     return pause();
   }
-  // Continues accepting first, because a connection that cannot be welcomed must not stop the
-  // others.
+  std::vector<Socket> all;
+  all.push_back(std::move(socket));
+  take_more(all);
+  // Continues accepting first, and welcomes the others later, because a connection that cannot be
+  // welcomed must not stop them.
   accept();
-  welcome_(std::move(socket));
+  for (std::size_t i = 1; i < all.size(); ++i)
+    asio::post(acceptor_.get_executor(), [this, more = std::move(all[i])]() mutable {
+      if (!stopped_) welcome_(std::move(more));
+    });
+  welcome_(std::move(all.front()));
+}
+
+/// Accepts those who wait already.
+void AcceptLoop::take_more(std::vector<Socket>& all) {
+  error_code failed;
+  acceptor_.non_blocking(true, failed);
+  while (!failed && all.size() < kAtOnce) {
+    Socket more(acceptor_.get_executor());
+    acceptor_.accept(more, failed);
+    if (!failed) all.push_back(std::move(more));
+  }
 }
 
 void AcceptLoop::pause() {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/rate_report.h"
 #include "common/base/result.h"
@@ -48,6 +49,7 @@ class AcceptLoop {
  private:
   void accept();
   void on_accepted(error_code failed, Socket socket);
+  void take_more(std::vector<Socket>& all);
   void pause();
 
   Acceptor acceptor_;

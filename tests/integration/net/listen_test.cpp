@@ -37,6 +37,24 @@ TEST(AcceptLoop, WhatAConnectionsWelcomeThrowsCostsThatOneAlone) {
   EXPECT_EQ(welcomed.size(), 2u);
 }
 
+TEST(AcceptLoop, WhoComesTogetherIsWelcomedBeforeOtherWorkIsDone) {
+  asio::io_context io{1};
+  std::size_t welcomed = 0;
+  AcceptLoop accepting(io, "accept failed", [&](const Socket&) { ++welcomed; });
+  ASSERT_TRUE(accepting.listen({"127.0.0.1", 0, "test.port"}));
+  std::vector<Socket> callers;
+  for (int i = 0; i < 5; ++i) {
+    callers.emplace_back(io.get_executor());
+    callers.back().connect({asio::ip::address_v4::loopback(), accepting.port()});
+  }
+  accepting.ensure();
+  while (welcomed == 0) io.run_one();
+  std::size_t before_other_work = 0;
+  asio::post(io, [&] { before_other_work = welcomed; });
+  io.poll();
+  EXPECT_EQ(before_other_work, callers.size());
+}
+
 TEST(AcceptLoop, ATakenPortNamesTheKeyToChange) {
   asio::io_context io{1};
   AcceptLoop first(io, "accept failed", [](Socket) {});
