@@ -35,29 +35,73 @@ InertialReading between(const InertialReading& before, const InertialReading& af
 }  // namespace
 
 bool OrientationHistory::push(InertialFrame instant) {
-  if (!instants_.empty() && instant.captured <= instants_.back().captured) {
-    if (instants_.back().captured - instant.captured <= limits_.set_back) return false;
+  if (!instants_.empty() && instant.captured <= instants_.back().frame.captured) {
+    if (instants_.back().frame.captured - instant.captured <= limits_.set_back) return false;
     instants_.clear();
+    spoken_.clear();
   }
   const Timestamp oldest = instant.captured - limits_.span;
-  instants_.push_back(std::move(instant));
-  while (instants_.front().captured < oldest) instants_.pop_front();
+  Kept kept{{}, Timestamp::max(), Timestamp::min()};
+  for (const InertialReading& reading : instant.readings) {
+    if (!reading.inertial_from_sensor) continue;
+    kept.first = std::min(kept.first, reading.captured);
+    kept.last = std::max(kept.last, reading.captured);
+    ++spoken_[reading.sensor];
+  }
+  kept.frame = std::move(instant);
+  instants_.push_back(std::move(kept));
+  while (instants_.front().frame.captured < oldest) drop_oldest();
   return true;
 }
 
+void OrientationHistory::drop_oldest() {
+  for (const InertialReading& reading : instants_.front().frame.readings) {
+    if (!reading.inertial_from_sensor) continue;
+    const auto spoken = spoken_.find(reading.sensor);
+    if (--spoken->second == 0) spoken_.erase(spoken);
+  }
+  instants_.pop_front();
+}
+
+/// Of each sensor the last reading until `instant`.
+OrientationHistory::Readings OrientationHistory::last_until(Timestamp instant,
+                                                            Duration reach) const {
+  const auto captured = [](const Kept& kept) { return kept.frame.captured; };
+  Readings out;
+  auto one = std::ranges::upper_bound(instants_, instant + reach, {}, captured);
+  while (one != instants_.begin() && out.size() < spoken_.size()) {
+    --one;
+    if (one->frame.captured < instant - reach) break;
+    if (one->first > instant) continue;
+    const auto& readings = one->frame.readings;
+    for (auto reading = readings.rbegin(); reading != readings.rend(); ++reading)
+      if (reading->inertial_from_sensor && reading->captured <= instant)
+        out.try_emplace(reading->sensor, &*reading);
+  }
+  return out;
+}
+
+/// Of each sensor the first reading from `instant` on.
+OrientationHistory::Readings OrientationHistory::first_from(Timestamp instant,
+                                                            Duration reach) const {
+  const auto captured = [](const Kept& kept) { return kept.frame.captured; };
+  Readings out;
+  auto one = std::ranges::lower_bound(instants_, instant - reach, {}, captured);
+  for (; one != instants_.end() && one->frame.captured <= instant + reach; ++one) {
+    if (out.size() == spoken_.size()) break;
+    if (one->last < instant) continue;
+    for (const InertialReading& reading : one->frame.readings)
+      if (reading.inertial_from_sensor && reading.captured >= instant)
+        out.try_emplace(reading.sensor, &reading);
+  }
+  return out;
+}
+
 std::vector<InertialReading> OrientationHistory::at(Timestamp instant) const {
-  std::map<std::string_view, const InertialReading*> before;
-  std::map<std::string_view, const InertialReading*> after;
   // Samples of one frame lie at most a gap apart; farther frames have nothing to interpolate with.
   const Duration reach = 2 * limits_.max_gap;
-  auto one = std::ranges::lower_bound(instants_, instant - reach, {}, &InertialFrame::captured);
-  for (; one != instants_.end() && one->captured <= instant + reach; ++one) {
-    for (const InertialReading& reading : one->readings) {
-      if (!reading.inertial_from_sensor) continue;
-      if (reading.captured <= instant) before[reading.sensor] = &reading;
-      if (reading.captured >= instant) after.try_emplace(reading.sensor, &reading);
-    }
-  }
+  const Readings before = last_until(instant, reach);
+  const Readings after = first_from(instant, reach);
   std::vector<InertialReading> out;
   for (const auto& [sensor, earlier] : before) {
     const auto later = after.find(sensor);

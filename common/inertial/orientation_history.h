@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <map>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/strong_id.h"
@@ -36,8 +39,22 @@ class OrientationHistory {
   [[nodiscard]] std::size_t size() const noexcept { return instants_.size(); }
 
  private:
+  /// An instant, and from when to when its readings with an orientation are.
+  struct Kept {
+    InertialFrame frame;
+    Timestamp first;
+    Timestamp last;
+  };
+  using Readings = std::map<std::string_view, const InertialReading*>;
+
+  void drop_oldest();
+  [[nodiscard]] Readings last_until(Timestamp instant, Duration reach) const;
+  [[nodiscard]] Readings first_from(Timestamp instant, Duration reach) const;
+
   OrientationLimits limits_;
-  std::deque<InertialFrame> instants_;
+  std::deque<Kept> instants_;
+  /// Kept readings with an orientation, by sensor: who is found needs no longer search.
+  std::map<std::string, std::size_t, std::less<>> spoken_;
 };
 
 /// What the suit that a person wears says at the common instant of the person's views.

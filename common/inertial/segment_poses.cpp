@@ -22,7 +22,12 @@ SegmentPoses::SegmentPoses(std::vector<Segment> segments)
     : segments_(std::move(segments)), states_(segments_.size()) {}
 
 void SegmentPoses::turn(std::size_t segment, const Eigen::Quaterniond& in_parent, Timestamp now) {
+  if (states_[segment].fresh && *states_[segment].fresh != now) {
+    if (auto complete = gather(turned_)) waiting_.push_back(std::move(*complete));
+    if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+  }
   states_[segment] = {in_parent, now};
+  turned_ = now;
 }
 
 std::optional<std::size_t> SegmentPoses::find(std::string_view name) const {
@@ -32,6 +37,13 @@ std::optional<std::size_t> SegmentPoses::find(std::string_view name) const {
 }
 
 std::optional<InertialFrame> SegmentPoses::instant(Timestamp now) {
+  if (waiting_.empty()) return gather(now);
+  InertialFrame frame = std::move(waiting_.front());
+  waiting_.pop_front();
+  return frame;
+}
+
+std::optional<InertialFrame> SegmentPoses::gather(Timestamp now) {
   InertialFrame frame;
   std::vector<Eigen::Quaterniond> in_world(segments_.size());
   for (std::size_t i = 0; i < segments_.size(); ++i) {

@@ -22,7 +22,8 @@ class StreamReader {
   /// Takes a datagram, or some bytes of a connection.  An error says what was wrong with it and
   /// costs that datagram alone.
   [[nodiscard]] virtual Result<void> take(std::string_view bytes, Timestamp now) = 0;
-  /// What has been said since the last call; none if nothing.
+  /// What has been said since the last call; none if nothing.  Who asks seldom asks until there is
+  /// none: where segments spoke several times, each time is an instant.
   [[nodiscard]] virtual std::optional<InertialFrame> instant(Timestamp now) = 0;
   /// A new connection: forgets what was cut off.
   virtual void restart() {}

@@ -61,12 +61,14 @@ class VmcReader final : public StreamReader {
 
   [[nodiscard]] std::optional<InertialFrame> instant(Timestamp now) override {
     auto frame = bones_.instant(now);
-    if (!frame) frame.emplace();
+    if (!frame) {
+      frame.emplace();
+      frame->captured = now;
+    }
     for (auto& [serial, reading] : trackers_) frame->readings.push_back(std::move(reading));
     trackers_.clear();
     if (frame->readings.empty()) return std::nullopt;
     frame->sequence = ++instants_;
-    frame->captured = now;
     return frame;
   }
 

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "common/base/parse.h"
+#include "common/resource/inertial_members.h"
 
 namespace chorus::resource {
 namespace {
 
-/// Beyond anything that a worn sensor measures, in any of our units.
-constexpr double kLargest = 1e6;
 constexpr std::uint64_t kLatestNs = 9'000'000'000'000'000'000u;
 
 }  // namespace
@@ -37,7 +36,7 @@ std::optional<double> JsonMembers::number(const char* key) {
   std::optional<double> number;
   if (value->is_number()) number = value->get<double>();
   if (value->is_string()) number = parse_number<double>(value->get_ref<const std::string&>());
-  if (number && std::abs(*number) <= kLargest) return number;  // NaN is not, either.
+  if (number && std::abs(*number) <= kLargestMember) return number;  // NaN is not, either.
   complain(key, "is not a number, or beyond a million");
   return std::nullopt;
 }

@@ -1,12 +1,13 @@
 #include "common/resource/orientations_resource.h"
 
-#include <array>
 #include <optional>
 #include <utility>
 
 #include "common/base/json.h"
+#include "common/resource/inertial_members.h"
 #include "common/resource/inertial_readings.h"
 #include "common/resource/json_members.h"
+#include "common/resource/orientations_scan.h"
 
 namespace chorus::resource {
 namespace {
@@ -15,28 +16,6 @@ using inertial::InertialFrame;
 using inertial::InertialReading;
 
 constexpr JsonLimits kOrientationsLimits{.bytes = 2'000'000, .nesting = 8};
-
-// The members of a reading that are vectors, which of its axes each is about, and its decimals.
-using Axes = std::array<const char*, 3>;
-struct VectorField {
-  std::optional<Eigen::Vector3d> InertialReading::*value;
-  Axes keys;
-  int digits;
-};
-constexpr std::array kVectors{
-    VectorField{
-        &InertialReading::acceleration, {"accelerationX", "accelerationY", "accelerationZ"}, 5},
-    VectorField{&InertialReading::free_acceleration,
-                {"freeAccelerationX", "freeAccelerationY", "freeAccelerationZ"},
-                5},
-    VectorField{&InertialReading::rate, {"angularRateX", "angularRateY", "angularRateZ"}, 5},
-    VectorField{&InertialReading::field, {"magneticFieldX", "magneticFieldY", "magneticFieldZ"}, 4},
-};
-constexpr std::array<const char*, 4> kQuaternion{"qx", "qy", "qz", "qw"};
-/// Upper triangle, by rows.
-constexpr std::array<const char*, 6> kCovariance{"rxx", "rxy", "rxz", "ryy", "ryz", "rzz"};
-constexpr std::array<std::pair<int, int>, 6> kTriangle{
-    {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
 
 constexpr int kAngleDigits = 6;
 constexpr int kCovarianceDigits = 9;  ///< 1e-9 rad^2: 0.002 degrees.
@@ -206,7 +185,12 @@ Result<std::vector<InertialReading>> read_readings(const nlohmann::json& reading
 Result<OrientationsResource> read_orientations(std::string_view bytes, Format format) {
   if (format != Format::Json && format != Format::JsonLd)
     return fail(ErrorCode::Unsupported, "orientations", "are read in JSON only");
-  const auto document = parse_json(bytes, kOrientationsLimits);
+  if (auto scanned = scan_orientations(bytes)) return std::move(*scanned);
+  return parse_orientations(bytes);
+}
+
+Result<OrientationsResource> parse_orientations(std::string_view json) {
+  const auto document = parse_json(json, kOrientationsLimits);
   if (!document) return pass(document);
   if (!document->is_object())
     return fail(ErrorCode::Malformed, "orientations", "is no JSON object");

@@ -21,14 +21,17 @@ constexpr ServedKind kServedOrientations{
 }  // namespace
 
 OrientationsPtr OrientationBatch::add(inertial::InertialFrame instant, Duration now) {
+  readings_ += instant.readings.size();
   waiting_.push_back(std::move(instant));
   const bool due = !given_at_ || now - *given_at_ >= kInterval;
-  if (!due && waiting_.size() < resource::kMaxInstants) return nullptr;
+  const bool full = waiting_.size() >= resource::kMaxInstants || readings_ >= kMaxReadings;
+  if (!due && !full) return nullptr;
   auto document = std::make_shared<resource::OrientationsResource>();
   document->sequence = ++given_;
   document->captured = waiting_.back().captured;
   document->source = waiting_.back().source.str();
   document->instants = std::exchange(waiting_, {});
+  readings_ = 0;
   given_at_ = now;
   return document;
 }

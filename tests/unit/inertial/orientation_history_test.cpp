@@ -64,6 +64,62 @@ TEST(OrientationHistory, RefusesRepeatsAndBeginsAnewWhenTheClockWasSet) {
   EXPECT_LE(history.size(), 502u) << "five seconds";
 }
 
+/// What at() says by its own words, looked up reading by reading.
+std::map<std::string, double> plain_at(const std::vector<InertialFrame>& all, Timestamp instant) {
+  std::map<std::string, const InertialReading*> before, after;
+  for (const InertialFrame& frame : all) {
+    if (frame.captured < instant - milliseconds(400) ||
+        frame.captured > instant + milliseconds(400))
+      continue;
+    for (const InertialReading& one : frame.readings) {
+      if (!one.inertial_from_sensor) continue;
+      if (one.captured <= instant) before[one.sensor] = &one;
+      if (one.captured >= instant) after.try_emplace(one.sensor, &one);
+    }
+  }
+  std::map<std::string, double> out;
+  for (const auto& [name, first] : before) {
+    const auto second = after.find(name);
+    if (second == after.end()) continue;
+    const Duration gap = second->second->captured - first->captured;
+    if (gap > milliseconds(200)) continue;
+    const double share =
+        gap == Duration{0} ? 0.0 : seconds(instant - first->captured) / seconds(gap);
+    out[name] =
+        yaw_of(first->inertial_from_sensor->slerp(share, *second->second->inertial_from_sensor)
+                   .toRotationMatrix());
+  }
+  return out;
+}
+
+TEST(OrientationHistory, FindsSensorsOfAThousandHertzThatAreLateSilentOrSpeakApart) {
+  OrientationHistory history;
+  std::vector<InertialFrame> all;
+  for (int ms = 0; ms < 3000; ++ms) {
+    InertialFrame frame{sensor_id("suit"), 0, kStart + milliseconds(ms), {}, {}};
+    const auto add = [&](const char* name, int at) {
+      InertialReading one{name, kStart + milliseconds(at)};
+      one.inertial_from_sensor = about_y(at * 1e-3);
+      frame.readings.push_back(one);
+    };
+    add("steady", ms);
+    if (ms >= 150) add("late", ms - 150);
+    if (ms % 90 == 0) add("slow", ms - 1);
+    if (ms < 1200 || ms > 1900) add("silent", ms);
+    all.push_back(frame);
+    ASSERT_TRUE(history.push(std::move(frame)));
+  }
+  for (int us = 500'000; us < 2'990'000; us += 7'300) {
+    const Timestamp instant = kStart + std::chrono::microseconds(us);
+    std::map<std::string, double> said;
+    for (const auto& one : history.at(instant))
+      said[one.sensor] = yaw_of(one.inertial_from_sensor->toRotationMatrix());
+    const auto expected = plain_at(all, instant);
+    ASSERT_EQ(said.size(), expected.size()) << us;
+    for (const auto& [name, yaw] : expected) ASSERT_NEAR(said.at(name), yaw, 1e-12) << name << us;
+  }
+}
+
 TEST(WornAt, IsForPeopleWhoseSuitIsKnownAndSpeaks) {
   std::map<SensorId, OrientationHistory> histories;
   (void)histories[sensor_id("suit")].push(turning(10));

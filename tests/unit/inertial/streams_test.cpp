@@ -316,6 +316,30 @@ TEST(NeuronBvh, ReadsBothFormsCutAnywhere) {
   }
 }
 
+TEST(Streams, LoseNothingWhenTheyAreFasterThanTheyAreAsked) {
+  using std::chrono::milliseconds;
+  const auto reader = make_neuron_reader();
+  for (int i = 1; i <= 10; ++i)
+    ASSERT_THAT(reader->take(neuron_frame(false, {{0, {1.0 * i, 0, 0}}}), kHeard + milliseconds(i)),
+                IsOk());
+  for (int i = 1; i <= 10; ++i) {
+    const auto one = reader->instant(kHeard + milliseconds(11));
+    ASSERT_TRUE(one) << i;
+    EXPECT_EQ(one->sequence, static_cast<std::uint64_t>(i));
+    EXPECT_EQ(one->captured, kHeard + milliseconds(i == 10 ? 11 : i));
+    EXPECT_LT(angular_distance(*one->readings[0].inertial_from_sensor, turn_about(kY, i)), kSent);
+  }
+  EXPECT_FALSE(reader->instant(kHeard + milliseconds(12)));
+  for (int i = 0; i < 500; ++i)
+    (void)reader->take(neuron_frame(false, {}), kHeard + milliseconds(20 + i));
+  int kept = 0;
+  while (reader->instant(kHeard + milliseconds(600))) ++kept;
+  EXPECT_EQ(kept, 101) << "of a flood the newest";
+  (void)reader->take(neuron_frame(false, {}) + neuron_frame(false, {}), kHeard);
+  EXPECT_TRUE(reader->instant(kHeard));
+  EXPECT_FALSE(reader->instant(kHeard)) << "two of one time are one";
+}
+
 TEST(NeuronBvh, TakesItsOwnAvatarAndRefusesByName) {
   const auto other = make_neuron_reader(1);
   ASSERT_THAT(other->take(neuron_frame(true, {}), kHeard), IsOk());

@@ -51,6 +51,21 @@ TEST(MxtpOrientations, GivesEveryLimbAndFollowsItsTurns) {
   EXPECT_FALSE(reader->instant(chorus::testing::kStart)) << "nothing new";
 }
 
+TEST(MxtpOrientations, LosesNoneOfAStreamThatIsFasterThanItIsAsked) {
+  using std::chrono::milliseconds;
+  const auto reader = make_mxtp_reader();
+  const Timestamp start = chorus::testing::kStart;
+  for (std::uint32_t i = 1; i <= 10; ++i)
+    ASSERT_THAT(reader->take(mxtp_pose(0.01 * i, i, 0), start + milliseconds(i)), IsOk());
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    const auto one = reader->instant(start + milliseconds(11));
+    ASSERT_TRUE(one) << i;
+    EXPECT_EQ(one->sequence, i);
+    EXPECT_EQ(one->readings[0].captured, start + milliseconds(i));
+  }
+  EXPECT_FALSE(reader->instant(start + milliseconds(12)));
+}
+
 TEST(MxtpOrientations, LeavesOutOtherPeopleAndRefusesNonsense) {
   const auto reader = make_mxtp_reader(1);
   ASSERT_THAT(reader->take(mxtp_pose(0.0, 1, 0), chorus::testing::kStart), IsOk());

@@ -56,6 +56,27 @@ TEST(SlimevrDesk, GreetsTrackersAndTurnsWhatTheySayUpright) {
   EXPECT_FALSE(desk.instant(kStart + milliseconds(20))) << "nothing new";
 }
 
+TEST(SlimevrDesk, LosesNoneOfATrackerThatIsFasterThanItIsAsked) {
+  SlimevrDesk desk;
+  (void)desk.hear("a", packet(0, tracker(1)), kStart);
+  (void)desk.hear("b", packet(0, tracker(2)), kStart);
+  for (int i = 1; i <= 10; ++i) {
+    const auto number = static_cast<std::uint64_t>(i);
+    (void)desk.hear("a", packet(number, turned()), kStart + milliseconds(i));
+    if (i == 5) (void)desk.hear("b", packet(1, turned()), kStart + milliseconds(i));
+  }
+  std::size_t of_a = 0, of_b = 0;
+  while (const auto instant = desk.instant(kStart + milliseconds(11))) {
+    for (const auto& one : instant->readings) {
+      const bool a = one.sensor.ends_with("01");
+      (a ? of_a : of_b) += 1;
+      EXPECT_EQ(one.captured, kStart + milliseconds(a ? static_cast<int>(of_a) : 5));
+    }
+  }
+  EXPECT_EQ(of_a, 10u);
+  EXPECT_EQ(of_b, 1u);
+}
+
 TEST(SlimevrDesk, IgnoresStrangersRepeatsAndNonsense) {
   SlimevrDesk desk;
   EXPECT_THAT(desk.hear("a", packet(1, turned()), kStart), IsEmpty());

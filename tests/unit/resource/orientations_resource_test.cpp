@@ -9,6 +9,7 @@
 
 #include "common/geometry/rotation.h"
 #include "common/resource/inertial_calibration_resource.h"
+#include "common/resource/orientations_scan.h"
 
 namespace chorus::resource {
 namespace {
@@ -185,6 +186,81 @@ TEST(InertialCalibrations, AreTheSameAfterJsonAndJsonLd) {
   std::string text = write(calibration, Format::Json);
   text.replace(text.find("ForearmLeft"), 11, "ForearmLost");
   EXPECT_FALSE(read_inertial_calibration(text, Format::Json));
+}
+
+void expect_same(const OrientationsResource& a, const OrientationsResource& b) {
+  EXPECT_EQ(a.sequence, b.sequence);
+  EXPECT_EQ(a.captured, b.captured);
+  EXPECT_EQ(a.source, b.source);
+  ASSERT_EQ(a.instants.size(), b.instants.size());
+  for (std::size_t i = 0; i < a.instants.size(); ++i) {
+    EXPECT_EQ(a.instants[i].sequence, b.instants[i].sequence);
+    EXPECT_EQ(a.instants[i].captured, b.instants[i].captured);
+    EXPECT_EQ(a.instants[i].source, b.instants[i].source);
+    ASSERT_EQ(a.instants[i].readings.size(), b.instants[i].readings.size());
+    for (std::size_t r = 0; r < a.instants[i].readings.size(); ++r) {
+      const InertialReading& one = a.instants[i].readings[r];
+      const InertialReading& other = b.instants[i].readings[r];
+      expect_same_reading(one, other);
+      EXPECT_EQ(one.inertial_from_sensor.has_value(), other.inertial_from_sensor.has_value());
+      if (!one.inertial_from_sensor || !other.inertial_from_sensor) continue;
+      EXPECT_EQ(one.inertial_from_sensor->coeffs(), other.inertial_from_sensor->coeffs());
+    }
+  }
+}
+
+TEST(OrientationsScan, ReadsWhatIsWrittenAsTheParserDoes) {
+  OrientationsResource said = two_instants();
+  for (const char* name : {"zeta", "alpha", "B-7"}) {
+    said.instants[1].readings.push_back(forearm(said.instants[1].captured));
+    said.instants[1].readings.back().sensor = name;
+  }
+  const std::string text = write(said, Format::Json);
+  const auto scanned = scan_orientations(text);
+  ASSERT_TRUE(scanned);
+  const auto parsed = parse_orientations(text);
+  ASSERT_TRUE(parsed) << to_string(parsed.error());
+  expect_same(*scanned, *parsed);
+}
+
+TEST(OrientationsScan, TakesNothingThatTheParserRefusesOrReadsOtherwise) {
+  const std::string text = write(two_instants(), Format::Json);
+  const std::string_view other = "0123456789\"{}[],:-.eE x\\q\x01";
+  int taken = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::string changed = text;
+      if (k < 2)
+        changed[at] = other[(at * 7 + 11 * k) % other.size()];
+      else
+        changed.erase(at, 1);
+      const auto scanned = scan_orientations(changed);
+      if (!scanned) continue;
+      const auto parsed = parse_orientations(changed);
+      ASSERT_TRUE(parsed) << changed.substr(at > 20 ? at - 20 : 0, 60);
+      expect_same(*scanned, *parsed);
+      ++taken;
+    }
+  }
+  EXPECT_GT(taken, 100);
+}
+
+TEST(OrientationsScan, LeavesToTheParserWhatItDoesNotKnow) {
+  const std::string text = write(two_instants(), Format::Json);
+  const auto with = [&](const char* what, const char* instead) {
+    std::string changed = text;
+    changed.replace(changed.find(what), std::string_view(what).size(), instead);
+    return changed;
+  };
+  for (const std::string& each :
+       {with("\"battery\"", "\"mood\": 3, \"battery\""), with("\"qx\"", "\"qx\": 1, \"qx\""),
+        with("\"tail\"", "\"00B4891F\""), with("\"tail\"", "\"t\\u0061il\""), text + " x",
+        with("\"qw\"", "\"qv\""), std::string("{}"), std::string()}) {
+    EXPECT_FALSE(scan_orientations(each)) << each.substr(0, 40);
+  }
+  EXPECT_TRUE(read_orientations(with("\"battery\"", "\"mood\": 3, \"battery\""), Format::Json));
+  EXPECT_TRUE(read_orientations(with("\"tail\"", "\"t\\u0061il\""), Format::Json));
+  EXPECT_FALSE(read_orientations(with("\"qx\"", "\"qx\": 1, \"qx\""), Format::Json));
 }
 
 }  // namespace

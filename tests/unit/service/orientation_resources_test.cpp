@@ -65,6 +65,34 @@ TEST(OrientationBatch, ABurstIsNoDocumentBeyondWhatReadersTake) {
   EXPECT_EQ(most, resource::kMaxInstants);
 }
 
+TEST(OrientationBatch, ABurstOfManySensorsIsNoLongerThanReadersTake) {
+  OrientationBatch batch;
+  std::size_t documents = 0;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    inertial::InertialFrame many = instant(i + 1, milliseconds(static_cast<int>(i)));
+    inertial::InertialReading full = many.readings.front();
+    full.limb = inertial::Limb::UpperArmRight;
+    full.covariance = Eigen::Matrix3d::Constant(-0.123456789);
+    full.covariance->diagonal().setConstant(0.123456789);
+    for (auto* vector : {&full.acceleration, &full.free_acceleration, &full.rate, &full.field})
+      *vector = Eigen::Vector3d::Constant(-123.45678);
+    full.magnetic = inertial::MagneticState::Undisturbed;
+    full.battery = 0.123;
+    many.readings.clear();
+    for (std::size_t s = 0; s < inertial::kMaxInertialSensors; ++s) {
+      full.sensor = std::string(inertial::kMaxSensorName - 2, 'n') + std::to_string(10 + s);
+      many.readings.push_back(full);
+    }
+    const auto one = batch.add(std::move(many), Duration{0});
+    if (!one) continue;
+    ++documents;
+    const auto read = resource::read_orientations(resource::write(*one, resource::Format::Json),
+                                                  resource::Format::Json);
+    ASSERT_TRUE(read) << to_string(read.error());
+  }
+  EXPECT_GE(documents, 7u);
+}
+
 TEST(OrientationResources, ServeTheLatestAndThoseBeforeIt) {
   OrientationResources resources({"a"}, {std::chrono::seconds(3)});
   http::Router router;

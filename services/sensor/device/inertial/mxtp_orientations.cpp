@@ -1,8 +1,10 @@
 #include "services/sensor/device/inertial/mxtp_orientations.h"
 
+#include <deque>
 #include <span>
 
 #include "common/evaluation/limb_frame.h"
+#include "common/inertial/segment_poses.h"
 #include "common/suit/mxtp_decoder.h"
 
 namespace chorus::inertial_device {
@@ -19,13 +21,15 @@ class MxtpReader final : public inertial::StreamReader {
     auto pose = decoder_.take(std::span<const char>(bytes.data(), bytes.size()));
     if (!pose) return pass(pose);
     if (!*pose || (*pose)->character != character_) return {};
-    fresh_.emplace();
-    fresh_->captured = now;
+    if (!fresh_.empty() && fresh_.back().captured == now) fresh_.pop_back();
+    InertialFrame& fresh = fresh_.emplace_back();
+    if (fresh_.size() > inertial::kMostWaiting) fresh_.pop_front();
+    fresh.captured = now;
     for (std::size_t i = 0; i < inertial::kLimbCount; ++i) {
       const auto limb = static_cast<Limb>(i);
       const auto turned = evaluation::limb_from_orientation((*pose)->body, limb);
       if (!turned) continue;
-      inertial::InertialReading& reading = fresh_->readings.emplace_back();
+      inertial::InertialReading& reading = fresh.readings.emplace_back();
       reading.sensor = std::string(name_of(limb));
       reading.captured = now;
       reading.limb = limb;
@@ -35,10 +39,11 @@ class MxtpReader final : public inertial::StreamReader {
   }
 
   [[nodiscard]] std::optional<InertialFrame> instant(Timestamp now) override {
-    if (!fresh_ || fresh_->readings.empty()) return std::nullopt;
-    InertialFrame out = std::move(*fresh_);
-    fresh_.reset();
-    out.captured = now;
+    while (!fresh_.empty() && fresh_.front().readings.empty()) fresh_.pop_front();
+    if (fresh_.empty()) return std::nullopt;
+    InertialFrame out = std::move(fresh_.front());
+    fresh_.pop_front();
+    if (fresh_.empty()) out.captured = now;
     out.sequence = ++instants_;
     return out;
   }
@@ -46,7 +51,7 @@ class MxtpReader final : public inertial::StreamReader {
  private:
   suit::MxtpDecoder decoder_;
   int character_;
-  std::optional<InertialFrame> fresh_;
+  std::deque<InertialFrame> fresh_;
   std::uint64_t instants_ = 0;
 };
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "common/inertial/segment_poses.h"
+
 namespace chorus::inertial_device {
 namespace {
 
@@ -57,6 +59,13 @@ std::optional<std::string> SlimevrDesk::take(Tracker& tracker, const slimevr::Co
                                              Timestamp now) {
   if (const auto* rotation = std::get_if<slimevr::Rotation>(&content)) {
     const Eigen::Quaterniond turned = inertial::y_up_from_z_up() * rotation->world_from_tracker;
+    const auto fresh = tracker.fresh.find(rotation->sensor);
+    if (fresh != tracker.fresh.end() && fresh->second.inertial_from_sensor &&
+        fresh->second.captured != now) {
+      if (auto complete = gather(turned_)) waiting_.push_back(std::move(*complete));
+      if (waiting_.size() > inertial::kMostWaiting) waiting_.pop_front();
+    }
+    turned_ = now;
     tracker.latest[rotation->sensor] = turned;
     reading_of(tracker, rotation->sensor, now).inertial_from_sensor = turned;
   } else if (const auto* acceleration = std::get_if<slimevr::Acceleration>(&content)) {
@@ -106,6 +115,13 @@ std::vector<Outgoing> SlimevrDesk::hear(const std::string& from, std::string_vie
 }
 
 std::optional<inertial::InertialFrame> SlimevrDesk::instant(Timestamp now) {
+  if (waiting_.empty()) return gather(now);
+  inertial::InertialFrame frame = std::move(waiting_.front());
+  waiting_.pop_front();
+  return frame;
+}
+
+std::optional<inertial::InertialFrame> SlimevrDesk::gather(Timestamp now) {
   inertial::InertialFrame frame;
   for (auto& [address, tracker] : trackers_) {
     for (auto& [sensor, reading] : tracker.fresh) {

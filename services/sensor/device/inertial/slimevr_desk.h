@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,7 +36,8 @@ class SlimevrDesk {
   [[nodiscard]] std::vector<Outgoing> hear(const std::string& from, std::string_view datagram,
                                            Timestamp now);
 
-  /// What the trackers have said since the last call; none if nothing.
+  /// What the trackers have said since the last call; none if nothing.  A sensor that has turned
+  /// several times makes several instants: ask until there is none.
   [[nodiscard]] std::optional<inertial::InertialFrame> instant(Timestamp now);
 
   /// What keeps trackers from looking for another server; forgets those that are silent.
@@ -64,7 +66,11 @@ class SlimevrDesk {
   inertial::InertialReading& reading_of(Tracker& tracker, std::uint8_t sensor, Timestamp now);
   void greet(const std::string& from, const inertial::slimevr::Handshake& handshake, Timestamp now);
 
-  std::map<std::string, Tracker> trackers_;  ///< By address.
+  [[nodiscard]] std::optional<inertial::InertialFrame> gather(Timestamp now);
+
+  std::map<std::string, Tracker> trackers_;      ///< By address.
+  std::deque<inertial::InertialFrame> waiting_;  ///< Instants that are complete.
+  Timestamp turned_{};                           ///< When a sensor last turned.
   std::uint64_t instants_ = 0;
   std::uint64_t refused_ = 0;
   std::string last_refusal_;

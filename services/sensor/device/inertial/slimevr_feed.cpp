@@ -13,7 +13,7 @@ namespace chorus::inertial_device {
 namespace {
 
 /// Trackers send 60 to 100 times a second each, at times of their own; what came within this time
-/// is one instant.
+/// is one instant, unless a tracker spoke several times in it.
 constexpr Duration kInstant = std::chrono::milliseconds(10);
 constexpr std::size_t kMostEndpoints = 1000;
 
@@ -37,7 +37,7 @@ class SlimevrFeed final : public InertialFeed {
     while (!stop.stop_requested()) {
       io.run_for(std::chrono::duration_cast<std::chrono::milliseconds>(kInstant));
       const Timestamp now = time_.host.host_time(time_.world->now());
-      if (auto instant = desk_.instant(now)) take(std::move(*instant));
+      while (auto instant = desk_.instant(now)) take(std::move(*instant));
       send(socket, desk_.heartbeats(now));
     }
     net::error_code ignored;

@@ -13,7 +13,7 @@
 namespace chorus::inertial_device {
 namespace {
 
-/// What came within this time is one instant.
+/// What came within this time is one instant, unless a segment spoke several times in it.
 constexpr Duration kStreamInstant = std::chrono::milliseconds(10);
 constexpr std::chrono::seconds kRetry{2};
 
@@ -45,10 +45,10 @@ class StreamFeed final : public InertialFeed {
     std::uint64_t number = 0;
     while (!stop.stop_requested()) {
       io.run_for(std::chrono::duration_cast<std::chrono::milliseconds>(kStreamInstant));
-      auto instant = settings_.reader->instant(now());
-      if (!instant) continue;
-      instant->sequence = ++number;
-      take(std::move(*instant));
+      while (auto instant = settings_.reader->instant(now())) {
+        instant->sequence = ++number;
+        take(std::move(*instant));
+      }
     }
     wire.done = true;
     net::error_code ignored;
