@@ -66,8 +66,8 @@ std::optional<Eigen::Quaterniond> carried(const SimulatedSuit& suit, Limb limb,
                                           const Skeleton<WorldSpace>& body, double since) {
   const auto bone = true_limb(body, limb);
   if (!bone) return std::nullopt;
-  return *bone * skin_error(suit, limb, since) * slip_error(suit, limb, since) *
-         mount_of(suit, limb);
+  return *bone * about_y(pronation(suit, limb, since)) * skin_error(suit, limb, since) *
+         slip_error(suit, limb, since) * mount_of(suit, limb);
 }
 
 /// The poses around an instant, from which derivatives are taken.

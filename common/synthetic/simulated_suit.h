@@ -2,7 +2,7 @@
 // and a heading of its own, noise, skin that moves, drift, and what goes wrong with real ones.
 //
 // The sensor on a limb says
-//   about_y(drift - heading) * world_from_limb * skin * slip * mount * noise,
+//   about_y(drift - heading) * world_from_limb * pronation * skin * slip * mount * noise,
 // so the calibration that takes it back is SensorCalibration{heading, limb_from_sensor = mount}.
 // A pure function of the suit and the time.  Simulated: no proof of anything about real suits.
 #pragma once
@@ -21,8 +21,8 @@ namespace chorus::synthetic {
 /// What sensors that work err by.
 struct SuitErrors {
   double noise = deg(2.0);  ///< White, per axis and instant [rad]
-  /// Skin and muscle against bone, as multiple of what real sensors show on each limb: coloured,
-  /// and largest about forearms (suit_errors.cpp).
+  /// Skin and muscle against bone, as multiple of what real sensors show on each limb, and forearms
+  /// that turn with their hands: coloured (suit_errors.cpp).
   double skin = 0.0;
   bool magnetometer = false;   ///< With one, headings do not drift but can be disturbed.
   double heading_drift = 0.0;  ///< Largest constant drift of a heading [rad/s], of either sign.

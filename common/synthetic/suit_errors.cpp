@@ -14,7 +14,13 @@ namespace {
 using inertial::Limb;
 using Kind = SuitFault::Kind;
 
-enum SuitDraw : std::uint64_t { kSkinDraw = 321, kDriftDraw, kBiasDraw, kChargeDraw };
+enum SuitDraw : std::uint64_t {
+  kSkinDraw = 321,
+  kDriftDraw,
+  kBiasDraw,
+  kChargeDraw,
+  kPronationDraw
+};
 
 constexpr double kBiasTau = 100.0;    // of a gyroscope that warms up and cools [s]
 constexpr double kFieldEdge = 1.0;    // how long a person takes to walk up to iron [s]
@@ -49,7 +55,7 @@ double share_of_ramp(double time, double length) {
 SkinRow skin_of(Limb limb) {
   // clang-format off
   constexpr SkinRow kUpperArm{deg(2.0), deg(6.0), deg(2.9), 1.2};
-  constexpr SkinRow kForearm{deg(1.1), deg(5.9), deg(1.5), 1.3, 3.0};
+  constexpr SkinRow kForearm{deg(1.1), deg(1.9), deg(1.5), 0.5};
   constexpr SkinRow kThigh{deg(2.5), deg(2.2), deg(5.8), 0.4};
   constexpr SkinRow kShank{deg(1.3), deg(0.7), deg(3.3), 0.2};
   constexpr SkinRow kFoot{deg(1.0), deg(1.9), deg(2.5), 0.3};
@@ -64,12 +70,21 @@ SkinRow skin_of(Limb limb) {
 Eigen::Quaterniond skin_error(const SimulatedSuit& suit, Limb limb, double since) {
   if (!(suit.errors.skin > 0.0)) return Eigen::Quaterniond::Identity();
   const SkinRow row = skin_of(limb);
-  const auto about = [&](std::uint64_t axis, double sigma, double peak) {
-    const double noise = ColouredNoise(draw_of(suit, kSkinDraw, limb, axis), row.tau).at(since);
-    return suit.errors.skin * sigma * std::copysign(std::pow(std::abs(noise), peak), noise);
+  const auto about = [&](std::uint64_t axis, double sigma) {
+    return suit.errors.skin * sigma *
+           ColouredNoise(draw_of(suit, kSkinDraw, limb, axis), row.tau).at(since);
   };
-  return exp_map(
-      {about(0, row.side, 1.0), about(1, row.twist, row.peak), about(2, row.ahead, 1.0)});
+  return exp_map({about(0, row.side), about(1, row.twist), about(2, row.ahead)});
+}
+
+double pronation(const SimulatedSuit& suit, Limb limb, double since) {
+  constexpr double kSigma = deg(5.9);  // robust: 68 % stay below
+  constexpr double kTau = 1.3;         // [s]
+  constexpr double kPeak = 3.0;        // power of the distribution, 1: normal
+  if (limb != Limb::ForearmLeft && limb != Limb::ForearmRight) return 0.0;
+  if (!(suit.errors.skin > 0.0)) return 0.0;
+  const double noise = ColouredNoise(draw_of(suit, kPronationDraw, limb), kTau).at(since);
+  return suit.errors.skin * kSigma * std::copysign(std::pow(std::abs(noise), kPeak), noise);
 }
 
 double disturbance(const SimulatedSuit& suit, Limb limb, double since) {

@@ -9,17 +9,19 @@ namespace chorus::synthetic {
 /// Of skin and muscle against bone on a real person: robust standard deviations of what calibrated
 /// sensors leave against Vicon (`chorus-bench inertial --only residual-real`, 13 sensors, mean of
 /// left and right, rounded), and how long errors stay alike.  Nobody has measured hands: as
-/// forearms.
+/// forearms without their pronation, which a hand has not against itself.
 struct SkinRow {
   double side = 0.0;   ///< About the limb's +x [rad]
   double twist = 0.0;  ///< About the bone, +y [rad]
   double ahead = 0.0;  ///< About +z [rad]
   double tau = 0.4;    ///< [s]
-  /// Power of the twist's distribution, 1: normal.  Skin turns far on forearms, but seldom: 32 % of
-  /// the time by more than 6 degrees, 10 % by more than 30.
-  double peak = 1.0;
 };
 [[nodiscard]] SkinRow skin_of(inertial::Limb limb);
+
+/// By how much a forearm turns about its bone between elbow and sensor, with the hand [rad]; 0 on
+/// other limbs.  Seldom far: 32 % of the time by more than 6 degrees, 10 % by more than 30 (the
+/// same measurement; evaluation/pronation.h has what it is).  Grows with SuitErrors::skin.
+[[nodiscard]] double pronation(const SimulatedSuit& suit, inertial::Limb limb, double since);
 
 /// The rotation of the skin in limb axes, `since` seconds after the start.
 [[nodiscard]] Eigen::Quaterniond skin_error(const SimulatedSuit& suit, inertial::Limb limb,

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/evaluation/limb_frame.h"
+#include "common/evaluation/pronation.h"
 
 namespace chorus::evaluation_service {
 namespace {
@@ -72,7 +73,7 @@ std::optional<Timestamp> LiveJudge::judge() {
 
 std::optional<evaluation::TrackedOrientation> LiveJudge::tracked_limb(
     const Skeleton<WorldSpace>& body, inertial::Limb limb) const {
-  return options_.stated ? evaluation::limb_from_orientation(body, limb)
+  return options_.stated ? evaluation::limb_under_sensor(body, limb)
                          : evaluation::limb_from_joints(body, limb);
 }
 

@@ -13,6 +13,7 @@
 #include "common/base/units.h"
 #include "common/evaluation/judge.h"
 #include "common/evaluation/limb_frame.h"
+#include "common/evaluation/pronation.h"
 #include "common/report/report_files.h"
 #include "services/ctl/convert/fused_samples.h"
 #include "services/ctl/evaluate/evaluation_report.h"
@@ -49,7 +50,7 @@ std::map<std::uint64_t, evaluation::TrackedBody> people_of(const Samples& sample
     const double time = seconds(sample.instant - samples.front().instant);
     for (std::size_t i = 0; i < inertial::kLimbCount; ++i) {
       const auto limb = static_cast<inertial::Limb>(i);
-      const auto seen = stated ? evaluation::limb_from_orientation(sample.skeleton, limb)
+      const auto seen = stated ? evaluation::limb_under_sensor(sample.skeleton, limb)
                                : evaluation::limb_from_joints(sample.skeleton, limb);
       if (seen) out[sample.person.value][limb].push_back({time, *seen});
     }

@@ -8,6 +8,7 @@
 
 #include "common/base/file.h"
 #include "common/base/parse.h"
+#include "common/evaluation/pronation.h"
 #include "common/inertial/inertial_frame.h"
 #include "tests/bench/inertial/inertial_cases.h"
 
@@ -110,6 +111,12 @@ constexpr std::array<ThirteenRow, 13> kThirteen{{
   {17, Limb::FootRight}, {18, Limb::ThighLeft}, {19, Limb::ShankLeft}, {20, Limb::FootLeft}}};
 // clang-format on
 
+std::vector<Eigen::Quaterniond> segments_in(const std::vector<double>& row) {
+  std::vector<Eigen::Quaterniond> out;
+  for (std::size_t at = 0; at + 4 <= row.size(); at += 4) out.push_back(xyzw(row, at).normalized());
+  return out;
+}
+
 Result<RealTake> thirteen(const fs::path& folder) {
   constexpr double kRate = 60.0;
   constexpr double kInch = 0.0254;
@@ -131,7 +138,7 @@ Result<RealTake> thirteen(const fs::path& folder) {
       const auto& raw = (*sensed)[i];
       if (raw.size() < 7 * row.segment + 7 || (*turned)[i].size() < 4 * row.segment + 4) continue;
       const Eigen::Quaterniond q = (up * xyzw(raw, 7 * row.segment)).normalized();
-      sensor.optical.push_back({t, xyzw((*turned)[i], 4 * row.segment).normalized()});
+      sensor.optical.push_back({t, under_sensor(row.limb, segments_in((*turned)[i]))});
       sensor.places.push_back({t, kInch * triple((*placed)[i], 3 * row.segment)});
       sensor.inertial.push_back({t, q});
       sensor.acceleration.push_back({t, free_acceleration(q, triple(raw, 7 * row.segment + 4))});
@@ -163,11 +170,7 @@ Result<std::vector<std::vector<Eigen::Quaterniond>>> orientation_rows(const fs::
   const auto rows = number_rows_of(file, "\t");
   if (!rows) return pass(rows);
   std::vector<std::vector<Eigen::Quaterniond>> out;
-  for (const auto& row : *rows) {
-    auto& segments = out.emplace_back();
-    for (std::size_t at = 0; at + 4 <= row.size(); at += 4)
-      segments.push_back(xyzw(row, at).normalized());
-  }
+  for (const auto& row : *rows) out.push_back(segments_in(row));
   const bool whole = std::ranges::all_of(out, [](const auto& row) { return row.size() > 20; });
   if (out.empty() || !whole)
     return fail(ErrorCode::Malformed, file.string(), "must have 21 quaternions a line.");
@@ -177,6 +180,13 @@ Result<std::vector<std::vector<Eigen::Quaterniond>>> orientation_rows(const fs::
 std::size_t segment_of(Limb limb) {
   const auto row = std::ranges::find(kThirteen, limb, &ThirteenRow::limb);
   return row == kThirteen.end() ? 0 : row->segment;
+}
+
+Eigen::Quaterniond under_sensor(Limb limb, const std::vector<Eigen::Quaterniond>& segments) {
+  const std::size_t segment = segment_of(limb);
+  if (limb != Limb::ForearmLeft && limb != Limb::ForearmRight) return segments[segment];
+  return evaluation::forearm_at_sensor(segments[segment], segments[segment + 1],
+                                       Eigen::Vector3d::UnitX());
 }
 
 evaluation::OrientationPairs pairs_of(const RealSensor& sensor, double shift) {

@@ -38,5 +38,9 @@ struct RealTake {
     const std::filesystem::path& file);
 /// The segment of such a file that is this limb.
 [[nodiscard]] std::size_t segment_of(inertial::Limb limb);
+/// world_from_limb where a sensor sits, by the segments of one frame of such a file: forearms turn
+/// with the hand, which is the next segment.  Vicon's arms have their bones along x.
+[[nodiscard]] Eigen::Quaterniond under_sensor(inertial::Limb limb,
+                                              const std::vector<Eigen::Quaterniond>& segments);
 
 }  // namespace chorus::bench

@@ -7,6 +7,7 @@
 #include "common/geometry/rotation.h"
 #include "common/synthetic/coloured_noise.h"
 #include "common/synthetic/exercise.h"
+#include "common/synthetic/suit_errors.h"
 
 namespace chorus::bench {
 namespace {
@@ -61,10 +62,13 @@ double measured_acceleration(const inertial::InertialReading& reading,
       .norm();
 }
 
-void add_instant(const SimulatedTakePlan& plan, double time, const Skeleton<WorldSpace>& body,
-                 const inertial::InertialReading& reading, SimulatedLimb& out) {
-  const auto limb = synthetic::true_limb(body, out.limb);
+void add_instant(const SimulatedTakePlan& plan, const synthetic::SimulatedSuit& suit, double time,
+                 const Skeleton<WorldSpace>& body, const inertial::InertialReading& reading,
+                 SimulatedLimb& out) {
+  auto limb = synthetic::true_limb(body, out.limb);
   if (!limb || !reading.inertial_from_sensor) return;
+  // The tracker states the hand, too, and is read where the sensor sits (evaluation/pronation.h).
+  *limb = *limb * about_y(synthetic::pronation(suit, out.limb, time));
   const TrackerNoise turned(plan.seed, out.limb, 0), moved(plan.seed, out.limb, 1);
   evaluation::OrientationPair pair;
   pair.time = time;
@@ -107,7 +111,7 @@ std::vector<SimulatedLimb> simulated_take(const SimulatedTakePlan& plan) {
     const auto frame = synthetic::suit_at(suit, start, at, static_cast<std::uint64_t>(i) + 1);
     const auto body = synthetic::truth(suit.scene, 0, at);
     for (std::size_t s = 0; s < std::min(out.size(), frame.readings.size()); ++s)
-      add_instant(plan, time, body, frame.readings[s], out[s]);
+      add_instant(plan, suit, time, body, frame.readings[s], out[s]);
   }
   return out;
 }

@@ -61,10 +61,9 @@ Result<WornTake> read_worn_take(const fs::path& path, const RealTake& real) {
   const auto errors = real_errors(real);
   for (std::size_t s = 0; s < real.sensors.size(); ++s) {
     StandIn sensor{real.sensors[s].limb, {}};
-    const std::size_t segment = segment_of(sensor.limb);
     for (std::size_t i = 0; i < turned->size() && !errors[s].empty(); ++i)
       sensor.world_from_limb.push_back(
-          ((*turned)[i][segment] * to_and_fro(errors[s], i)).normalized());
+          (under_sensor(sensor.limb, (*turned)[i]) * to_and_fro(errors[s], i)).normalized());
     take.sensors.push_back(std::move(sensor));
   }
   return take;

@@ -101,17 +101,19 @@ TEST(SimulatedSuit, SkinMovesByItsLimbsRowAndNeighboursAreAlike) {
   EXPECT_LT(prediction_off(suit, Limb::UpperArmLeft, seconds(3)), 1e-6);
 }
 
-TEST(SimulatedSuit, SkinTurnsFarOnForearmsButSeldom) {
+TEST(SimulatedSuit, ForearmsTurnFarWithTheirHandsButSeldom) {
   SimulatedSuit suit = exact_suit();
   suit.errors.skin = 1.0;
   int beyond_six = 0, beyond_twenty = 0;
   for (int i = 0; i < 4000; ++i) {
-    const double off = to_deg(log_map(skin_error(suit, Limb::ForearmLeft, 0.15 * i)).norm());
+    const double off = to_deg(std::abs(pronation(suit, Limb::ForearmLeft, 0.15 * i)));
     beyond_six += off > 6.0 ? 1 : 0;
     beyond_twenty += off > 20.0 ? 1 : 0;
   }
   EXPECT_NEAR(beyond_six / 4000.0, 0.32, 0.08);
   EXPECT_NEAR(beyond_twenty / 4000.0, 0.13, 0.06);
+  EXPECT_EQ(pronation(suit, Limb::HandLeft, 1.0), 0.0) << "a hand does not turn against itself";
+  EXPECT_GT(prediction_off(suit, Limb::ForearmLeft, seconds(3)), 1e-4);
 }
 
 TEST(SimulatedSuit, AnIntegralGrowsByItsNoise) {
