@@ -77,15 +77,40 @@ bool is_finger_end(const Piece& piece, const Piece& hand) {
   return piece.area > kSolid * cv::contourArea(hull);
 }
 
-/// Fills the gap between a finger's end and the rest: the hull of what both show of the gap.
-void bridge(cv::Mat& fill, const Contour& rest, const Contour& piece, double gap) {
-  const auto [from, to] = nearest(rest, piece);
+/// How far points lie beside the long axis of a piece [px].
+struct LongAxis {
+  Pixel middle = Pixel::Zero();
+  Pixel across = Pixel::UnitX();
+
+  explicit LongAxis(const Contour& piece) {
+    const cv::Moments m = cv::moments(piece);
+    const double angle = 0.5 * std::atan2(2.0 * m.mu11, m.mu20 - m.mu02);
+    middle = {m.m10 / m.m00, m.m01 / m.m00};
+    across = {-std::sin(angle), std::cos(angle)};
+  }
+  [[nodiscard]] double beside(const cv::Point& p) const {
+    return std::abs((Pixel(p.x, p.y) - middle).dot(across));
+  }
+};
+
+/// Fills the gap between a finger's end and the rest: the hull of what both show of the gap.  What
+/// lies farther beside the finger's axis than its end does is a neighbour, or the web between them.
+void bridge(cv::Mat& fill, const Contour& rest, const Piece& piece, double gap) {
+  const auto [from, to] = nearest(rest, piece.contour);
   const double reach = 1.6 * std::sqrt(squared(to - from)) + gap;
+  const auto near = [&, a = from, b = to](const cv::Point& p) {
+    return squared(p - a) < reach * reach && squared(p - b) < reach * reach;
+  };
+  const LongAxis axis(piece.contour);
   Contour around;
-  for (const Contour* each : {&rest, &piece}) {
-    for (const cv::Point& p : *each) {
-      if (squared(p - from) < reach * reach && squared(p - to) < reach * reach) around.push_back(p);
-    }
+  double half_width = 0.0;
+  for (const cv::Point& p : piece.contour) {
+    if (!near(p)) continue;
+    around.push_back(p);
+    half_width = std::max(half_width, axis.beside(p));
+  }
+  for (const cv::Point& p : rest) {
+    if (near(p) && axis.beside(p) <= half_width) around.push_back(p);
   }
   if (around.size() < 3) return;
   Contour hull;
@@ -153,7 +178,7 @@ Result<Outline> outline_of(const cv::Mat& mask, const Pixel* inside) {
     const auto [from, to] = nearest(hand.contour, pieces[i].contour);
     if (squared(to - from) > std::pow(kWidestRing * hand.radius, 2)) continue;
     cv::drawContours(fill, std::vector<Contour>{pieces[i].contour}, 0, 255, cv::FILLED);
-    bridge(fill, hand.contour, pieces[i].contour, 0.12 * hand.radius);
+    bridge(fill, hand.contour, pieces[i], 0.12 * hand.radius);
   }
   return outline_from(fill);
 }

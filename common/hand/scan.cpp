@@ -22,8 +22,9 @@ constexpr double kLeastScore = 0.5;  // of a hand that the network sees
 // A second hand that the network is this sure of is one.
 constexpr double kSecondScore = 0.9;
 constexpr double kSideSure = 0.7;
-// An edge that rises over more than this share of the palm's radius (40 mm): 4 mm.
-constexpr double kBlurred = 0.10;
+// An edge that rises over more than this share of the palm's radius: 2.4 mm.  Of 93 sharp pictures
+// of people it is at most 0.046, of blurred drawings 0.078 and more.
+constexpr double kBlurred = 0.06;
 constexpr double kSharp = 5.0;  // No picture is blurred whose edges rise in this [px].
 
 Result<const SeenHand*> the_one(const std::vector<SeenHand>& seen) {

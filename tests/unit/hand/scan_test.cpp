@@ -83,13 +83,41 @@ TEST(AScan, WithANetworkTakesSideAndJointsFromItAndTipsFromTheOutline) {
             2.0);
 }
 
-TEST(AScan, JoinsAFingerThatARingCutsOff) {
+TEST(AScan, JoinsAFingerThatARingCutsOffAndLeavesItsWebs) {
   HandScene with_ring = scene(11);
   with_ring.ring = true;
   const DrawnHand drawn = drawn_hand(with_ring);
   const auto hand = scanned(drawn);
   ASSERT_TRUE(hand) << to_string(hand.error());
   EXPECT_LT(farthest_tip_mm(*hand, drawn), 3.0);
+  for (const std::size_t f : {2, 3})
+    EXPECT_NEAR(hand->fingers[f].length() / drawn.free[f], 1.0, 0.03) << kFingerNames[f];
+}
+
+TEST(AScan, FindsAllOfTheFingersInGrain) {
+  HandScene grainy = scene(1);
+  grainy.long_side = 1200;
+  grainy.grain = 2.0;
+  const DrawnHand drawn = drawn_hand(grainy);
+  const auto hand = scanned(drawn);
+  ASSERT_TRUE(hand) << to_string(hand.error());
+  EXPECT_LT(farthest_tip_mm(*hand, drawn), 3.0);
+}
+
+TEST(AScan, RefusesAFingerHalfWayAlongWhichThereIsNone) {
+  DrawnHand drawn = drawn_hand(scene(2));
+  const auto whole = scanned(drawn);
+  ASSERT_TRUE(whole) << to_string(whole.error());
+  // A stripe of the ground's colour from beside the index finger to beyond its middle.
+  const FingerShape& index = whole->fingers[1];
+  const Pixel along = (index.tip - index.root()).normalized(), across(-along.y(), along.x());
+  const Pixel half = 0.5 * (index.tip + index.root());
+  const auto at = [](const Pixel& p) { return cv::Point(cvRound(p.x()), cvRound(p.y())); };
+  cv::line(drawn.picture, at(half - index.width * across), at(half + 0.2 * index.width * across),
+           cv::Scalar(drawn.picture.at<cv::Vec3b>(2, 2)), cvRound(0.15 * index.width));
+  const auto torn = scanned(drawn);
+  ASSERT_FALSE(torn);
+  EXPECT_THAT(torn.error().message, HasSubstr("the outline of the index is torn"));
 }
 
 /// A picture of black and white, as silhouettes are: it has no saturation.
@@ -131,6 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Refused{Thing::Fist, "fist|fingers stand apart"},
                       Refused{Thing::Mitten, "fingers stand apart|proportions"},
                       Refused{Thing::TwoHands, "two hands"},
+                      Refused{Thing::HiddenThumb, "the thumb does not stand apart"},
                       Refused{Thing::Cut, "cut by the frame|fingers stand apart|proportions"},
                       Refused{Thing::Blurred, "blurred|fingers stand apart"},
                       Refused{Thing::Nothing, "nothing stands out|fingers stand apart"}));
