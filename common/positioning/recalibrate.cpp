@@ -92,14 +92,15 @@ SeenMarks seen_marks(const BodyFrame& body, const CameraTake& camera, const Plac
 }
 
 /// All pictures that are used.
-std::vector<BodySight> sights_of(std::span<const CameraTake> cameras,
-                                 const std::vector<Placed>& placed, Timestamp start) {
+std::vector<BodySight> sights_of(std::span<const CameraTake> cameras, const TakeResult& take,
+                                 Timestamp start) {
+  const std::vector<Placed>& placed = take.placed;
   std::vector<BodySight> out;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     const CameraTake& camera = cameras[c];
     double last = -kEvery;
     for (const SensorFrame& frame : camera.frames) {
-      const Duration at = frame.captured - start;
+      const Duration at = frame.captured - start - from_seconds(take.clocks.ahead(c));
       if (seconds(at) - last < 0.99 * kEvery) continue;
       const auto near = std::ranges::lower_bound(placed, at, {}, &Placed::time);
       if (near == placed.end() || std::abs(seconds(near->time - at)) > kEvery) continue;
@@ -278,9 +279,9 @@ BoneFound found_of(JointId end, const Eigen::Vector3d& bone, const Eigen::Vector
 
 }  // namespace
 
-Result<Recalibration> recalibrate(std::span<const CameraTake> cameras,
-                                  const std::vector<Placed>& placed, Timestamp start) {
-  const std::vector<BodySight> sights = sights_of(cameras, placed, start);
+Result<Recalibration> recalibrate(std::span<const CameraTake> cameras, const TakeResult& take,
+                                  Timestamp start) {
+  const std::vector<BodySight> sights = sights_of(cameras, take, start);
   const double walked = kEvery * static_cast<double>(sights.size()) /
                         static_cast<double>(std::max<std::size_t>(cameras.size(), 1));
   if (walked < kLeastWalk)

@@ -51,11 +51,11 @@ struct Recalibration {
   }
 };
 
-/// `placed`: what place_take() made of these cameras; `start`: TakeSettings::start.
+/// `take`: what place_take() made of these cameras; `start`: ClockSearch::start.
 /// InvalidArgument when the person is seen for less than kLeastWalk, Unsupported when the suit
 /// tells no orientations.
 [[nodiscard]] Result<Recalibration> recalibrate(std::span<const CameraTake> cameras,
-                                                const std::vector<Placed>& placed, Timestamp start);
+                                                const TakeResult& take, Timestamp start);
 
 /// The pose with the bones that were found.
 [[nodiscard]] suit::SuitPose recalibrated(const suit::SuitPose& pose, const Recalibration& found);

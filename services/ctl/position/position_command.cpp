@@ -104,8 +104,8 @@ Result<positioning::TakeSettings> settings_of(const PositionArguments& arguments
                                               const suit::SuitTake& suit) {
   positioning::TakeSettings settings;
   settings.rate_hz = arguments.rate_hz;
-  settings.farthest_s = arguments.search_s;
-  if (arguments.offset_stated) settings.offset_s = arguments.offset_s;
+  settings.clocks.farthest_s = arguments.search_s;
+  if (arguments.offset_stated) settings.clocks.offset_s = arguments.offset_s;
   const double stature = suit::stature_of(suit.poses.front());
   if (stature > 0.0) settings.tracker.stature = stature;
   settings.tracker.method = *positioning::method_named(arguments.method);
@@ -155,7 +155,7 @@ Result<std::vector<std::string>> recalibrate_take(const PositionArguments& argum
                                                   const PlacedCameras& cameras, Timestamp start,
                                                   positioning::TakeResult& result) {
   if (!arguments.recalibrate) return std::vector<std::string>{};
-  const auto found = positioning::recalibrate(cameras.cameras, result.placed, start);
+  const auto found = positioning::recalibrate(cameras.cameras, result, start);
   if (!found) return pass(found);
   for (positioning::Placed& one : result.placed)
     one.pose = positioning::recalibrated(one.pose, *found);
@@ -183,15 +183,15 @@ Result<int> run_position(PositionArguments arguments) {
   if (!settings) return pass(settings);
   const auto cameras = placed_cameras(*inputs, arguments, settings->tracker.stature);
   if (!cameras) return pass(cameras);
-  settings->start = cameras->cameras.front().frames.empty()
-                        ? Timestamp{}
-                        : cameras->cameras.front().frames.front().captured;
+  settings->clocks.start = cameras->cameras.front().frames.empty()
+                               ? Timestamp{}
+                               : cameras->cameras.front().frames.front().captured;
   Progress progress(std::cerr, on_terminal(), "placing");
   auto result = positioning::place_take(cameras->cameras, *suit, *settings,
                                         [&](double share) { progress.show(share, {}); });
   progress.finish();
   if (!result) return pass(result);
-  auto found = recalibrate_take(arguments, *cameras, settings->start, *result);
+  auto found = recalibrate_take(arguments, *cameras, settings->clocks.start, *result);
   if (!found) return pass(found);
   notes->insert(notes->end(), suit->notes.begin(), suit->notes.end());
   notes->insert(notes->end(), cameras->notes.begin(), cameras->notes.end());
@@ -205,7 +205,7 @@ Result<int> run_position(PositionArguments arguments) {
                               walked_places(*result, settings->tracker.stature),
                               *notes,
                               settings->tracker.stature};
-  if (const auto ok = write_all(arguments, report, settings->start); !ok) return pass(ok);
+  if (const auto ok = write_all(arguments, report, settings->clocks.start); !ok) return pass(ok);
   for (const std::string& note : *notes) std::cout << note << '\n';
   std::cout << position_text(report)
             << fmt::format("wrote corrected.bvh, position.mcap and report.html to {}\n",
@@ -278,9 +278,10 @@ Stated add_beginning(CLI::App& options, PositionArguments& into) {
                      "Where the person is at first: x,z [m]; default: found (suit: the origin)");
   CLI::Option* const heading = options.add_option(
       "--heading", into.heading_deg, "Of the suit's world in the cameras' [deg]; default: found");
-  CLI::Option* const offset =
-      options.add_option("--clock-offset", into.offset_s,
-                         "Added to the suit's time to get the first video's [s]; default: found");
+  CLI::Option* const offset = options.add_option(
+      "--clock-offset", into.offset_s,
+      "Added to the suit's time to get the first video's [s]; default: found, as those "
+      "of other videos are");
   options.add_option("--search", into.search_s, "Largest offset of the clocks that is tried [s]")
       ->check(number_range(0.1, 60.0))
       ->capture_default_str();

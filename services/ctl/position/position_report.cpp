@@ -121,13 +121,14 @@ std::optional<Figure> stature_figure(const PositionReport& take) {
                 judged(std::abs(error), std::max(0.02, 2.0 * sigma), 0.1)};
 }
 
-Figure clock_figure(const positioning::ClockFit& clock) {
-  return {"clock",
-          "clock of the suit against the cameras'",
+Figure clock_figure(const std::string& camera, const positioning::ClockFit& clock) {
+  return {"clock." + camera,
+          "clock of the suit against that of " + camera,
           1e3 * clock.offset,
           "ms",
           clock.found ? fmt::format("give or take {:.0f} ms", 1e3 * clock.sigma)
-                      : std::string("not found: nothing moves enough; 0 is used"),
+                      : std::string("not found: nothing moves enough; that of other cameras is "
+                                    "used, or 0"),
           "added to the suit's time",
           {},
           "wave, or state --clock-offset",
@@ -147,7 +148,10 @@ Figure heading_figure(const positioning::TakeResult& result) {
 }
 
 std::vector<Figure> found_figures(const PositionReport& take) {
-  std::vector<Figure> out{clock_figure(take.result.clock), heading_figure(take.result)};
+  std::vector<Figure> out;
+  for (std::size_t i = 0; i < take.result.clocks.cameras.size(); ++i)
+    out.push_back(clock_figure(take.cameras[i].sensor.str(), take.result.clocks.cameras[i]));
+  out.push_back(heading_figure(take.result));
   if (const auto stature = stature_figure(take)) out.push_back(*stature);
   for (std::size_t i = 0; i < take.result.depth.size(); ++i) {
     const auto& [error, sigma] = take.result.depth[i];
@@ -277,10 +281,14 @@ std::vector<std::string> distrusted_in(const PositionReport& take) {
   out.emplace_back(
       "The camera's place: when it is wrong, everything is moved alike, which cannot be seen "
       "here.");
-  if (!take.result.clock.found)
-    out.emplace_back(
-        "The clock: no offset was found or stated, and 0 was used; limbs then lag behind the "
-        "place by as much as the clocks differ.");
+  for (std::size_t i = 0; i < take.result.clocks.cameras.size(); ++i) {
+    const positioning::ClockFit& clock = take.result.clocks.cameras[i];
+    if (clock.found) continue;
+    out.push_back(fmt::format(
+        "The clock of {}: no offset was found or stated, and {:.0f} ms was used; limbs then lag "
+        "behind the place by as much as the clocks differ.",
+        take.cameras[i].sensor.str(), 1e3 * clock.offset));
+  }
   if (take.method == "suit")
     out.emplace_back("Everything but the first metres: steps add up, and what slides is not seen.");
   if (take.method == "silhouettes")
@@ -326,7 +334,9 @@ report::Report position_report(const PositionReport& take) {
 
 std::vector<std::string> doubts_of(const positioning::TakeResult& result) {
   std::vector<std::string> out;
-  if (result.clock.found && result.clock.at_edge)
+  if (std::ranges::any_of(result.clocks.cameras, [](const positioning::ClockFit& clock) {
+        return clock.found && clock.at_edge;
+      }))
     out.emplace_back(
         "the suit's clock is off by as much as was tried, or by more (--search); or its rate is "
         "wrong");
@@ -342,17 +352,27 @@ std::vector<std::string> doubts_of(const positioning::TakeResult& result) {
   return out;
 }
 
+namespace {
+
+std::string clock_text(const std::string& camera, const positioning::ClockFit& clock) {
+  if (clock.found)
+    return fmt::format("clock of the suit against {}: {:+.0f} ms, give or take {:.0f}\n", camera,
+                       1e3 * clock.offset, 1e3 * clock.sigma);
+  return fmt::format(
+      "clock of the suit against {}: not found, {:+.0f} ms is used; is there a wave, or a step, "
+      "that both show?\n",
+      camera, 1e3 * clock.offset);
+}
+
+}  // namespace
+
 std::string position_text(const PositionReport& take) {
-  const positioning::ClockFit& clock = take.result.clock;
   std::string out = fmt::format(
       "{} of {} instants placed, give or take {:.0f} mm (median); {:.0f} % without a camera\n",
       take.result.placed.size(), take.result.instants, to_mm(middle_sigma(take.result)),
       100.0 * hidden_share(take.result));
-  out += clock.found ? fmt::format("clock of the suit: {:+.0f} ms, give or take {:.0f}\n",
-                                   1e3 * clock.offset, 1e3 * clock.sigma)
-                     : std::string(
-                           "clock of the suit: not found, 0 is used; is there a wave, or "
-                           "a step, that both show?\n");
+  for (std::size_t i = 0; i < take.result.clocks.cameras.size(); ++i)
+    out += clock_text(take.cameras[i].sensor.str(), take.result.clocks.cameras[i]);
   if (take.result.misfit > 0.0)
     out += fmt::format("landmarks fit the suit's pose to {:.2f} standard deviations (median)\n",
                        take.result.misfit);

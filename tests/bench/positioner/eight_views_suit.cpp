@@ -106,9 +106,9 @@ struct Scored {
 Result<Scored> score(const ViconTake& take, const std::vector<CameraTake>& cameras,
                      const suit::SuitTake& suit) {
   positioning::TakeSettings settings;
-  settings.start = importers::kDefaultStart;
+  settings.clocks.start = importers::kDefaultStart;
   settings.rate_hz = kRate;
-  settings.offset_s = 0.0;
+  settings.clocks.offset_s = 0.0;
   settings.tracker.stature = kStature;
   const auto result = positioning::place_take(cameras, suit, settings);
   if (!result) return pass(result);
@@ -120,7 +120,8 @@ Result<Scored> score(const ViconTake& take, const std::vector<CameraTake>& camer
   out.alone = scores_of(pictures_alone(take, cameras, suit), take.roots, eye);
   out.walked = scores_of(walked_places(take, suit), take.roots, eye);
   out.depth = result->depth.front().first;
-  if (cameras.size() == 1) out.clock = positioning::fit_clock(cameras, suit, settings).offset;
+  settings.clocks.offset_s.reset();
+  out.clock = positioning::fit_clocks(cameras, suit, settings.clocks).cameras.back().offset;
   return out;
 }
 

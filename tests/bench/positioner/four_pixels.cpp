@@ -88,9 +88,9 @@ Result<PlaceScores> score(const PixelCamera& camera, const PixelTruth& truth,
     take.sight = std::move(*sights);
   }
   positioning::TakeSettings settings;
-  settings.start = importers::kDefaultStart;
+  settings.clocks.start = importers::kDefaultStart;
   settings.rate_hz = kVideoRate;
-  settings.offset_s = 0.0;
+  settings.clocks.offset_s = 0.0;
   settings.tracker.stature = truth.stature;
   settings.tracker.method = method.method;
   if (!uses_landmarks(method.method)) settings.tracker.heading = 0.0;

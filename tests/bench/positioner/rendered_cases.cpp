@@ -129,13 +129,13 @@ double acceleration_of(const std::vector<FoundPlace>& places) {
 Result<MethodScore> score_of(const RenderedScene& scene, Method method) {
   const std::vector<Eigen::Vector3d> roots = roots_of(scene);
   positioning::TakeSettings settings;
-  settings.start = importers::kDefaultStart;
+  settings.clocks.start = importers::kDefaultStart;
   settings.rate_hz = kSceneRate;
-  settings.farthest_s = 0.3;
+  settings.clocks.farthest_s = 0.3;
   settings.tracker.stature = kSceneStature;
   settings.tracker.method = method;
   if (!uses_landmarks(method)) {
-    settings.offset_s = scene.script.clock;
+    settings.clocks.offset_s = scene.script.clock;
     settings.tracker.heading = scene.script.suit.heading;
   }
   if (method == Method::Suit || method == Method::Silhouettes)
@@ -147,7 +147,7 @@ Result<MethodScore> score_of(const RenderedScene& scene, Method method) {
   const auto online = places_of(*result, roots.size(), false);
   out.online = scores_of(online, roots, eye);
   out.smooth = scores_of(places_of(*result, roots.size(), true), roots, eye);
-  out.clock = result->clock.offset - scene.script.clock;
+  out.clock = result->clocks.cameras.front().offset - scene.script.clock;
   out.heading = wrap_angle(result->heading - scene.script.suit.heading);
   out.heading_sigma = result->heading_sigma;
   out.acceleration = acceleration_of(online);

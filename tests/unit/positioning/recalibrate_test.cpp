@@ -20,10 +20,12 @@ using testing::rays_of;
 /// Somebody walks in a circle before two cameras; the suit's bones are wrong by `wrong`.
 struct Round {
   Recalibration wrong;
-  std::vector<Placed> placed;
+  TakeResult take;
   std::vector<CameraTake> cameras;
 
   explicit Round(double length_s = 40.0, double ray_sigma = 0.008) {
+    take.clocks.cameras.resize(2);
+    take.clocks.cameras[1].offset = 0.25;  // The second camera's clock is ahead.
     wrong.added[index_of(JointId::KneeLeft)] = {0.07, 0.03, -0.04};
     wrong.added[index_of(JointId::ElbowRight)] = {0.0, -0.05, 0.06};
     const suit::SuitTake suit = suit::take_of(testing::walk(), 0.0).value();
@@ -44,10 +46,11 @@ struct Round {
       const auto body = suit::placed(truth, one.smooth.heading, one.smooth.place);
       // The place that was found is off by some centimetres.
       one.smooth.place += 0.015 * Eigen::Vector3d(normal(random), normal(random), normal(random));
-      placed.push_back(one);
-      for (CameraTake& camera : cameras) {
+      take.placed.push_back(one);
+      for (std::size_t c = 0; c < cameras.size(); ++c) {
+        CameraTake& camera = cameras[c];
         SensorFrame frame;
-        frame.captured = chorus::testing::kStart + at;
+        frame.captured = chorus::testing::kStart + at + from_seconds(take.clocks.ahead(c));
         frame.bodies.push_back({BodyId{1}, frame.captured,
                                 rays_of(body, camera.world_from_sensor, ray_sigma, random)});
         camera.frames.push_back(std::move(frame));
@@ -58,7 +61,7 @@ struct Round {
 
 TEST(Recalibration, FindsWhichSegmentsAreTurnedAndStretched) {
   const Round round;
-  const auto found = recalibrate(round.cameras, round.placed, chorus::testing::kStart);
+  const auto found = recalibrate(round.cameras, round.take, chorus::testing::kStart);
   ASSERT_THAT(found, IsOk());
   EXPECT_LT(found->after, found->before);
   EXPECT_GE(found->bones.size(), 10U);
@@ -77,12 +80,12 @@ TEST(Recalibration, FindsWhichSegmentsAreTurnedAndStretched) {
 
 TEST(Recalibration, LeavesARightSuitAlone) {
   Round round;
-  for (Placed& one : round.placed) {
+  for (Placed& one : round.take.placed) {
     Recalibration back = round.wrong;
     for (Eigen::Vector3d& each : back.added) each = -each;
     one.pose = recalibrated(one.pose, back);
   }
-  const auto found = recalibrate(round.cameras, round.placed, chorus::testing::kStart);
+  const auto found = recalibrate(round.cameras, round.take, chorus::testing::kStart);
   ASSERT_THAT(found, IsOk());
   for (const BoneFound& bone : found->bones)
     EXPECT_EQ(found->added[index_of(bone.end)].norm(), 0.0) << name_of(bone.end);
@@ -90,7 +93,7 @@ TEST(Recalibration, LeavesARightSuitAlone) {
 
 TEST(Recalibration, DoesNotTakeALandmarksOffsetForATurn) {
   Round round;
-  for (Placed& one : round.placed) {
+  for (Placed& one : round.take.placed) {
     Recalibration back = round.wrong;
     for (Eigen::Vector3d& each : back.added) each = -each;
     one.pose = recalibrated(one.pose, back);
@@ -98,24 +101,24 @@ TEST(Recalibration, DoesNotTakeALandmarksOffsetForATurn) {
     one.pose.joints[JointId::WristLeft].position +=
         one.pose.joints[JointId::WristLeft].orientation * Eigen::Vector3d(0.025, 0.0, 0.0);
   }
-  const auto found = recalibrate(round.cameras, round.placed, chorus::testing::kStart);
+  const auto found = recalibrate(round.cameras, round.take, chorus::testing::kStart);
   ASSERT_THAT(found, IsOk());
   EXPECT_EQ(found->added[index_of(JointId::WristLeft)].norm(), 0.0);
 }
 
 TEST(Recalibration, NeedsAWalk) {
   const Round round(5.0);
-  EXPECT_THAT(recalibrate(round.cameras, round.placed, chorus::testing::kStart),
+  EXPECT_THAT(recalibrate(round.cameras, round.take, chorus::testing::kStart),
               FailsWith(ErrorCode::InvalidArgument));
-  EXPECT_THAT(recalibrate({}, round.placed, chorus::testing::kStart),
+  EXPECT_THAT(recalibrate({}, round.take, chorus::testing::kStart),
               FailsWith(ErrorCode::InvalidArgument));
 }
 
 TEST(Recalibration, OfASuitWithoutOrientationsIsRefused) {
   Round round(12.0);
-  for (Placed& one : round.placed)
+  for (Placed& one : round.take.placed)
     for (Joint& joint : one.pose.joints.joints) joint.orientation.coeffs().setZero();
-  EXPECT_THAT(recalibrate(round.cameras, round.placed, chorus::testing::kStart),
+  EXPECT_THAT(recalibrate(round.cameras, round.take, chorus::testing::kStart),
               FailsWith(ErrorCode::Unsupported));
 }
 

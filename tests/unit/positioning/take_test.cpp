@@ -23,9 +23,9 @@ struct Stage {
   TakeSettings settings;
 
   Stage() {
-    settings.start = chorus::testing::kStart;
+    settings.clocks.start = chorus::testing::kStart;
     settings.tracker.stature = suit::stature_of(suit.poses.front());
-    settings.farthest_s = 0.5;
+    settings.clocks.farthest_s = 0.5;
   }
 };
 
@@ -46,17 +46,56 @@ TEST(PlacedTake, FollowsAWalkWhoseClockAndHeadingNobodyTold) {
   }
   const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
   ASSERT_THAT(result, IsOk());
-  EXPECT_TRUE(result->clock.found);
-  EXPECT_NEAR(result->clock.offset, -0.12, 0.02);
+  EXPECT_TRUE(result->clocks.cameras.front().found);
+  EXPECT_NEAR(result->clocks.cameras.front().offset, -0.12, 0.02);
   EXPECT_NEAR(result->heading, 0.4, 0.05);
   EXPECT_GT(result->placed.size(), result->instants * 95 / 100);
   EXPECT_LT(worst_error(*result, stage.motion), 0.2);
 }
 
+TEST(PlacedTake, FindsACameraWhoseClockIsAhead) {
+  Stage stage;
+  CameraTake other =
+      filmed(stage.motion, camera_at(stage.middle + Eigen::Vector3d(-2.0, 0.6, 3.5), stage.middle),
+             0.006, 5);
+  for (SensorFrame& frame : other.frames) frame.captured += from_seconds(0.15);
+  const std::vector<CameraTake> cameras{stage.camera, other};
+  const auto result = place_take(cameras, stage.suit, stage.settings);
+  ASSERT_THAT(result, IsOk());
+  ASSERT_EQ(result->clocks.cameras.size(), 2U);
+  EXPECT_NEAR(result->clocks.cameras[0].offset, 0.0, 0.02);
+  EXPECT_NEAR(result->clocks.cameras[1].offset, 0.15, 0.02);
+  EXPECT_NEAR(result->clocks.ahead(1), 0.15, 0.02);
+  EXPECT_LT(worst_error(*result, stage.motion), 0.1) << "places are by the first camera's clock";
+}
+
+TEST(PlacedTake, TakesCamerasThatAgreeToBeOnOneClock) {
+  Stage stage;
+  const CameraTake other =
+      filmed(stage.motion, camera_at(stage.middle + Eigen::Vector3d(-2.0, 0.6, 3.5), stage.middle),
+             0.006, 5);
+  const std::vector<CameraTake> cameras{stage.camera, other};
+  const auto clocks = fit_clocks(cameras, stage.suit, stage.settings.clocks);
+  const auto alone = fit_clocks({&stage.camera, 1}, stage.suit, stage.settings.clocks);
+  EXPECT_EQ(clocks.ahead(1), 0.0);
+  EXPECT_LT(clocks.cameras[0].sigma, alone.cameras[0].sigma);
+}
+
+TEST(PlacedTake, GivesACameraThatSeesNobodyTheClockOfTheOthers) {
+  Stage stage;
+  for (SensorFrame& frame : stage.camera.frames) frame.captured += from_seconds(0.1);
+  CameraTake blind = stage.camera;
+  for (SensorFrame& frame : blind.frames) frame.bodies.clear();
+  const std::vector<CameraTake> cameras{blind, stage.camera};
+  const auto clocks = fit_clocks(cameras, stage.suit, stage.settings.clocks);
+  EXPECT_FALSE(clocks.cameras[0].found);
+  EXPECT_NEAR(clocks.cameras[0].offset, 0.1, 0.02);
+}
+
 TEST(PlacedTake, IsNotLedAwayByACameraThatExchangesLeftAndRight) {
   for (const Exchanged what : {Exchanged::Everything, Exchanged::Legs}) {
     Stage stage;
-    stage.settings.offset_s = 0.0;
+    stage.settings.clocks.offset_s = 0.0;
     stage.settings.tracker.heading = 0.0;
     // Longer than the tracker waits before it begins anew.
     for (std::size_t i = 15; i < stage.camera.frames.size(); ++i) {
@@ -72,7 +111,7 @@ TEST(PlacedTake, IsNotLedAwayByACameraThatExchangesLeftAndRight) {
 
 TEST(PlacedTake, FindsTheHeadingAtWhichMostPicturesFit) {
   Stage stage;
-  stage.settings.offset_s = 0.0;
+  stage.settings.clocks.offset_s = 0.0;
   for (std::size_t i = 0; i < stage.camera.frames.size(); ++i) {
     if (i % 20 < 11) continue;
     for (BodyFrame& body : stage.camera.frames[i].bodies)
@@ -80,12 +119,12 @@ TEST(PlacedTake, FindsTheHeadingAtWhichMostPicturesFit) {
   }
   const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
   ASSERT_THAT(result, IsOk());
-  EXPECT_NEAR(result->clock.heading, 0.0, deg(4.0));
+  EXPECT_NEAR(result->clocks.heading, 0.0, deg(4.0));
 }
 
 TEST(PlacedTake, GoesOnByTheSuitsStepsWhileThePersonIsHidden) {
   Stage stage;
-  stage.settings.offset_s = 0.0;
+  stage.settings.clocks.offset_s = 0.0;
   for (SensorFrame& frame : stage.camera.frames) {
     const double at = seconds(frame.captured - chorus::testing::kStart);
     if (at > 0.8 && at < 1.6) frame.bodies.clear();
@@ -100,7 +139,7 @@ TEST(PlacedTake, GoesOnByTheSuitsStepsWhileThePersonIsHidden) {
 
 TEST(PlacedTake, ChoosesThePersonOfTheSuitAmongTwo) {
   Stage stage;
-  stage.settings.offset_s = 0.0;
+  stage.settings.clocks.offset_s = 0.0;
   std::mt19937 random(9);
   for (SensorFrame& frame : stage.camera.frames) {
     const auto other = chorus::testing::standing_person(stage.middle + Eigen::Vector3d(-1, 0, 0));
@@ -115,7 +154,7 @@ TEST(PlacedTake, ChoosesThePersonOfTheSuitAmongTwo) {
 
 TEST(PlacedTake, WithoutPeopleOrPicturesIsRefused) {
   Stage stage;
-  stage.settings.offset_s = 0.0;
+  stage.settings.clocks.offset_s = 0.0;
   CameraTake empty = stage.camera;
   for (SensorFrame& frame : empty.frames) frame.bodies.clear();
   EXPECT_THAT(place_take({&empty, 1}, stage.suit, stage.settings),
@@ -128,7 +167,7 @@ TEST(PlacedTake, WithoutPeopleOrPicturesIsRefused) {
 TEST(PlacedTake, OfAnotherHourIsRefused) {
   Stage stage;
   for (suit::SuitPose& pose : stage.suit.poses) pose.time += std::chrono::hours(1);
-  stage.settings.offset_s = 0.0;
+  stage.settings.clocks.offset_s = 0.0;
   const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
   ASSERT_FALSE(result);
   EXPECT_NE(result.error().message.find("covers 0.0 s"), std::string::npos)
@@ -137,7 +176,7 @@ TEST(PlacedTake, OfAnotherHourIsRefused) {
 
 TEST(PlacedTake, OfSomebodyElseIsRefused) {
   Stage stage;
-  stage.settings.offset_s = 0.0;
+  stage.settings.clocks.offset_s = 0.0;
   // The suit's wearer lies on the back while the camera sees somebody walk.
   for (suit::SuitPose& pose : stage.suit.poses) {
     for (Joint& joint : pose.joints.joints)
@@ -151,7 +190,7 @@ TEST(PlacedTake, OfSomebodyElseIsRefused) {
 
 TEST(PlacedTake, OfPosesThatAreNotFiniteIsNotPlacedThere) {
   Stage stage;
-  stage.settings.offset_s = 0.0;
+  stage.settings.clocks.offset_s = 0.0;
   for (std::size_t i = 40; i < 80; ++i)
     stage.suit.poses[i].joints[JointId::KneeLeft].position.y() = std::nan("");
   const auto result = place_take({&stage.camera, 1}, stage.suit, stage.settings);
@@ -168,7 +207,7 @@ TEST(PlacedTake, OfAPersonWhoStandsStillTellsNoClock) {
   suit::SuitTake suit{60.0, {}, {}};
   for (int i = 0; i < 240; ++i)
     suit.poses.push_back(suit::pose_of(still.frames[0], from_seconds(i / 60.0)));
-  EXPECT_FALSE(fit_clock({&camera, 1}, suit, stage.settings).found);
+  EXPECT_FALSE(fit_clocks({&camera, 1}, suit, stage.settings.clocks).cameras.front().found);
 }
 
 }  // namespace
