@@ -105,12 +105,10 @@ InertialLimbs::SteeredBones InertialLimbs::steered(const Person& person, const P
 /// The seen joints and those that their sensors lead to.  Also follows what views and sensors
 /// differ by, and takes it into the ways of hidden bones.
 PlacedBody InertialLimbs::reached(const PlacedBody& seen, SteeredBones& bones, double passed,
-                                  const InertialModel& model) {
+                                  const InertialModel& model, Led& led) {
   const double fades = std::exp(-passed / seconds(model.hidden));
   const double hands = std::exp(-passed / seconds(model.handback));
   PlacedBody placed = seen;
-  // Where a joint that was hidden until now would be if it still were.
-  std::array<std::optional<Eigen::Vector3d>, kJointCount> led;
   for (std::size_t b = 0; b < kBones.size(); ++b) {
     const std::size_t p = index_of(kBones[b].parent);
     const std::size_t c = index_of(kBones[b].child);
@@ -123,10 +121,7 @@ PlacedBody InertialLimbs::reached(const PlacedBody& seen, SteeredBones& bones, d
     }
     const Eigen::Vector3d at = placed[p].position + bones[b].way.way;
     if (seen[c].placed) {
-      if (before) {
-        led[c] = led[p].value_or(placed[p].position) + bones[b].way.way + fades * off_[c];
-        handback_[c] = *led[c] - seen[c].position;
-      }
+      if (before) led[c] = led[p].value_or(placed[p].position) + bones[b].way.way + fades * off_[c];
       off_[c] = seen[c].position - at;
     } else {
       off_[c] *= fades;
@@ -203,13 +198,19 @@ FusedBody InertialLimbs::steer(FusedBody body, const Person& person, Timestamp i
   lengths_.learn(seen, passed, config.body);
   if (person.worn.empty() || person.carried) return body;
   SteeredBones bones = steered(person, seen, lengths_.held(config.body), config.inertial);
-  const PlacedBody placed = reached(seen, bones, passed, config.inertial);
+  Led led;
+  const PlacedBody placed = reached(seen, bones, passed, config.inertial, led);
   HeldBones held;
   for (std::size_t b = 0; b < kBones.size(); ++b) {
     if (bones[b].worn != nullptr) held[b].way = bones[b].way;
   }
   body.sighted = body.skeleton;
-  state(body, hold_bones(placed, held, 1), bones, seen);
+  const PlacedBody whole = hold_bones(placed, held, 1);
+  // Against the place that views and sensor together give, not the views' alone: that is half way
+  // to where the sensor led, and would otherwise be passed by as far again.
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    if (led[j]) handback_[j] += *led[j] - whole[j].position;
+  state(body, whole, bones, seen);
   for (std::size_t b = 0; b < kBones.size(); ++b) {
     const Joint& from = body.skeleton[kBones[b].parent];
     const Joint& to = body.skeleton[kBones[b].child];

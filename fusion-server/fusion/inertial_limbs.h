@@ -45,8 +45,10 @@ class InertialLimbs {
 
   [[nodiscard]] SteeredBones steered(const Person& person, const PlacedBody& seen,
                                      const HeldBones& lengths, const InertialModel& model) const;
+  /// Where sensors lead what has been hidden until this instant, if it still were [m].
+  using Led = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
   [[nodiscard]] PlacedBody reached(const PlacedBody& seen, SteeredBones& bones, double passed,
-                                   const InertialModel& model);
+                                   const InertialModel& model, Led& led);
   void state(FusedBody& body, const PlacedBody& whole, const SteeredBones& bones,
              const PlacedBody& seen);
   void carry_on(FusedBody& body, const PlacedBody& seen, double passed);

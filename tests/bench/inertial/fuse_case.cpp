@@ -40,7 +40,8 @@ bool in_window(std::size_t from, std::size_t index, std::size_t length) {
 
 struct FusedErrors {
   std::vector<double> all;      ///< [m]
-  std::vector<double> leaps;    ///< Steps of the error when limbs are seen again [m].
+  std::vector<double> leaps;    ///< Steps of the error when limbs are seen again [m],
+  std::vector<double> first;    ///< and those of the first instant alone: of handing back.
   std::vector<double> squared;  ///< Squared error by stated variance, per axis.
   double asked = 0.0;
 };
@@ -64,7 +65,7 @@ void judge_joint(const FusedTake& fused, const WornTake& take, std::size_t i, Jo
 }
 
 /// How far the joint's error steps from the instant before to this one.
-void judge_leap(const FusedTake& fused, const WornTake& take, std::size_t i, JointId id,
+void judge_leap(const FusedTake& fused, const WornTake& take, std::size_t i, JointId id, bool first,
                 FusedErrors& out) {
   const auto off = [&](std::size_t at) -> std::optional<Eigen::Vector3d> {
     if (!fused.bodies[at] || !fused.bodies[at]->skeleton[id].seen()) return std::nullopt;
@@ -72,7 +73,9 @@ void judge_leap(const FusedTake& fused, const WornTake& take, std::size_t i, Joi
   };
   const auto before = off(i - 1);
   const auto now = off(i);
-  if (before && now) out.leaps.push_back((*now - *before).norm());
+  if (!before || !now) return;
+  out.leaps.push_back((*now - *before).norm());
+  if (first) out.first.push_back(out.leaps.back());
 }
 
 FusedErrors hidden_errors(const FusedTake& fused, const WornTake& take,
@@ -83,7 +86,7 @@ FusedErrors hidden_errors(const FusedTake& fused, const WornTake& take,
     for (const JointId id : joints) {
       if (in_window(from, i, kHideFor)) judge_joint(fused, take, i, id, out);
       const bool back = !in_window(from, i, kHideFor) && in_window(from, i, kHideFor + kBackFor);
-      if (back) judge_leap(fused, take, i, id, out);
+      if (back) judge_leap(fused, take, i, id, in_window(from, i - 1, kHideFor), out);
     }
   }
   return out;
@@ -132,6 +135,8 @@ Result<void> hide(Report& report, const WornTake& take, const HiddenLimbs& limbs
   report.row(name, "shipped_missing_percent", missing_percent(shipped), "%");
   report.row(name, "leap_p99_mm", to_mm(percentile(ours.leaps, 0.99)), "mm", "body-filter",
              percentile(ours.leaps, 0.99) / percentile(filter.leaps, 0.99));
+  report.row(name, "leap_first_p99_mm", to_mm(percentile(ours.first, 0.99)), "mm", "unhidden",
+             percentile(ours.first, 0.99) / percentile(usual.first, 0.99));
   // The same instants of a take in which nothing is hidden: cameras err by leaps, too.
   report.row(name, "leap_unhidden_p99_mm", to_mm(percentile(usual.leaps, 0.99)), "mm");
   report.row(name, "leap_median_mm", to_mm(median(ours.leaps)), "mm", "unhidden",
