@@ -1,6 +1,7 @@
 // Whether a wrong size of a hand is told.
 #include "common/hand/size_check.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -28,6 +29,29 @@ TEST(AHandsSize, ThatIsThreePerCentWrongIsToldAndOnePerCentIsNot) {
   EXPECT_TRUE(checked(0.97, 0.02).wrong());
   EXPECT_NEAR(checked(1.03, 0.02).factor, 1.03, 0.01);
   EXPECT_FALSE(checked(1.01, 0.02).wrong());
+}
+
+/// Twenty ratios, a second apart, as normal as twenty can be; some of them may be wrong altogether.
+SizeCheck of_twenty(double size, double sigma, std::size_t wrong = 0) {
+  constexpr std::array kNormal{0.063, 0.189, 0.319, 0.454, 0.598,
+                               0.755, 0.935, 1.150, 1.440, 1.960};
+  std::vector<double> by_hand(20, 1.0), by_other;
+  for (const double each : kNormal) {
+    by_other.push_back(size + sigma * each);
+    by_other.push_back(size - sigma * each);
+  }
+  for (std::size_t i = 0; i < wrong; ++i) by_other[i] = 1.8;
+  return check_size(by_hand, by_other, 1.0);
+}
+
+TEST(AHandsSize, IsToldByTwentySecondsThatErrByFourPerCent) {
+  EXPECT_TRUE(of_twenty(1.03, 0.04).wrong()) << "a median's error is too large";
+  EXPECT_NEAR(of_twenty(1.03, 0.04).sigma, 0.04 / std::sqrt(20.0), 0.001);
+}
+
+TEST(AHandsSize, IsNotToldWrongByPicturesWithoutTheHand) {
+  EXPECT_FALSE(of_twenty(1.0, 0.01, 2).wrong());
+  EXPECT_NEAR(of_twenty(1.0, 0.01, 2).factor, 1.0, 0.005);
 }
 
 TEST(AHandsSize, IsNotToldWrongByWhatErrsMore) {
