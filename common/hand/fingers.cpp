@@ -239,6 +239,12 @@ std::optional<Pixel> tip_along(const cv::Mat& fill, const SeenHand& seen, std::s
   return std::nullopt;
 }
 
+/// The direction across the line through both points, to the side of `at`.
+Pixel towards(const Pixel& at, const Pixel& from, const Pixel& to) {
+  const Pixel across = Pixel(from.y() - to.y(), to.x() - from.x()).stableNormalized();
+  return across.dot(at - from) < 0.0 ? Pixel(-across) : across;
+}
+
 tl::unexpected<Error> disagree() {
   return fail(ErrorCode::Conflict, "hand",
               "the outline does not show the fingers that the network sees");
@@ -304,10 +310,13 @@ Result<Split> split_by_joints(const Outline& outline, const cv::Mat& fill, const
     const std::size_t f = forward ? i : 3 - i;  // The web lies between fingers f and f + 1.
     const Pixel knuckles =
         0.5 * (seen.joints[hand_joint(f, f == 0 ? 1 : 0)] + seen.joints[hand_joint(f + 1, 0)]);
-    ends.bases[i + 1] = best_between(outline, ends.tips[i], ends.tips[i + 1],
-                                     [&](const Pixel& p) { return -(p - knuckles).norm(); });
-    const double reach =
-        (0.5 * (outline.points[ends.tips[i]] + outline.points[ends.tips[i + 1]]) - knuckles).norm();
+    const Pixel& from = outline.points[ends.tips[i]];
+    const Pixel& to = outline.points[ends.tips[i + 1]];
+    const Pixel down = towards(knuckles, from, to);
+    ends.bases[i + 1] = best_between(outline, ends.tips[i], ends.tips[i + 1], [&](const Pixel& p) {
+      return f == 0 ? (p - from).dot(down) : -(p - knuckles).norm();
+    });
+    const double reach = (0.5 * (from + to) - knuckles).norm();
     closed[i + 1] = (outline.points[ends.bases[i + 1]] - knuckles).norm() > kClosedWeb * reach;
   }
   const auto outer = [&](std::size_t finger, std::size_t web, int step) {

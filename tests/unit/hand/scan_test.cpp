@@ -83,6 +83,15 @@ TEST(AScan, WithANetworkTakesSideAndJointsFromItAndTipsFromTheOutline) {
             2.0);
 }
 
+TEST(AScan, WithANetworkFindsTheWebOfTheThumbWhereItIsDeepest) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const DrawnHand drawn = drawn_hand(scene(seed));
+    const auto hand = hand_in(drawn.picture, {seen_in(drawn)});
+    ASSERT_TRUE(hand) << to_string(hand.error());
+    EXPECT_NEAR(hand->fingers[0].length() / drawn.free[0], 1.0, 0.03) << "seed " << seed;
+  }
+}
+
 TEST(AScan, JoinsAFingerThatARingCutsOffAndLeavesItsWebs) {
   HandScene with_ring = scene(11);
   with_ring.ring = true;
