@@ -101,7 +101,21 @@ struct Scored {
   PlaceScores online, offline, alone, walked;
   double clock = 0.0;
   double depth = 0.0;
+  std::vector<double> pieces_along, pieces_across;
 };
+
+/// NEES of pieces as long as the four views' take: how far a take of 1.7 s may be from 1.
+void add_pieces(const std::vector<FoundPlace>& places, const std::vector<Eigen::Vector3d>& roots,
+                const Eigen::Vector3d& eye, Scored& out) {
+  constexpr std::size_t kPiece = 51;  // Instants: 1.7 s.
+  for (std::size_t i = 0; i + kPiece <= roots.size(); i += kPiece) {
+    const auto at = static_cast<std::ptrdiff_t>(i), end = static_cast<std::ptrdiff_t>(i + kPiece);
+    const PlaceScores piece = scores_of({places.begin() + at, places.begin() + end},
+                                        {roots.begin() + at, roots.begin() + end}, eye);
+    out.pieces_along.push_back(piece.nees_along);
+    out.pieces_across.push_back(piece.nees_across);
+  }
+}
 
 Result<Scored> score(const ViconTake& take, const std::vector<CameraTake>& cameras,
                      const suit::SuitTake& suit) {
@@ -116,6 +130,7 @@ Result<Scored> score(const ViconTake& take, const std::vector<CameraTake>& camer
   const std::size_t count = take.roots.size();
   Scored out;
   out.online = scores_of(placed_places(*result, count, false), take.roots, eye);
+  add_pieces(placed_places(*result, count, false), take.roots, eye, out);
   out.offline = scores_of(placed_places(*result, count, true), take.roots, eye);
   out.alone = scores_of(pictures_alone(take, cameras, suit), take.roots, eye);
   out.walked = scores_of(walked_places(take, suit), take.roots, eye);
@@ -135,6 +150,18 @@ std::vector<double> each(const std::vector<Scored>& all, Member member) {
   std::vector<double> out;
   for (const Scored& one : all) out.push_back(member(one));
   return out;
+}
+
+void add_piece_rows(Report& report, const std::string& name, const char* axis,
+                    const std::vector<Scored>& all, std::vector<double> Scored::*pieces) {
+  std::vector<double> values;
+  for (const Scored& one : all)
+    values.insert(values.end(), (one.*pieces).begin(), (one.*pieces).end());
+  std::sort(values.begin(), values.end());
+  if (values.empty()) return;
+  for (const int percent : {10, 50, 90})
+    report.row(name, fmt::format("nees_{}_of_1.7s_{}_percent", axis, percent),
+               values[(values.size() - 1) * static_cast<std::size_t>(percent) / 100], "1");
 }
 
 void add_rows(Report& report, const std::string& name, const std::vector<Scored>& all) {
@@ -163,6 +190,8 @@ void add_rows(Report& report, const std::string& name, const std::vector<Scored>
   row("suit_nees", "1", 1, [](const Scored& s) { return s.walked.nees_across; });
   row("clock_ms", "ms", 1000, [](const Scored& s) { return s.clock; });
   row("depth_error_percent", "%", 100, [](const Scored& s) { return s.depth; });
+  add_piece_rows(report, name, "along", all, &Scored::pieces_along);
+  add_piece_rows(report, name, "across", all, &Scored::pieces_across);
   const auto online = each(all, [](const Scored& s) { return s.online.rms; });
   report.row(name, "worst_online_rms_mm", 1000 * *std::max_element(online.begin(), online.end()),
              "mm");
