@@ -7,7 +7,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PATH = re.compile(r"`((?:common|services|fusion-server|proto|tests|deploy|docs)/[A-Za-z0-9_./-]*)`")
 BUILT = ("build/",)
-RECIPES = 13
+RECIPES = 14
+IN_WORDS = "Fourteen"
 
 
 def recipes():
@@ -19,6 +20,7 @@ def recipes():
 class Recipes(unittest.TestCase):
     def test_there_are_all_of_them(self):
         self.assertEqual(len(recipes()), RECIPES, sorted(recipes()))
+        self.assertIn(f"{IN_WORDS} recipes", (ROOT / "docs/how/README.md").read_text(), "the index states another number")
 
     def test_each_names_files_that_exist(self):
         for name, text in recipes().items():
