@@ -34,6 +34,26 @@ constexpr double kLeastInliers = 0.5;
 struct Weighted {
   const OrientationPair* pair;
   Eigen::Vector3d weight;  ///< 1 where seen as well as can be, 0 where not seen.
+  Eigen::Quaterniond limb_from_world;
+  Eigen::Vector3d up_in_limb;  ///< The world's +y.
+};
+
+/// pair_error() of many pairs: what is the same for all is computed once.
+class Predicted {
+ public:
+  explicit Predicted(const SensorCalibration& at)
+      : world_from_inertial_(about_y(at.heading)),
+        sensor_from_limb_(at.limb_from_sensor.conjugate()) {}
+
+  [[nodiscard]] Eigen::Vector3d error_of(const Weighted& each) const {
+    return log_map(each.limb_from_world *
+                   normalised_or_identity(world_from_inertial_ * each.pair->inertial_from_sensor *
+                                          sensor_from_limb_));
+  }
+
+ private:
+  Eigen::Quaterniond world_from_inertial_;
+  Eigen::Quaterniond sensor_from_limb_;
 };
 
 /// Relative weights from the stated covariance, never above what skin allows.
@@ -51,7 +71,8 @@ std::vector<Weighted> weighted(const OrientationPairs& pairs, const CalibrateOpt
       weight(k) = floor / (floor + (std::isfinite(stated) ? std::max(0.0, stated) : 0.0));
     }
     if (!each.tracked.twist_seen) weight.y() = 0.0;
-    out.push_back({&each, weight});
+    const Eigen::Quaterniond limb_from_world = each.tracked.world_from_limb.conjugate();
+    out.push_back({&each, weight, limb_from_world, limb_from_world * Eigen::Vector3d::UnitY()});
   }
   return out;
 }
@@ -77,11 +98,12 @@ double robust_weight(double r, double scale) {
 /// order: the world's +y in limb axes, and -1 on the mount's side.
 Normal normal_of(const std::vector<Weighted>& pairs, const SensorCalibration& at, double scale) {
   Normal out;
+  const Predicted predicted(at);
   for (const Weighted& each : pairs) {
-    const Eigen::Vector3d error = pair_error(at, *each.pair);
+    const Eigen::Vector3d error = predicted.error_of(each);
     const double r = squared(each, error);
     Eigen::Matrix<double, 3, 4> j;
-    j.col(0) = each.pair->tracked.world_from_limb.conjugate() * Eigen::Vector3d::UnitY();
+    j.col(0) = each.up_in_limb;
     j.rightCols<3>() = -exp_map(error).toRotationMatrix();
     const Eigen::Matrix<double, 4, 3> weighted_j =
         j.transpose() * (robust_weight(r, scale) * each.weight).asDiagonal();
@@ -105,8 +127,9 @@ void step(SensorCalibration& at, const Normal& normal) {
 double residual_sigma(const std::vector<Weighted>& pairs, const SensorCalibration& at,
                       double gate) {
   std::vector<double> sizes;
+  const Predicted predicted(at);
   for (const Weighted& each : pairs) {
-    const Eigen::Vector3d error = pair_error(at, *each.pair);
+    const Eigen::Vector3d error = predicted.error_of(each);
     if (squared(each, error) > gate * gate) continue;
     sizes.push_back(std::abs(error.x()));
     sizes.push_back(std::abs(error.z()));
@@ -154,8 +177,9 @@ std::vector<Weighted> some_of(const std::vector<Weighted>& pairs, std::size_t mo
 
 double cost_of(const std::vector<Weighted>& pairs, const SensorCalibration& at, double scale) {
   double cost = 0.0;
+  const Predicted predicted(at);
   for (const Weighted& each : pairs)
-    cost += robust_cost(squared(each, pair_error(at, *each.pair)), scale);
+    cost += robust_cost(squared(each, predicted.error_of(each)), scale);
   return cost;
 }
 
@@ -237,8 +261,9 @@ void state_errors(CalibrationFit& fit, const std::vector<Weighted>& pairs,
   fit.calibration.covariance = information.inverse();
   std::vector<double> angles;
   double inside = 0.0;
+  const Predicted predicted(fit.calibration);
   for (const Weighted& each : pairs) {
-    const Eigen::Vector3d error = pair_error(fit.calibration, *each.pair);
+    const Eigen::Vector3d error = predicted.error_of(each);
     const double seen =
         std::sqrt((error.array().square() * (each.weight.array() > 0).cast<double>()).sum());
     angles.push_back(seen);
