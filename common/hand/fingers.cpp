@@ -211,6 +211,18 @@ Split split_from(const Outline& outline, const Ends& ends, bool thumb_first) {
   return out;
 }
 
+tl::unexpected<Error> cut(std::size_t finger) {
+  return fail(ErrorCode::InvalidArgument, "hand",
+              fmt::format("the {} is cut by the frame; show the whole hand", kFingerNames[finger]));
+}
+
+/// Refuses fingers whose middle line leaves the picture.
+Result<Split> uncut(Split split, const Outline& outline) {
+  for (std::size_t f = 0; f < kFingers; ++f)
+    if (on_border(outline, split.fingers[f].tip)) return cut(f);
+  return split;
+}
+
 /// Refuses fingers half-way along which there is no finger.
 Result<Split> whole(Split split, const Outline& outline) {
   for (std::size_t f = 0; f < kFingers; ++f) {
@@ -221,7 +233,7 @@ Result<Split> whole(Split split, const Outline& outline) {
                             "ground? Use even light",
                             kFingerNames[f]));
   }
-  return split;
+  return uncut(std::move(split), outline);
 }
 
 /// Where the finger leaves the outline, along its last bone; none if the bone lies outside.
@@ -258,9 +270,7 @@ Result<std::array<std::size_t, 5>> tips_along(const Outline& outline, const cv::
     const auto tip = tip_along(fill, seen, f);
     if (!tip) return disagree();
     tips[f] = nearest_index(outline, *tip);
-    if (on_border(outline, *tip))
-      return fail(ErrorCode::InvalidArgument, "hand",
-                  fmt::format("the {} is cut by the frame; show the whole hand", kFingerNames[f]));
+    if (on_border(outline, *tip)) return cut(f);
   }
   return tips;
 }
@@ -330,7 +340,7 @@ Result<Split> split_by_joints(const Outline& outline, const cv::Mat& fill, const
   for (std::size_t i = 0; i < 5; ++i)
     out.fingers[forward ? i : 4 - i].touching = closed[i] || closed[i + 1];
   refine(out.fingers, fill);
-  return out;
+  return uncut(std::move(out), outline);
 }
 
 Pixel centred(const cv::Mat& fill, const Pixel& at, const Pixel& direction, double widest) {

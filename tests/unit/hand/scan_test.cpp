@@ -1,8 +1,11 @@
 // Hands in drawn scans: fingers, tips and sides by their truth, and what is no hand.
 #include "common/hand/scan.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
 #include "common/hand/segment.h"
@@ -81,6 +84,32 @@ TEST(AScan, WithANetworkTakesSideAndJointsFromItAndTipsFromTheOutline) {
   EXPECT_LT((hand->joints[hand_joint(2, 1)] - drawn.joints[hand_joint(2, 1)]).norm() /
                 drawn.pixels_per_mm,
             2.0);
+}
+
+/// A hand that the frame cuts, as a network sees it: all joints in the picture, and the last bones
+/// of what is cut off guessed wrong, so that they leave the finger at its side.
+SeenHand guessed_in(const DrawnHand& drawn) {
+  SeenHand out = seen_in(drawn);
+  const auto inside = [&](const Pixel& p) {
+    return Pixel(std::clamp(p.x(), 6.0, drawn.picture.cols - 7.0),
+                 std::clamp(p.y(), 6.0, drawn.picture.rows - 7.0));
+  };
+  for (Pixel& joint : out.joints) joint = inside(joint);
+  const Eigen::Rotation2Dd turn(0.7);
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    const Pixel& tip = drawn.joints[hand_joint(f, 3)];
+    const Pixel& last = out.joints[hand_joint(f, 2)];
+    if (inside(tip) != tip)
+      out.joints[hand_joint(f, 3)] = last + 20.0 * (turn * (tip - last).normalized());
+  }
+  return out;
+}
+
+TEST(AScan, WithANetworkRefusesAFingerThatTheFrameCuts) {
+  for (const std::uint64_t seed : {3, 4, 10, 14}) {
+    const DrawnHand drawn = drawn_hand(scene(seed, Thing::Cut));
+    EXPECT_FALSE(hand_in(drawn.picture, {guessed_in(drawn)})) << "seed " << seed;
+  }
 }
 
 TEST(AScan, WithANetworkFindsTheWebOfTheThumbWhereItIsDeepest) {
