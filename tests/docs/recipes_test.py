@@ -45,6 +45,12 @@ class Recipes(unittest.TestCase):
             if page.name != "README.md":
                 self.assertIn(f"({page.name})", index, "a page that nobody finds")
 
+    def test_files_that_the_index_calls_deciding_exist(self):
+        rows = [line for line in (ROOT / "docs/how/README.md").read_text().splitlines() if line.startswith("| ") and line.count("|") >= 5]
+        for row in rows:
+            for path in re.findall(r"`((?:common|services|fusion-server|tests|deploy)/[A-Za-z0-9_./-]+)`", row.split("|")[-2]):
+                self.assertTrue((ROOT / path).exists(), f"{path} is not there: {row[:80]}")
+
     def test_pages_of_how_name_files_that_exist(self):
         sources = {p.name for room in ("common", "fusion-server", "services", "tests") for p in (ROOT / room).rglob("*.h")}
         for page in (ROOT / "docs/how").glob("*.md"):
