@@ -249,9 +249,6 @@ ClockFits fit_clocks(std::span<const CameraTake> cameras, const suit::SuitTake& 
   out.heading = heading();
   for (std::size_t i = search.offset_s ? 1 : 0; i < cameras.size(); ++i)
     refine_clock(suit, searched[i], out.heading, out.cameras[i]);
-  for (auto& c : out.cameras)
-    fprintf(stderr, "clock %.1f sigma %.1f misfit %.2f found %d\n", 1e3 * c.offset, 1e3 * c.sigma,
-            c.misfit, c.found);
   share_clocks(out.cameras);
   if (cameras.size() > 1 || !search.offset_s) out.heading = heading();
   return out;
