@@ -23,7 +23,8 @@ constexpr double kStint = 10.0;    // time that one person of a relay is in the 
 constexpr double kMinPause = 0.3, kMaxPause = 2.0;  // [s]
 constexpr double kNever = 1e9;                      // [s]
 constexpr double kBeside = 0.5;                     // from the middle, for two side by side [m]
-constexpr double kBench = 0.2;  // between neighbouring stations of one person [m]
+constexpr double kFromCar = 1.05;  // of a worker from the middle of the car, 0.65 from its side [m]
+constexpr double kBench = 0.2;     // between neighbouring stations of one person [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
 /// A walker of random build; the random speed is the same for all people of one `seed`.
@@ -233,6 +234,14 @@ std::vector<synthetic::Person> side_by_side(std::uint64_t seed) {
     people.push_back(placed(script, {yaw, aside, 0.0}));
   }
   return people;
+}
+
+std::vector<synthetic::Person> worker_beside_car(std::uint64_t seed) {
+  WalkerScript script = script_of(seed, 0, PathKind::Assembly);
+  const synthetic::Walker walker(script);
+  const double heading = walker.path().at(Duration{0}).heading;
+  script.centre = -kFromCar * Eigen::Vector2d(std::sin(heading), std::cos(heading));
+  return {placed(script, {0.25 * kFullTurn - heading, 0.0, 0.0})};
 }
 
 synthetic::Occluder car_body() {

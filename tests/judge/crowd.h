@@ -39,6 +39,10 @@ namespace chorus::bench {
 /// Two people at assembly work, 1 m apart, who are in their places from the start.
 [[nodiscard]] std::vector<synthetic::Person> side_by_side(std::uint64_t seed);
 
+/// One person at assembly work at a long side of the car_body(), who faces it and reaches up to it;
+/// the pillar() is on the other side.
+[[nodiscard]] std::vector<synthetic::Person> worker_beside_car(std::uint64_t seed);
+
 /// Distance from the middle beyond which nobody is in the room [m].
 inline constexpr double kOutside = 50.0;
 

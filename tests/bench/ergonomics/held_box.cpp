@@ -49,8 +49,7 @@ Workshop carrying_workshop(std::uint64_t seed) {
   setting.seed = seed;
   setting.occluders = {car_body(), pillar()};
   setting.length = std::chrono::seconds(40);
-  const synthetic::WalkerScript script{.seed = seed, .path = synthetic::PathKind::Assembly};
-  for (synthetic::Person& person : synthetic::make_people(script, 1))
+  for (synthetic::Person& person : worker_beside_car(seed))
     setting.people.push_back(box_carrier(std::move(person)));
   return draw_workshop(setting);
 }

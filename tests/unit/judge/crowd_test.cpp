@@ -160,5 +160,30 @@ TEST(SideBySide, StandBesideEachOtherAndNeverMeet) {
   }
 }
 
+/// How far a point is outside a box; negative: inside.
+double outside_of(const synthetic::Occluder& box, const Eigen::Vector3d& point) {
+  return ((box.world_from_box.inverse() * point).cwiseAbs() - box.half).maxCoeff();
+}
+
+TEST(WorkerBesideCar, StandsClearOfItAndFacesIt) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    const auto people = worker_beside_car(seed);
+    ASSERT_EQ(people.size(), 1u);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (double time = 0; time < 60; time += 0.1) {
+      const Skeleton<WorldSpace> body = people[0](from_seconds(time));
+      for (const Joint& joint : body.joints) {
+        nearest = std::min(nearest, outside_of(car_body(), joint.position));
+        EXPECT_GT(outside_of(pillar(), joint.position), 0.5) << seed << " " << time;
+      }
+      EXPECT_GT((body[JointId::ShoulderRight].position - body[JointId::ShoulderLeft].position).z(),
+                0.2)
+          << seed << " " << time;
+    }
+    EXPECT_GT(nearest, 0.0) << seed;
+    EXPECT_LT(nearest, 0.2) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace chorus::bench
