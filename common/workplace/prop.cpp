@@ -71,6 +71,8 @@ Matrix3d along_limb(const Vector3d& limb, const Vector3d& forward, bool level) {
 }
 
 Matrix3d between_hands(const Vector3d& x, const Vector3d& limbs, bool level) {
+  const auto flat = square_to(x, kUpward);
+  if (level && flat) return axes(*flat, kUpward, flat->cross(kUpward));
   const auto forward = square_to(limbs, x);
   const auto up = square_to(kUpward, x);
   const bool by_gravity = up && (level || !forward);

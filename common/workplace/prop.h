@@ -4,7 +4,8 @@
 //   one joint   origin at the joint, +z along the limb that ends there (elbow to hand), +y up
 //               across it; of the head, the head's own orientation where it is known
 //   two joints  origin in their middle, +x from the second to the first (right to left hand), +z
-//               along the mean of the two limbs, across x; `level`: +y up across x instead
+//               along the mean of the two limbs, across x; `level`: +y up, +x the level part of
+//               that line, since people hold a box by an upper and a lower corner
 // The turn about a single limb is not measured by any joint: it is taken to be level.
 #pragma once
 

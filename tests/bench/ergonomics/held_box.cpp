@@ -62,10 +62,9 @@ struct BoxErrors {
 };
 
 /// `hide`: the left hand is not seen for 0.5 s in every 4 s, as behind the box.
-void follow_box(const Workshop& workshop, const pipeline::OfflineResult& fused, bool hide,
-                BoxErrors& out) {
+void follow_box(const Workshop& workshop, const pipeline::OfflineResult& fused,
+                const workplace::Prop& prop, bool hide, BoxErrors& out) {
   const SensorId master = workshop.tracks.front().sensor;
-  const workplace::Prop prop = carried_box(false);
   workplace::HeldProp held(prop);
   std::optional<Eigen::Vector3d> before;
   for (std::size_t i = 0; i < fused.snapshots.size(); ++i) {
@@ -100,14 +99,16 @@ double quantile_of(std::vector<double> values, double share) {
 Result<void> held_box(Report& report) {
   BoxErrors seen;
   BoxErrors hidden;
+  BoxErrors level;
   for (std::uint64_t draw = 0; draw < (report.quick() ? 1u : 3u); ++draw) {
     const Workshop workshop = carrying_workshop(report.seed() + draw);
     const SensorId master = workshop.tracks.front().sensor;
     const auto fused =
         pipeline::fuse_offline(workshop.tracks, true_registration(workshop, master), {});
     if (!fused) return pass(fused);
-    follow_box(workshop, *fused, false, seen);
-    follow_box(workshop, *fused, true, hidden);
+    follow_box(workshop, *fused, carried_box(false), false, seen);
+    follow_box(workshop, *fused, carried_box(false), true, hidden);
+    follow_box(workshop, *fused, carried_box(true), false, level);
   }
   const double place = 1e3 * quantile_of(seen.place, 0.5);
   const double turn = to_deg(quantile_of(seen.turn, 0.5));
@@ -118,6 +119,11 @@ Result<void> held_box(Report& report) {
   report.condition(fmt::format("prop: and turned by at most 3 deg (median {:.2f}, p95 {:.2f})",
                                turn, to_deg(quantile_of(seen.turn, 0.95))),
                    turn <= 3.0);
+  const double yaw = to_deg(quantile_of(level.turn, 0.5));
+  report.condition(fmt::format("prop: one stated to be level by at most 3 deg (median {:.2f}, p95 "
+                               "{:.2f})",
+                               yaw, to_deg(quantile_of(level.turn, 0.95))),
+                   yaw <= 3.0);
   report.condition(
       fmt::format("prop: no jump over 50 mm when one hand is hidden for 0.5 s (largest {:.1f}; of "
                   "both hands seen {:.1f}; median error {:.1f} mm)",

@@ -84,6 +84,21 @@ TEST(AProp, ThatIsLevelStaysUprightWhereForearmsPointDown) {
   EXPECT_NEAR(level->world_from_prop.linear()(1, 1), 1.0, 1e-9);
 }
 
+TEST(AProp, ThatIsLevelStaysUprightBetweenALowerAndAnUpperHand) {
+  Skeleton<WorldSpace> body = carrying();
+  for (const JointId id : {ElbowLeft, WristLeft, HandLeft}) body[id].position.y() += 0.2;
+  Prop prop = box();
+  EXPECT_LT(grip_of(body, prop)->world_from_prop.linear()(1, 1), 0.9);
+  prop.level = true;
+  const auto level = grip_of(body, prop);
+  ASSERT_TRUE(level);
+  EXPECT_TRUE(level->world_from_prop.linear().isIdentity(1e-9));
+  EXPECT_NEAR(level->world_from_prop.linear().determinant(), 1.0, 1e-9);
+  body[HandLeft].position.x() = body[HandRight].position.x();  // one right above the other
+  ASSERT_TRUE(grip_of(body, prop));
+  EXPECT_TRUE(grip_of(body, prop)->world_from_prop.matrix().allFinite());
+}
+
 TEST(AProp, IsNowhereWithoutItsJoints) {
   Skeleton<WorldSpace> body = carrying();
   body[HandLeft].state = JointState::NotTracked;
