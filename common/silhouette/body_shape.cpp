@@ -37,6 +37,8 @@ constexpr std::array kUsual{
 };
 
 constexpr double kNearest = 0.2;  // Nearer spheres are left out [m].
+/// Of one side of a capsule: a bone near the lens's plane is thousands of pictures long.
+constexpr long kMostPoints = 1000;
 
 /// The two tangents of two circles: unit normals, outwards.  Without tangents one circle lies
 /// within the other.
@@ -63,13 +65,19 @@ Tangents tangents_of(const FlatCapsule& capsule) {
 
 using Points = std::vector<OutlinePoint>;
 
+long points_on(double length, double spacing) {
+  const double points = length / spacing;
+  return points < static_cast<double>(kMostPoints) ? std::max(1L, std::lround(points))
+                                                   : kMostPoints;
+}
+
 void add_line(const FlatCapsule& capsule, const Eigen::Vector2d& normal, double spacing,
               Points& out) {
   const Eigen::Vector2d from = capsule.a + capsule.a_radius * normal;
   const Eigen::Vector2d to = capsule.b + capsule.b_radius * normal;
-  const int count = std::max(1, static_cast<int>(std::lround((to - from).norm() / spacing)));
-  for (int i = 0; i < count; ++i) {
-    const double share = (i + 0.5) / count;
+  const long count = points_on((to - from).norm(), spacing);
+  for (long i = 0; i < count; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     out.push_back({(1.0 - share) * from + share * to, normal,
                    (1.0 - share) * capsule.a_depth + share * capsule.b_depth});
   }
@@ -84,10 +92,10 @@ struct Arc {
 };
 
 void add_arc(const Arc& arc, double spacing, Points& out) {
-  const int count =
-      std::max(1, static_cast<int>(std::lround(std::abs(arc.sweep) * arc.radius / spacing)));
-  for (int i = 0; i < count; ++i) {
-    const double angle = arc.from + arc.sweep * (i + 0.5) / count;
+  const long count = points_on(std::abs(arc.sweep) * arc.radius, spacing);
+  for (long i = 0; i < count; ++i) {
+    const double angle =
+        arc.from + arc.sweep * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
     out.push_back({arc.centre + arc.radius * normal, normal, arc.depth});
   }

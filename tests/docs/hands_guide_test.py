@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -14,6 +15,8 @@ BIN = Path(os.environ["CHORUS_BIN"])
 PAGE = (ROOT / "docs/guide/hands.md").read_text(encoding="utf-8")
 LINE = "chorus scan tests/data/hand/scan.png --paper a4 --out hand.bvh"
 TRUTH = json.loads((ROOT / "tests/data/hand/truth.json").read_text(encoding="utf-8"))
+SCAN = ROOT / "tests/data/hand/scan.png"
+SUIT = ROOT / "tests/data/suit"
 MOST_TIP_PX = 2.0 / TRUTH["mmPerPixel"]
 
 
@@ -48,7 +51,18 @@ class HandsGuide(unittest.TestCase):
                 self.assertAlmostEqual(found["fromWebMm"] / truth["fromWebMm"], 1.0, delta=0.05, msg=name)
             bvh = Path(folder, "hand.bvh").read_text(encoding="utf-8")
             self.assertEqual(bvh.count("JOINT RightHand"), 15)
-            self.assertGreater(Path(folder, "hand.png").stat().st_size, 10_000)
+            self.assertGreater(Path(folder, "hand.annotated.png").stat().st_size, 10_000)
+
+    def test_a_folder_of_scans_is_scanned_into_itself_and_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scan = Path(folder, "hand.png")
+            shutil.copy(SCAN, scan)
+            line = [BIN / "chorus", "scan", folder, "--paper", "a4", "--no-network", "--out", folder]
+            for _ in range(2):
+                done = subprocess.run(line, capture_output=True, text=True, timeout=60, check=False)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(scan.read_bytes(), SCAN.read_bytes(), "the user's picture stays")
+            self.assertEqual(sorted(p.name for p in Path(folder).iterdir()), ["hand.annotated.png", "hand.bvh", "hand.json", "hand.png"])
 
     def test_a_glove_is_put_where_the_camera_saw_it(self):
         line = "chorus glove glove.avi take.bvh --hand hand.json --intrinsics lens.json --out placed.bvh"
@@ -59,6 +73,7 @@ class HandsGuide(unittest.TestCase):
             done = subprocess.run(["bash", "-c", line], cwd=folder, env=paths, capture_output=True, text=True, timeout=60, check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("found in 40 of 40 pictures", done.stdout)
+            self.assertNotIn("doubt:", done.stdout)
             found, truth = (wrists(Path(folder, name).read_text(encoding="utf-8")) for name in ("placed.bvh", "truth.bvh"))
             self.assertEqual(len(found), len(truth))
             rms = math.sqrt(sum(math.dist(a, b) ** 2 for a, b in zip(found, truth)) / len(truth))
@@ -73,6 +88,16 @@ class HandsGuide(unittest.TestCase):
                 done = subprocess.run([BIN / "chorus", "glove", "glove.avi", "truth.bvh", "--hand", "wrong.json", "--intrinsics", "lens.json",
                                        "--placed", "--out", "x.bvh"], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
                 self.assertIn(said, done.stdout, done.stderr)
+
+    def test_a_video_without_a_glove_is_doubted_and_the_hands_file_is_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([BIN / "chorus-drawn-hand", "glove", folder], check=True, timeout=60)
+            line = [BIN / "chorus", "glove", SUIT / "cam01.mp4", "take.bvh", "--hand", "hand.json", "--intrinsics", SUIT / "lens.json", "--out"]
+            done = subprocess.run([*line, "placed.bvh"], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+            self.assertIn("doubt: what is seen is not shaped like the hand", done.stdout, done.stderr)
+            done = subprocess.run([*line, "hand.json"], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("is what is read here", done.stderr)
 
     def test_the_papers_method_is_nameable(self):
         with tempfile.TemporaryDirectory() as folder:

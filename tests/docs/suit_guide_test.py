@@ -73,6 +73,21 @@ def offsets(text):
 
 
 class SuitGuide(unittest.TestCase):
+    def test_what_is_read_is_not_written_over_and_a_camera_below_the_floor_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            take = Path(folder, "corrected.bvh")
+            take.write_bytes((ROOT / SUIT / "walk.bvh").read_bytes())
+            line = [BIN / "chorus", "position", "--method", "suit", f"{SUIT}/cam01.mp4", take, "--intrinsics", f"{SUIT}/lens.json"]
+            done = run(*line, "--place", f"{SUIT}/place.json", "--out", folder)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("corrected.bvh in it is what is read here", done.stderr)
+            self.assertEqual(take.read_bytes(), (ROOT / SUIT / "walk.bvh").read_bytes())
+            places = json.loads((ROOT / SUIT / "place.json").read_text(encoding="utf-8"))
+            places["sensors"]["cam01"]["y"] *= -1.0
+            Path(folder, "below.json").write_text(json.dumps(places), encoding="utf-8")
+            done = run(*line, "--place", f"{folder}/below.json", "--out", f"{folder}/out")
+            self.assertIn("cam01 stands 1.90 m below the floor", done.stderr)
+
     def test_a_recording_and_a_take_give_the_path_of_the_person(self):
         with tempfile.TemporaryDirectory() as folder:
             made = run(BIN / "chorus", "import", "pose2sim", "tests/data/pose2sim_mediapipe", "--out", f"{folder}/rec", "--rays")

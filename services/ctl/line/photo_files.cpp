@@ -17,6 +17,9 @@ bool is_photo(const fs::path& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
+/// A picture that `chorus scan` drew.
+bool is_annotated(const fs::path& file) { return file.stem().extension() == ".annotated"; }
+
 Result<std::vector<std::string>> photo_files(const std::vector<std::string>& sources) {
   std::vector<std::string> files;
   for (const std::string& source : sources) {
@@ -27,7 +30,8 @@ Result<std::vector<std::string>> photo_files(const std::vector<std::string>& sou
     }
     const std::size_t before = files.size();
     for (const auto& entry : fs::directory_iterator(source, failed)) {
-      if (is_photo(entry.path())) files.push_back(entry.path().string());
+      if (is_photo(entry.path()) && !is_annotated(entry.path()))
+        files.push_back(entry.path().string());
     }
     if (files.size() == before)
       return fail(ErrorCode::NotFound, source, "holds no photos (.jpg, .png, .bmp, .tif, .webp)");

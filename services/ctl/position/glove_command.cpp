@@ -23,6 +23,10 @@ namespace chorus::ctl {
 namespace {
 
 constexpr std::size_t kMostPictures = 1'000'000;  // Nine hours at 30 Hz.
+// Outlines farther apart are doubted [m]: a drawn glove has 1 mm, a real video of a walking person
+// whose shadow was taken for a glove 34 mm.  No real glove was tried.
+constexpr double kDoubted = 0.015;
+constexpr double kFewSeen = 0.1;  // A smaller share of the pictures places no take.
 
 struct GloveArguments {
   std::string video;
@@ -44,6 +48,7 @@ struct GlovePath {
   std::vector<double> distances;  ///< From the camera [m].
   std::vector<double> told;       ///< The same, where the take puts the wrist.
   std::vector<double> sigmas;     ///< Along the line of sight [m].
+  std::vector<double> apart;      ///< Outline of the hand and of what is seen, at its distance [m].
 };
 
 /// `told`: where the take puts the wrist.
@@ -60,6 +65,7 @@ void add(GlovePath& path, const glove::GloveEye& eye, const Result<glove::Placed
   path.distances.push_back(placed->place.wrist.norm());
   path.told.push_back((told - eye.world_from_camera().translation()).norm());
   path.sigmas.push_back(std::sqrt(sight.dot(placed->place.covariance * sight)));
+  if (std::isfinite(placed->apart)) path.apart.push_back(placed->apart);
   hand::Pose pose = placed->pose;
   pose.wrist = eye.world_from_camera() * pose.wrist;
   pose.turn = Eigen::Quaterniond(eye.world_from_camera().linear()) * pose.turn;
@@ -71,6 +77,7 @@ Result<GlovePath> path_of(const GloveArguments& arguments, glove::GloveEye& eye)
   if (!video) return pass(video);
   const camera::FileTiming timing = (*video)->timing();
   GlovePath path;
+  Progress progress(std::cerr, on_terminal(), "placing");
   if (timing.step > Duration{0}) path.rate_hz = 1.0 / seconds(timing.step);
   while (path.pictures < kMostPictures) {
     const auto moment = (*video)->next();
@@ -83,7 +90,11 @@ Result<GlovePath> path_of(const GloveArguments& arguments, glove::GloveEye& eye)
     const auto placed = eye.look(*picture, at);
     if (!placed && placed.error().code != ErrorCode::NotFound) return pass(placed);
     add(path, eye, placed, hand::pose_at(eye.take(), at).wrist);
+    if (timing.length)
+      progress.show(static_cast<double>(path.pictures) / path.rate_hz / seconds(*timing.length),
+                    {});
   }
+  progress.finish();
   if (path.pictures == 0)
     return fail(ErrorCode::InvalidArgument, arguments.video,
                 "no pictures can be read from the file; is it a video?");
@@ -97,6 +108,11 @@ std::string text_of(const GlovePath& path, const glove::GloveEye& eye) {
   if (path.seen == 0) return text;
   text += fmt::format("  distance {:.2f} m, known to {:.0f} mm along the line of sight (median)\n",
                       median(path.distances), to_mm(median(path.sigmas)));
+  if (!path.apart.empty())
+    text += fmt::format("  outlines of the hand and of what is seen lie {:.0f} mm apart (median)\n",
+                        to_mm(median(path.apart)));
+  if (!path.apart.empty() && median(path.apart) > kDoubted)
+    text += "  doubt: what is seen is not shaped like the hand; is the glove the darkest thing?\n";
   if (eye.skeleton().relative)
     text +=
         "  note: the hand was scanned without a scale, so its distance is as uncertain as its size "
@@ -123,7 +139,9 @@ Result<int> run_glove(GloveArguments arguments) {
   settings.camera.model = "hands";
   settings.find =
       arguments.find == "network" ? glove::GloveFinding::Network : glove::GloveFinding::Dark;
-  if (const auto ok = may_write(arguments.out, {arguments.video, settings.take}); !ok)
+  if (const auto ok = may_write(arguments.out, {arguments.video, settings.take, settings.hand,
+                                                settings.places, arguments.lens});
+      !ok)
     return pass(ok);
   auto eye = glove::GloveEye::open(settings);
   if (!eye) return pass(eye);
@@ -132,6 +150,10 @@ Result<int> run_glove(GloveArguments arguments) {
   std::cout << text_of(*path, *eye);
   if (arguments.placed_take && path->seen > 0) std::cout << size_text(*path);
   if (path->seen == 0) return kExitFailed;
+  if (static_cast<double>(path->seen) < kFewSeen * static_cast<double>(path->pictures)) {
+    std::cerr << "chorus glove: too few pictures show the hand; nothing is written\n";
+    return kExitFailed;
+  }
   const std::string bvh = hand::bvh_of(eye->skeleton(), path->poses, path->rate_hz);
   if (const auto ok = write_text(arguments.out, bvh); !ok) return pass(ok);
   std::cout << fmt::format("wrote {}\n", arguments.out);

@@ -88,8 +88,6 @@ Result<void> write_all(const PositionArguments& arguments, const PositionReport&
                        Timestamp start) {
   const fs::path folder(arguments.out);
   std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) return fail(ErrorCode::Io, arguments.out, failed.message());
   const fs::path recording = folder / "position.mcap";
   fs::remove(recording, failed);
   auto ok = write_bvh(report.result, arguments.rate_hz, folder / "corrected.bvh");
@@ -98,6 +96,26 @@ Result<void> write_all(const PositionArguments& arguments, const PositionReport&
                                        recording_of(report.result, start, arguments.method));
   if (ok) ok = report::write_reports(position_report(report), folder, "report");
   return ok;
+}
+
+/// Nothing that is read may be written over, and the folder can be made.  A result of an earlier
+/// run is replaced.
+Result<void> check_out(const PositionArguments& arguments) {
+  const fs::path folder(arguments.out);
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed || !fs::is_directory(folder))
+    return fail(ErrorCode::Io, arguments.out,
+                "is to be the folder of the results, and cannot be made; name another one");
+  std::vector<std::string> read = arguments.inputs;
+  read.insert(read.end(), {arguments.places, arguments.size_from, arguments.empty_room});
+  read.insert(read.end(), arguments.lenses.begin(), arguments.lenses.end());
+  for (const char* name : {"corrected.bvh", "position.mcap", "report.html", "report.json"})
+    for (const std::string& input : read)
+      if (same_file((folder / name).string(), input))
+        return fail(ErrorCode::InvalidArgument, arguments.out,
+                    fmt::format("{} in it is what is read here; name another folder", name));
+  return {};
 }
 
 Result<positioning::TakeSettings> settings_of(const PositionArguments& arguments,
@@ -175,6 +193,7 @@ Result<std::vector<std::string>> take_size(PositionArguments& arguments) {
 Result<int> run_position(PositionArguments arguments) {
   const auto inputs = sorted_inputs(arguments.inputs);
   if (!inputs) return pass(inputs);
+  if (const auto ok = check_out(arguments); !ok) return pass(ok);
   auto notes = take_size(arguments);
   if (!notes) return pass(notes);
   const auto suit = suit::read_suit_file(inputs->suit, {.stature = arguments.stature});
@@ -193,9 +212,8 @@ Result<int> run_position(PositionArguments arguments) {
   if (!result) return pass(result);
   auto found = recalibrate_take(arguments, *cameras, settings->clocks.start, *result);
   if (!found) return pass(found);
-  notes->insert(notes->end(), suit->notes.begin(), suit->notes.end());
-  notes->insert(notes->end(), cameras->notes.begin(), cameras->notes.end());
-  notes->insert(notes->end(), found->begin(), found->end());
+  for (const auto* more : {&suit->notes, &cameras->notes, &*found})
+    notes->insert(notes->end(), more->begin(), more->end());
   const PositionReport report{{{"suit", inputs->suit.filename().string()},
                                {"places", fs::path(arguments.places).filename().string()},
                                {"stature", fmt::format("{:.2f} m", settings->tracker.stature)}},

@@ -125,10 +125,21 @@ Result<std::vector<Looked>> all_looked(const PositionInputs& inputs,
   return out;
 }
 
-tl::unexpected<Error> no_place(const std::string& places, const std::string& name) {
-  return fail(ErrorCode::NotFound, places,
-              fmt::format("has no place for {}; `chorus calibrate place --sensor {}` writes it",
-                          name, name));
+/// world_from_sensor of a camera; one that is not in the file or below the floor is refused.
+Result<Eigen::Isometry3d> place_of(const SensorId& camera, const std::string& places,
+                                   const Registration& registration) {
+  const auto found = registration.sensors.find(camera);
+  if (found == registration.sensors.end())
+    return fail(ErrorCode::NotFound, places,
+                fmt::format("has no place for {0}; `chorus calibrate place --sensor {0}` writes it",
+                            camera.str()));
+  const Eigen::Isometry3d& place = found->second.world_from_sensor;
+  if (!(place.translation().y() > 0.0))
+    return fail(ErrorCode::InvalidArgument, places,
+                fmt::format("{} stands {:.2f} m below the floor, which is at y = 0; is a sign of y "
+                            "wrong?",
+                            camera.str(), -place.translation().y()));
+  return place;
 }
 
 /// Before a film is looked through, which takes as long as it plays.
@@ -137,7 +148,7 @@ Result<void> check_places(const PositionInputs& inputs, const std::string& place
   for (const fs::path& video : inputs.videos) {
     const auto sensor = importers::sensor_for(video, {});
     if (!sensor) return pass(sensor);
-    if (!registration.sensors.contains(*sensor)) return no_place(places, sensor->str());
+    if (const auto place = place_of(*sensor, places, registration); !place) return pass(place);
   }
   return {};
 }
@@ -226,10 +237,9 @@ Result<PlacedCameras> placed_cameras(const PositionInputs& inputs,
   PlacedCameras out;
   for (Looked& one : *looked) {
     const std::string name = one.recording.sensor.str();
-    const auto known = registration->sensors.find(one.recording.sensor);
-    if (known == registration->sensors.end()) return no_place(arguments.places, name);
-    CameraTake camera{one.recording.sensor, known->second.world_from_sensor,
-                      std::move(one.recording.frames)};
+    const auto place = place_of(one.recording.sensor, arguments.places, *registration);
+    if (!place) return pass(place);
+    CameraTake camera{one.recording.sensor, *place, std::move(one.recording.frames)};
     if (arguments.background == "network" && one.video && !one.masks)
       return fail(ErrorCode::InvalidArgument, name,
                   "the runner gives no masks; use --model blazepose-full, or --background median");

@@ -98,7 +98,12 @@ std::string text_of(const ScannedHand& hand) {
   return text;
 }
 
-/// The three files of a hand beside each other: .bvh or .htr, .json and .png.
+/// Beside a scan hand.png its skeleton hand.bvh has another picture.
+fs::path annotated_picture(fs::path skeleton) {
+  return skeleton.replace_extension(".annotated.png");
+}
+
+/// The three files of a hand beside each other: .bvh or .htr, .json and .annotated.png.
 Result<void> write_hand(const ScannedHand& hand, const hand::Skeleton& skeleton,
                         const fs::path& out) {
   const std::string text =
@@ -110,7 +115,7 @@ Result<void> write_hand(const ScannedHand& hand, const hand::Skeleton& skeleton,
   std::vector<unsigned char> png;
   if (!cv::imencode(".png", *hand.drawn, png))
     return fail(ErrorCode::Internal, out.string(), "no picture");
-  return write_text(file.replace_extension(".png").string(),
+  return write_text(annotated_picture(out).string(),
                     {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
@@ -149,6 +154,11 @@ bool is_skeleton(const std::string& out) {
   return ending == ".bvh" || ending == ".htr";
 }
 
+/// Where the skeleton of a picture is written: `out` itself, or a file in that folder.
+fs::path skeleton_for(const fs::path& out, const fs::path& picture) {
+  return is_skeleton(out.string()) ? out : out / (picture.stem().string() + ".bvh");
+}
+
 /// Files of other programs are not taken for names of folders.
 Result<void> check_out(const std::string& out) {
   constexpr std::array<std::string_view, 7> kOthers{".sk",   ".fbx", ".glb", ".gltf",
@@ -161,6 +171,22 @@ Result<void> check_out(const std::string& out) {
   return fail(ErrorCode::Unsupported, out, "a hand is written as .bvh or .htr, or into a folder");
 }
 
+/// Nothing that is read may be written over; a folder can be made.
+Result<void> check_files(const ScanArguments& arguments, const std::vector<std::string>& files) {
+  if (arguments.out.empty()) return {};
+  if (!is_skeleton(arguments.out)) {
+    std::error_code failed;
+    fs::create_directories(arguments.out, failed);
+    if (failed) return fail(ErrorCode::Io, arguments.out, "no folder: " + failed.message());
+  }
+  for (const std::string& file : files) {
+    const fs::path skeleton = skeleton_for(arguments.out, file);
+    for (const fs::path& written : {skeleton, annotated_picture(skeleton)})
+      if (auto ok = may_write(written.string(), {files.begin(), files.end()}); !ok) return ok;
+  }
+  return {};
+}
+
 /// One file for each hand, or one for all pictures of one hand.
 Result<void> write_all(const ScanArguments& arguments, const Scanned& scanned) {
   if (scanned.hands.empty() || arguments.out.empty()) return {};
@@ -171,11 +197,9 @@ Result<void> write_all(const ScanArguments& arguments, const Scanned& scanned) {
     if (!skeleton) return pass(skeleton);
     return write_hand(scanned.hands.front(), *skeleton, arguments.out);
   }
-  std::error_code failed;
-  fs::create_directories(arguments.out, failed);
   for (const ScannedHand& each : scanned.hands) {
-    const fs::path name = fs::path(each.record.source).stem().string() + ".bvh";
-    if (auto ok = write_hand(each, each.skeleton, fs::path(arguments.out) / name); !ok) return ok;
+    const fs::path file = skeleton_for(arguments.out, each.record.source);
+    if (auto ok = write_hand(each, each.skeleton, file); !ok) return ok;
   }
   return {};
 }
@@ -188,22 +212,13 @@ Result<int> run_scan(const ScanArguments& arguments) {
   if (const auto ok = check_out(arguments.out); !ok) return pass(ok);
   const auto files = photo_files(arguments.sources);
   if (!files) return pass(files);
-  if (is_skeleton(arguments.out)) {
-    if (const auto ok = may_write(arguments.out, {files->begin(), files->end()}); !ok)
-      return pass(ok);
-    fs::path picture = fs::path(arguments.out).replace_extension(".png");
-    for (const std::string& file : *files) {
-      if (same_file(picture.string(), file))
-        return fail(ErrorCode::InvalidArgument, arguments.out,
-                    "would write its annotated picture over " + file + "; name another file");
-    }
-  }
+  if (const auto ok = check_files(arguments, *files); !ok) return pass(ok);
   const auto scanned = scan_all(arguments, *files);
   if (!scanned) return pass(scanned);
   if (const auto ok = write_all(arguments, *scanned); !ok) return pass(ok);
   if (!arguments.json && !arguments.out.empty() && !scanned->hands.empty())
     std::cout << fmt::format(
-        "wrote {}: skeletons (.bvh, .htr), lengths (.json), annotated pictures (.png)\n",
+        "wrote {}: skeleton (.bvh or .htr), lengths (.json), annotated picture (.annotated.png)\n",
         arguments.out);
   if (files->size() > 1)
     std::cerr << fmt::format("{} of {} pictures show a hand\n", scanned->hands.size(),
@@ -246,7 +261,7 @@ Run add_scan(CLI::App& options) {
   options.add_option(
       "--out", arguments->out,
       "hand.bvh or hand.htr: all pictures show one hand, whose median is written; a folder: each "
-      "picture on its own, as .bvh.  Beside each a .json and an annotated .png");
+      "picture on its own, as .bvh.  Beside each a .json and an .annotated.png");
   options.add_flag("--json", arguments->json, "Report as JSON, one document for each picture");
   return [arguments] { return run_scan(*arguments); };
 }

@@ -94,6 +94,13 @@ TEST(BodyShape, BehindTheCameraThereIsNothing) {
   EXPECT_TRUE(outline_of({}, 4.0).empty());
 }
 
+TEST(BodyShape, ABoneNearTheLensPlaneHasBoundedlyManyPoints) {
+  FlatCapsule bone{{0.0, 0.0}, {1e9, 3e8}, 1e6, 2e8, 1e-6, 1.0};
+  EXPECT_LE(outline_of(std::span(&bone, 1), 0.5).size(), 4000u);
+  bone.b = bone.a;
+  EXPECT_LE(outline_of(std::span(&bone, 1), 0.5).size(), 4000u);
+}
+
 TEST(Evidence, IsZeroOnTheOutlineAndFarthestAwayFromIt) {
   Scene scene;
   ASSERT_TRUE(scene.evidence);

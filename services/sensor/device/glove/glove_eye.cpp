@@ -41,6 +41,15 @@ Result<hand::GloveTake> take_in(const std::string& file, hand::Side side) {
   return hand::read_glove_take(*text, file, side);
 }
 
+std::string no_place(const std::string& camera,
+                     const std::map<std::string, Eigen::Isometry3d>& places) {
+  std::string names;
+  for (const auto& [name, place] : places) names += (names.empty() ? "" : ", ") + name;
+  return (camera.empty() ? std::string("say which camera (--camera, or `camera_name`): ")
+                         : "has no place for the camera " + camera + ", only for ") +
+         names;
+}
+
 Result<Eigen::Isometry3d> camera_in(const GloveSettings& settings) {
   Eigen::Isometry3d axes = Eigen::Isometry3d::Identity();
   axes.linear() = camera_from_sensor_axes().transpose();
@@ -51,8 +60,7 @@ Result<Eigen::Isometry3d> camera_in(const GloveSettings& settings) {
   if (!places) return pass(places);
   const auto found = places->find(settings.camera_name);
   if (found == places->end())
-    return fail(ErrorCode::NotFound, settings.places,
-                "has no place for the camera \"" + settings.camera_name + "\"");
+    return fail(ErrorCode::NotFound, settings.places, no_place(settings.camera_name, *places));
   return Eigen::Isometry3d(found->second * axes);
 }
 
@@ -144,6 +152,7 @@ Result<PlacedHand> GloveEye::look(const camera::Picture& picture, double seconds
   if (!found) return pass(found);
   out.place = *found;
   out.pose.wrist = out.place.wrist;
+  out.apart = out.place.residual * out.place.wrist.z() / lens->camera.fx;
   const Eigen::Vector3d sight = out.place.wrist.normalized();
   const double by_lens = lens->focal_sigma * out.place.wrist.norm();
   out.place.covariance += by_lens * by_lens * sight * sight.transpose();

@@ -14,7 +14,8 @@ namespace chorus::glove {
 /// A hand at one instant, in the camera's axes: x right, y down, z ahead.
 struct PlacedHand {
   hand::GlovePlace place;
-  hand::Pose pose;  ///< Its wrist is the place's.
+  hand::Pose pose;     ///< Its wrist is the place's.
+  double apart = 0.0;  ///< Median distance of the outlines, at the hand [m]; NaN: not compared.
 };
 
 /// Not thread-safe.

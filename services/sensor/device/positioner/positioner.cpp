@@ -190,6 +190,10 @@ Result<std::unique_ptr<PlacedCamera>> make_placed(
   if (place == places.end())
     return fail(ErrorCode::NotFound, "device.positioner.places",
                 "has no place for the camera " + camera.name);
+  if (!(place->second.translation().y() > 0.0))
+    return fail(ErrorCode::InvalidArgument, "device.positioner.places",
+                "the camera " + camera.name +
+                    " stands below the floor, which is at y = 0; is a sign of y wrong?");
   auto out = std::make_unique<PlacedCamera>();
   out->world_from_sensor = place->second;
   out->router = std::make_unique<http::Router>();
