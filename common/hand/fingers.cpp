@@ -258,7 +258,7 @@ Pixel towards(const Pixel& at, const Pixel& from, const Pixel& to) {
 }
 
 tl::unexpected<Error> disagree() {
-  return fail(ErrorCode::Conflict, "hand",
+  return fail(ErrorCode::NotFound, "hand",
               "the outline does not show the fingers that the network sees");
 }
 

@@ -25,7 +25,7 @@ struct Split {
 [[nodiscard]] Result<Split> split_by_outline(const Outline& outline, const cv::Mat& fill);
 
 /// With the joints that a network sees: tips are where fingers leave the outline, webs lie between
-/// neighbours in the outline's order.  Conflict when outline and network disagree.
+/// neighbours in the outline's order.  NotFound when outline and network disagree.
 [[nodiscard]] Result<Split> split_by_joints(const Outline& outline, const cv::Mat& fill,
                                             const SeenHand& seen);
 

@@ -142,7 +142,10 @@ Result<HandShape> hand_in(const cv::Mat& bgr, const std::vector<SeenHand>& seen,
     for (const cv::Mat& mask : masks(bgr, eyes)) {
       auto hand = hand_by_mask(mask, eyes, options);
       if (hand) return checked(std::move(hand), bgr);
-      if (!why) why = hand.error();
+      // What can be mended says more than that nothing was found.
+      if (!why ||
+          (why->code == ErrorCode::NotFound && hand.error().code == ErrorCode::InvalidArgument))
+        why = hand.error();
     }
     if (eyes == nullptr) break;
   }
