@@ -212,8 +212,8 @@ Result<int> run_position(PositionArguments arguments) {
   if (!result) return pass(result);
   auto found = recalibrate_take(arguments, *cameras, settings->clocks.start, *result);
   if (!found) return pass(found);
-  for (const auto* more : {&suit->notes, &cameras->notes, &*found})
-    notes->insert(notes->end(), more->begin(), more->end());
+  for (const auto& more : {suit->notes, cameras->notes, *found})
+    notes->insert(notes->end(), more.begin(), more.end());
   const PositionReport report{{{"suit", inputs->suit.filename().string()},
                                {"places", fs::path(arguments.places).filename().string()},
                                {"stature", fmt::format("{:.2f} m", settings->tracker.stature)}},
