@@ -1,5 +1,6 @@
 #include "common/base/json.h"
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -46,30 +47,47 @@ class StructureGuard {
   std::string repeated_;
 };
 
-/// Shortens the quoted text that the parser puts into its messages, which may be the whole
-/// document.  Leaves it out of those about configurations, because these contain tokens.
-std::string with_short_quote(std::string text, bool quotes) {
-  constexpr std::string_view kQuote = "; last read: '";
-  constexpr std::size_t kLongestEnd = 60;  // "; expected end of input" and the like.
-  const std::size_t begin = text.find(kQuote);
-  if (begin == std::string::npos) return text;
-  const std::size_t after = text.rfind("; expected ");
-  const bool ends_there =
-      after > begin && after != std::string::npos && text.size() - after < kLongestEnd;
-  const std::string end = ends_there ? text.substr(after) : std::string();
-  const std::size_t from = begin + kQuote.size();
-  const std::size_t size = text.size() - end.size() - from;
-  if (!quotes) return text.substr(0, begin) + end;
-  if (size <= kShownKey) return text;
-  return text.substr(0, from) + shortened(text.substr(from, size), kShownKey) + "'" + end;
+/// The word that begins at or around the last byte that the parser took.
+std::string_view word_at(std::string_view text, std::size_t byte) {
+  constexpr std::string_view kEnds = " \t\r\n,:[]{}";
+  std::size_t at = std::min(byte, text.size() - 1);
+  while (at > 0 && kEnds.find(text[at]) != std::string_view::npos) --at;
+  const std::size_t before = text.find_last_of(kEnds, at);
+  const std::size_t from = before == std::string_view::npos ? 0 : before + 1;
+  return text.substr(from, std::min(text.find_first_of(kEnds, from), text.size()) - from);
 }
 
-/// "[json.exception.parse_error.101] parse error at line 1..." without the part in brackets.
-std::string readable(const Json::exception& error, bool configuration) {
+bool is_no_number(std::string_view word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  return word.starts_with("NaN") || word.starts_with("nan") || word.starts_with("Inf") ||
+         word.starts_with("inf");
+}
+
+/// "line 5, column 12" of a byte, both counted from 1.
+std::string place_of(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, std::min(byte, text.size()));
+  const auto line = 1 + std::ranges::count(before, '\n');
+  const std::size_t begin = before.rfind('\n');
+  const std::size_t column = before.size() - (begin == std::string_view::npos ? 0 : begin + 1);
+  return "line " + std::to_string(line) + ", column " + std::to_string(column + 1);
+}
+
+/// What is wrong, in words that need no knowledge of the parser.  Quotes little of the text, and
+/// nothing of configurations (`quotes` is false), because these contain tokens.
+std::string in_words(std::string_view text, const Json::parse_error& error, bool quotes) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return "is empty";
+  const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
+  const std::string place = place_of(text, byte) + ": ";
   const std::string_view what = error.what();
-  const std::size_t end = what.find("] ");
-  const auto words = end == std::string_view::npos ? what : what.substr(end + 2);
-  return with_short_quote(std::string(words), !configuration);
+  if (byte >= text.size() || what.find("unexpected end of input") != std::string_view::npos)
+    return place + "the JSON ends too early; a bracket or a quotation mark is not closed";
+  if (what.find("UTF-8") != std::string_view::npos)
+    return place + "a text is not in UTF-8, or has a character that \\u must write";
+  const std::string_view word = word_at(text, byte);
+  if (is_no_number(word)) return place + "NaN and Infinity are no numbers in JSON";
+  if (word.starts_with('\'')) return place + "JSON quotes texts with \", not with '";
+  if (!quotes || word.empty()) return place + "this is no JSON";
+  return place + "this is no JSON: " + shortened(word, kShownKey);
 }
 
 }  // namespace
@@ -90,8 +108,10 @@ Result<Json> parse_json(std::string_view text, const JsonLimits& limits) {
         },
         kExceptions, limits.comments);
     if (guard.repeated().empty()) return json;
-  } catch (const Json::exception& error) {
-    return fail(ErrorCode::Malformed, {}, readable(error, limits.comments));
+  } catch (const Json::parse_error& error) {
+    return fail(ErrorCode::Malformed, {}, in_words(text, error, !limits.comments));
+  } catch (const Json::exception&) {
+    return fail(ErrorCode::Malformed, {}, "a number in it is too large");
   } catch (const TooDeep& error) {
     return fail(ErrorCode::TooLarge, {}, error.what());
   }

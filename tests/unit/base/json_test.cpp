@@ -45,10 +45,30 @@ TEST(ParseJson, QuotesLittleOfWhatItCannotRead) {
     EXPECT_LT(json.error().message.size(), 300U) << json.error().message.substr(0, 300);
     EXPECT_NE(json.error().message.find("line 1"), std::string::npos);
   }
-  const auto short_one = parse_json("[1, tru]");
-  ASSERT_FALSE(short_one);
-  EXPECT_NE(short_one.error().message.find("last read: '1, tru]'"), std::string::npos)
-      << short_one.error().message;
+}
+
+TEST(ParseJson, SaysInPlainWordsWhatIsWrongAndWhere) {
+  const std::pair<const char*, const char*> cases[]{
+      {"", "is empty"},
+      {" \n", "is empty"},
+      {"[1, tru]", "line 1, column 8: this is no JSON: tru"},
+      {"{\n \"x\": NaN\n}", "line 2, column 7: NaN and Infinity are no numbers in JSON"},
+      {"[-Infinity]", "NaN and Infinity are no numbers in JSON"},
+      {"{\"x\": 1,\n", "line 2, column 1: the JSON ends too early"},
+      {"[1\n 2]", "line 2, column 2: this is no JSON: 2"},
+      {"{'a': 1}", "JSON quotes texts with \", not with '"},
+      {"\"\xFF\"", "not in UTF-8"},
+      {"1e999", "a number in it is too large"}};
+  for (const auto& [text, words] : cases) {
+    const auto json = parse_json(text);
+    ASSERT_FALSE(json) << text;
+    EXPECT_NE(json.error().message.find(words), std::string::npos)
+        << text << ": " << json.error().message;
+    EXPECT_EQ(json.error().message.find("parse"), std::string::npos);
+  }
+  const auto secret = parse_json("{\"token\": hidden}", {.comments = true});
+  ASSERT_FALSE(secret);
+  EXPECT_EQ(secret.error().message.find("hid"), std::string::npos) << secret.error().message;
 }
 
 TEST(ParseJson, CountsDepthAsABracketCounterWould) {

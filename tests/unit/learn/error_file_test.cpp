@@ -58,7 +58,7 @@ TEST(ErrorFile, ReadsWhatItWrote) {
 TEST(ErrorFile, SaysWhatIsWrong) {
   const std::string good = text_of();
   const std::string trees = text_of(PredictorKind::Boosting);
-  EXPECT_THAT(why(""), HasSubstr("parse error"));
+  EXPECT_THAT(why(""), HasSubstr("is empty"));
   EXPECT_THAT(why("[]"), HasSubstr("no file of `chorus train-error`"));
   EXPECT_THAT(why("{}"), HasSubstr("no file of `chorus train-error`"));
   EXPECT_THAT(why(with(good, "\"version\":1", "\"version\":2")), HasSubstr("version: must be 1"));
