@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "common/sensor/limits.h"
 
 namespace chorus::wire {
@@ -11,6 +13,7 @@ using nlohmann::json;
 
 namespace {
 
+constexpr double kAnyQuaternion = 1e9;  // Its length is looked at, not its parts.
 constexpr double kMaxNormError = 0.01;  // Tolerates quaternions that were rounded to a few digits.
 
 /// Replaces the pose's rotation, which was read from the quaternion, with the matrix if there is
@@ -40,7 +43,8 @@ Result<double> number(const json& object, const std::string& where, const char* 
   }
   const double value = it->get<double>();
   if (!std::isfinite(value) || std::abs(value) > most) {
-    return tl::unexpected(wrong(where + "." + key, "this number is not finite or absurdly large"));
+    return tl::unexpected(wrong(
+        where + "." + key, fmt::format("{} is beyond {}, the most that is read", value, most)));
   }
   return value;
 }
@@ -97,13 +101,17 @@ Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) 
   std::array<double, 7> parts{};
   constexpr std::array kKeys{"x", "y", "z", "qx", "qy", "qz", "qw"};
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto value = number(object, where, kKeys[i], i < 3 ? kMaxPlace : 1.0 + kMaxNormError);
+    auto value = number(object, where, kKeys[i], i < 3 ? kMaxPlace : kAnyQuaternion);
+    if (!value && i < 3 && object.contains(kKeys[i]))
+      value.error().message += "; places are in metres: is it in millimetres?";
     if (!value) return pass(value);
     parts[i] = *value;
   }
   const Eigen::Quaterniond q(parts[6], parts[3], parts[4], parts[5]);
   if (std::abs(q.norm() - 1.0) > kMaxNormError) {
-    return tl::unexpected(wrong(where, "qx qy qz qw is not a unit quaternion"));
+    return tl::unexpected(
+        wrong(where,
+              fmt::format("qx qy qz qw is not a unit quaternion: its length is {:.3g}", q.norm())));
   }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = q.normalized().toRotationMatrix();

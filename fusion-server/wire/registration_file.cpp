@@ -195,10 +195,18 @@ Result<PairwiseRegistration> edge_of(const json& object) {
   return edge;
 }
 
+/// What a file without sensors is, where somebody has named the wrong one.
+std::string kind_of(const json& root) {
+  if (root.contains("fx") && root.contains("cx")) return "; this is the lens of a camera";
+  if (root.contains("restMm")) return "; this is a hand of chorus scan";
+  return "";
+}
+
 Result<void> read_sensors(const json& root, Registration& out) {
   const auto it = root.find("sensors");
   if (it == root.end() || !it->is_object() || it->empty()) {
-    return tl::unexpected(wrong("sensors", "an object of sensor places is missing"));
+    return tl::unexpected(
+        wrong("sensors", "an object of sensor places is missing" + kind_of(root)));
   }
   if (it->size() > kMaxSensors)
     return tl::unexpected(
@@ -348,7 +356,10 @@ std::string write_registration(const Registration& registration) {
 
 Result<Registration> read_registration(std::string_view text) {
   const auto document = parse_json(text, kLimits);
-  if (!document) return tl::unexpected(wrong("document", to_string(document.error())));
+  if (!document) {
+    const std::string why = to_string(document.error());
+    return fail(ErrorCode::Malformed, "registration", why);
+  }
   try {
     return registration_of(*document);
   } catch (const json::exception& e) {

@@ -166,6 +166,22 @@ std::string with(const std::string& pointer, const nlohmann::json& value) {
   return why(json.dump());
 }
 
+TEST(RegistrationFile, SaysWhatToChange) {
+  const auto place = [](const std::string& x, const std::string& qw) {
+    return why(R"({"sensors": {"a": {"x": )" + x +
+               R"(, "y": 0, "z": 0, "qx": 0, "qy": 0, "qz": 0, "qw": )" + qw + "}}}");
+  };
+  EXPECT_EQ(
+      place("1460.2", "1"),
+      "registration: sensors.a.x: 1460.2 is beyond 1000, the most that is read; places are in "
+      "metres: is it in millimetres?");
+  EXPECT_EQ(place("1", "5"),
+            "registration: sensors.a: qx qy qz qw is not a unit quaternion: its length is 5");
+  EXPECT_EQ(place("NaN", "1").find("registration: line 1, column"), 0U) << place("NaN", "1");
+  EXPECT_NE(why(R"({"fx": 1, "cx": 2})").find("this is the lens of a camera"), std::string::npos);
+  EXPECT_NE(why(R"({"restMm": []})").find("this is a hand"), std::string::npos);
+}
+
 TEST(RegistrationFile, NamesTheMemberThatIsOfTheWrongKind) {
   for (const char* member : {"/master", "/verdict", "/solved", "/edges/0/source"}) {
     const std::string told = with(member, 5);
