@@ -24,6 +24,9 @@ constexpr double kJumpsAMinute = 2.0;  // of one joint
 /// large as it is (docs/benchmarks/report.md).
 constexpr double kUnderstated = 2.5;
 
+constexpr double kDay = 86'400.0;         // [s]
+constexpr double kOtherDay = 0.5 * kDay;  // no take lasts as long; a pause of the output is shorter
+
 using Findings = std::vector<Finding>;
 
 std::string whole_percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
@@ -158,6 +161,10 @@ std::vector<std::string> remarks_of(const RecordingQuality& quality) {
     out.emplace_back(
         "it has one sensor, which nobody contradicts: errors of its place, its clock and "
         "its depth do not show");
+  else if (too_short_for_trends(quality))
+    out.emplace_back(
+        "it is too short to tell whether a sensor stands wrongly, was moved, or has a wrong clock: "
+        "record 10 s of walking or more");
   const auto compared = [](const auto& each) { return each.second.compared > 0; };
   const auto directions = [](const auto& each) { return each.second.rays > 0.5; };
   if (quality.verdict.empty())
@@ -183,7 +190,12 @@ Findings findings_of(const RecordingQuality& quality) {
   if (!quality.verdict.empty() && quality.verdict != "Good")
     out.push_back(
         {Judgement::Doubtful, "the registration is " + quality.verdict, "walk until it is Good"});
-  if (quality.fused.pauses > 0)
+  if (quality.fused.longest_pause > kOtherDay)
+    out.push_back({Judgement::Bad,
+                   fmt::format("its frames are of different times: {:.1f} days lie between",
+                               quality.fused.longest_pause / kDay),
+                   "name recordings of one take"});
+  else if (quality.fused.pauses > 0)
     out.push_back({Judgement::Doubtful,
                    fmt::format("the output paused {} times, once for {:.1f} s",
                                quality.fused.pauses, quality.fused.longest_pause),

@@ -10,6 +10,9 @@
 
 namespace chorus::quality {
 
+/// Whether people were seen too briefly to tell errors of places and clocks from their posture.
+[[nodiscard]] bool too_short_for_trends(const RecordingQuality& quality);
+
 /// Of all sensors, in the order of their ids.  Of two sensors the figures do not tell which one it
 /// is: such a finding names both.
 [[nodiscard]] std::vector<Finding> sensor_findings(const RecordingQuality& quality);

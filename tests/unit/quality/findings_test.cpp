@@ -67,6 +67,26 @@ TEST(Findings, NameTheFaultyPart) {
   EXPECT_THAT(what(quality), ElementsAre(HasSubstr("s3 exchanges left and right")));
 }
 
+TEST(Findings, OfRecordingsOfDifferentYearsBlameNoLoad) {
+  RecordingQuality quality = healthy();
+  quality.fused.pauses = 1;
+  quality.fused.longest_pause = 4.0;
+  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("the output paused 1 times")));
+  quality.fused.longest_pause = 2.18e8;
+  EXPECT_THAT(what(quality), ElementsAre(HasSubstr("2523.1 days lie between")));
+}
+
+TEST(Findings, OfAFewSecondsSayNothingOfPlacesAndClocks) {
+  RecordingQuality quality = healthy();
+  sensor(quality, "s1").clock = 0.085;
+  sensor(quality, "s2").offset_last = {0.17, 0, 0};
+  sensor(quality, "s3").offset_in_sensor = {0.09, 0, 0};
+  EXPECT_EQ(what(quality).size(), 3U);
+  quality.fused.seconds = 9.9;
+  EXPECT_THAT(what(quality), ::testing::IsEmpty());
+  EXPECT_THAT(remarks_of(quality), ElementsAre(HasSubstr("too short to tell")));
+}
+
 TEST(Findings, BlameTheSensorThatMovedNotThoseThatTheFusedBodyMovedAwayFrom) {
   RecordingQuality quality = healthy();
   sensor(quality, "s1").offset_last = {-0.06, 0.0, 0.0};
