@@ -138,10 +138,11 @@ Result<double> rough_offset(const Trace& ours, const Trace& reference,
   const Tried best = *std::ranges::min_element(tried, {}, &Tried::misfit);
   const auto other = next_minimum(tried, best);
   if (best.misfit < kOneMotion && other && other->misfit < kAlike * best.misfit + kPerfect)
-    return fail(ErrorCode::Conflict, "align",
-                fmt::format("the motion repeats itself: clock offsets of {:.2f} s and {:.2f} s fit "
-                            "alike ({:.0f} and {:.0f} mm); walk another way, or narrow --clock",
-                            best.offset, other->offset, 1e3 * best.misfit, 1e3 * other->misfit));
+    return fail(
+        ErrorCode::Conflict, "align",
+        fmt::format("the motion repeats itself: clock offsets that are {:.2f} s apart fit "
+                    "alike ({:.0f} and {:.0f} mm); walk another way, or narrow --clock",
+                    std::abs(best.offset - other->offset), 1e3 * best.misfit, 1e3 * other->misfit));
   return best.offset;
 }
 

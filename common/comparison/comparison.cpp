@@ -121,11 +121,12 @@ Result<void> find_lag(const Track& a, const Track& b, const CompareOptions& opti
   const auto found = alignment::align_traces(trace_of(a), trace_of(b), config);
   if (!found) {
     std::string why = found.error().message;
-    why.resize(std::min(why.size(), why.find(" Their clocks may differ")));  // --clock is not ours
-    return fail(found.error().code, "lag",
-                why +
-                    " If both have one clock, say --same-clock; if their clocks have nothing in "
-                    "common, say --any-lag");
+    for (const char* of_clock : {" Their clocks may differ", ", or narrow --clock"})
+      why.resize(std::min(why.size(), why.find(of_clock)));  // --clock is not ours
+    if (!why.ends_with('?')) why += '.';
+    why += " If both have one clock, say --same-clock";
+    if (options.clock_range) why += "; if their clocks have nothing in common, say --any-lag";
+    return fail(found.error().code, "lag", std::move(why));
   }
   fit.lag = found->clock_offset;
   fit.lag_sigma = found->clock_sigma;

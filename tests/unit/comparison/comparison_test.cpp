@@ -62,6 +62,26 @@ TEST(Comparison, SaysThatTwoRecordingsShareNoTime) {
   EXPECT_THAT(found.error().message, ::testing::HasSubstr("--any-lag"));
 }
 
+TEST(Comparison, AdvisesNoOptionThatWasGivenOrIsNotItsOwn) {
+  Track circles;
+  for (int i = 0; i < 900; ++i) {
+    const double t = i / 30.0;
+    circles.push_back(
+        {2e8 + t, testing::standing_person({std::sin(1.5 * t), 0.0, std::cos(1.5 * t)}, 0.0)});
+  }
+  CompareOptions options;
+  for (const bool any : {true, false}) {
+    options.clock_range = any ? std::nullopt : std::optional(6.0);
+    const auto found = compare({{1, circles}}, {{1, circles}}, options);
+    ASSERT_FALSE(found);
+    const std::string& why = found.error().message;
+    EXPECT_THAT(why, ::testing::HasSubstr("the motion repeats itself"));
+    EXPECT_THAT(why, ::testing::HasSubstr("walk another way. If both have one clock"));
+    EXPECT_EQ(why.find("--any-lag") == std::string::npos, any) << why;
+    EXPECT_THAT(why, ::testing::Not(::testing::HasSubstr("--clock")));
+  }
+}
+
 TEST(Comparison, CallsTwoDrawsOfOneMotionAlike) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const auto found = compared(seed, {}, one_clock());
