@@ -1,5 +1,6 @@
 #include "fusion-server/rest/site_resources.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -139,7 +140,18 @@ SiteResources::SiteResources(service::Serving serving)
       people_(std::make_shared<http::LiveDocument>()),
       cells_(std::make_shared<http::LiveDocument>()) {}
 
+bool SiteResources::lists(std::string_view cell) const {
+  const std::scoped_lock lock(mutex_);
+  if (!shown_) return true;
+  return std::ranges::any_of(
+      shown_->cells, [&](const site::KnownCell& known) { return known.state.cell.str() == cell; });
+}
+
 void SiteResources::show(ViewPtr view) {
+  {
+    const std::scoped_lock lock(mutex_);
+    shown_ = view;
+  }
   frame_->publish_lazily([view, serving = serving_] { return frame_of(view, serving); });
   people_->publish_lazily([view, serving = serving_] {
     return list_of(view, serving, "site/people/", &site_people_node);

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <string_view>
 
 #include "common/http/router.h"
 #include "common/resource/node.h"
@@ -26,12 +28,16 @@ class SiteResources {
   /// Documents are rendered when somebody asks for them.
   void show(std::shared_ptr<const site::SiteView> view);
   void add_routes(http::Router& router);
+  /// Whether /site/cells/ lists this cell; true before anything was shown.
+  [[nodiscard]] bool lists(std::string_view cell) const;
 
  private:
   service::Serving serving_;
   std::shared_ptr<http::LiveDocument> frame_;
   std::shared_ptr<http::LiveDocument> people_;
   std::shared_ptr<http::LiveDocument> cells_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const site::SiteView> shown_;  ///< Guarded by mutex_.
 };
 
 }  // namespace chorus::rest

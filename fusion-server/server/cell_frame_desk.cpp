@@ -46,6 +46,8 @@ Result<http::DocumentPtr> CellFrameDesk::frame(const std::string& cell, const st
   const std::string where = "site/cells/" + cell + "/frame";
   if (!is_instant(at))
     return fail(ErrorCode::InvalidArgument, where, "at is a number of nanoseconds since 1970");
+  if (lists_ && !lists_(cell))
+    return fail(ErrorCode::NotFound, where, "the site has no such cell: /site/cells/ lists them");
   const auto now = steady_clock::now();
   const std::scoped_lock lock(mutex_);
   forget_old(now);

@@ -21,7 +21,10 @@ class CellFrameDesk {
  public:
   /// The frame of a cell at an instant (empty: now), in JSON; may take half a second.
   using Ask = std::function<Result<std::string>(const std::string& cell, const std::string& at)>;
-  CellFrameDesk(std::string run, Ask ask) : run_(std::move(run)), ask_(std::move(ask)) {}
+  /// Whether the site has a cell of this name.
+  using Lists = std::function<bool(const std::string& cell)>;
+  CellFrameDesk(std::string run, Ask ask, Lists lists = {})
+      : run_(std::move(run)), ask_(std::move(ask)), lists_(std::move(lists)) {}
 
   /// The router keeps using this object, which must outlive the requests.
   void add_routes(http::Router& router);
@@ -39,6 +42,7 @@ class CellFrameDesk {
 
   const std::string run_;
   const Ask ask_;
+  const Lists lists_;
   std::mutex mutex_;  ///< Guards the members below.
   std::map<Wish, Frame> frames_;
   std::uint64_t version_ = 0;

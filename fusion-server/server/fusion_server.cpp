@@ -183,7 +183,8 @@ void FusionServer::Impl::add_site_routes(http::Router& router) {
   auto ask = [this](const auto& cell, const auto& at) {
     return member->link().ask_frame(cell, at);
   };
-  cell_frames.emplace(serving.run, std::move(ask)).add_routes(router);
+  auto lists = [this](const std::string& cell) { return site->lists(cell); };
+  cell_frames.emplace(serving.run, std::move(ask), std::move(lists)).add_routes(router);
 }
 
 /// What every service answers: its clock, health, metrics and description.

@@ -45,6 +45,22 @@ TEST(ACellFrameDesk, SaysWhyThereIsNone) {
   EXPECT_EQ(answer_of(desk, "c", "").error().message, "has no frame of that time");
 }
 
+TEST(ACellFrameDesk, AsksNobodyForACellThatIsNotThere) {
+  std::atomic<int> asked = 0;
+  CellFrameDesk desk(
+      "run",
+      [&](const std::string&, const std::string&) {
+        ++asked;
+        return Result<std::string>("{}");
+      },
+      [](const std::string& cell) { return cell == "b"; });
+  const auto none = desk.frame("c", "");
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::NotFound);
+  EXPECT_TRUE(answer_of(desk, "b", ""));
+  EXPECT_EQ(asked, 1);
+}
+
 TEST(ACellFrameDesk, IsNotFilledByAskingForEverything) {
   CellFrameDesk desk("run", [](const std::string&, const std::string&) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
