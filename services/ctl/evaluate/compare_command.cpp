@@ -11,6 +11,7 @@
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
+#include "services/ctl/line/server_option.h"
 
 namespace chorus::ctl {
 namespace {
@@ -89,6 +90,8 @@ Run add_compare(CLI::App& options) {
       ->check(number_range(0.0, 1000.0));
   options.add_option("--seconds", arguments->seconds, "how long to listen to a server")
       ->check(number_range(1.0, 3600.0));
+  add_authority_option(options);
+  add_token_footer(options);
   return [arguments] { return run_compare(*arguments); };
 }
 

@@ -1,5 +1,7 @@
 // chorus evaluate --tracking REC --inertial FILE...: judges a tracker with inertial sensors.
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -22,6 +24,7 @@
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
+#include "services/ctl/line/server_option.h"
 
 namespace chorus::ctl {
 namespace {
@@ -35,6 +38,7 @@ struct EvaluateArguments {
   std::optional<std::uint64_t> person;
   double tau_deg = to_deg(evaluation::kPaperTau);
   double most_percent = 5.0;
+  double seconds = 30.0;
   bool stated = false;  ///< Orientations that the tracker states, instead of those of its joints.
   bool same_clock = false;
   bool from_start = false;
@@ -84,12 +88,28 @@ std::vector<evaluation::JudgeSensor> sensors_of(const std::vector<inertial::Sens
   return out;
 }
 
+/// True if all were recorded into one file: by one clock.
+bool in_one_file(const std::string& tracking, const std::vector<std::string>& inertial) {
+  return std::ranges::all_of(inertial, [&](const std::string& file) {
+    std::error_code none;
+    return std::filesystem::equivalent(tracking, file, none);
+  });
+}
+
 evaluation::JudgeOptions options_of(const EvaluateArguments& arguments) {
   evaluation::JudgeOptions options;
   options.tau = deg(arguments.tau_deg);
   options.carry_back = arguments.from_start;
-  if (arguments.same_clock) options.time.largest = 0.0;
+  if (arguments.same_clock || in_one_file(arguments.tracking, arguments.inertial))
+    options.time.largest = 0.0;
   return options;
+}
+
+/// The error of a judgement with the option that may help.
+Error with_clock_advice(Error error, const EvaluateArguments& arguments) {
+  if (error.context == "time" && options_of(arguments).time.largest > 0.0)
+    error.message += " If one clock recorded both, say --same-clock";
+  return error;
 }
 
 struct Loaded {
@@ -138,7 +158,8 @@ comparison::Track joints_of(const Samples& samples, std::uint64_t person) {
 
 Result<Loaded> load(const std::string& tracking, const std::vector<std::string>& files,
                     const EvaluateArguments& arguments) {
-  const auto frames = read_fused_frames(tracking, std::chrono::milliseconds(0));
+  const auto listen = std::chrono::milliseconds(std::llround(arguments.seconds * 1e3));
+  const auto frames = read_fused_frames(tracking, listen);
   if (!frames) return pass(frames);
   for (const std::string& note : frames->notes) std::cerr << "note: " << note << '\n';
   if (frames->samples.empty()) return fail(ErrorCode::NotFound, tracking, "shows nobody");
@@ -267,7 +288,7 @@ Result<int> run_evaluate(const EvaluateArguments& arguments) {
   const auto take = load(arguments.tracking, arguments.inertial, arguments);
   if (!take) return pass(take);
   const auto found = evaluation::judge_tracking(take->body, take->sensors, options, calibrations);
-  if (!found) return pass(found);
+  if (!found) return tl::unexpected(with_clock_advice(found.error(), arguments));
   auto reference = refereed_take(arguments, *take, *found);
   if (!reference) return pass(reference);
   inputs->reference = std::move(*reference);
@@ -315,9 +336,10 @@ void add_judging_options(CLI::App& options, EvaluateArguments& arguments) {
       ->capture_default_str();
   options.add_flag("--stated", arguments.stated,
                    "Judge the orientations that the tracker states, not its joints");
-  options.add_flag("--same-clock", arguments.same_clock,
-                   "Tracker and sensors were recorded by one clock: no shift is looked for, which "
-                   "needs less movement");
+  options.add_flag(
+      "--same-clock", arguments.same_clock,
+      "Tracker and sensors were recorded by one clock (always so in one file): no shift "
+      "is looked for, which needs less movement");
   options.add_flag(
       "--from-start", arguments.from_start,
       "Judge the part that calibrates, too; limbs that hardly move in it are calibrated "
@@ -330,7 +352,7 @@ Run add_evaluate(CLI::App& options) {
   const auto arguments = std::make_shared<EvaluateArguments>();
   options
       .add_option("--tracking", arguments->tracking,
-                  "Fused frames: a recording, lines of JSON, or an address")
+                  "Fused frames: a recording, lines of JSON, or a fusion server's address")
       ->required();
   options
       .add_option(
@@ -355,6 +377,11 @@ Run add_evaluate(CLI::App& options) {
       "--person", arguments->person,
       "Who wears the sensors, of several people; else it is found from the movement");
   add_judging_options(options, *arguments);
+  options.add_option("--seconds", arguments->seconds, "How long to listen to a server [s]")
+      ->check(number_range(1.0, 3600.0))
+      ->capture_default_str();
+  add_authority_option(options);
+  add_token_footer(options);
   options.add_option("--out", arguments->out, "Folder of the report")->capture_default_str();
   options.add_flag("--json", arguments->json, "Print the report as JSON");
   return [arguments] { return run_evaluate(*arguments); };

@@ -138,9 +138,10 @@ Result<std::vector<SensorLog>> read_inertial_files(const std::vector<std::string
     stated->erase(limb);
   }
   if (stated->empty()) return out;
-  return fail(
-      ErrorCode::NotFound, "--limb " + stated->begin()->first,
-      "is no sensor of these files; there is " + (out.empty() ? "none" : out.front().sensor));
+  std::string known;
+  for (const SensorLog& log : out) known += (known.empty() ? "" : ", ") + log.sensor;
+  return fail(ErrorCode::NotFound, "--limb " + stated->begin()->first,
+              "is no sensor of these files; there are: " + (known.empty() ? "none" : known));
 }
 
 }  // namespace chorus::ctl

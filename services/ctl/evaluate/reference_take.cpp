@@ -29,8 +29,9 @@ Result<importers::ImportOptions> import_options(const ReferenceFile& source) {
   if (!source.unit.empty()) {
     options.metres_per_unit = unit_or_factor(source.unit);
     if (!options.metres_per_unit)
-      return fail(ErrorCode::InvalidArgument, "--reference-unit",
-                  "is a unit (mm, cm, m, in) or a number of metres");
+      return fail(
+          ErrorCode::InvalidArgument, "--reference-unit",
+          "\"" + source.unit + "\" is neither a unit (mm, cm, m, in) nor a number of metres");
   }
   if (source.joints.empty()) return options;
   const auto text = read_file(source.joints, kMostJointBytes);

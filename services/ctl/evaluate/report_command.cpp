@@ -18,6 +18,7 @@
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/console.h"
 #include "services/ctl/line/number_range.h"
+#include "services/ctl/line/server_option.h"
 
 namespace chorus::ctl {
 namespace {
@@ -169,6 +170,8 @@ Run add_report(CLI::App& options) {
                      "write the report: .html, .json or .csv; repeat for several");
   options.add_option("--seconds", arguments->seconds, "how long to listen to a server")
       ->check(number_range(1.0, kLongestListening));
+  add_authority_option(options);
+  add_token_footer(options);
   return [arguments] { return run_report(*arguments); };
 }
 

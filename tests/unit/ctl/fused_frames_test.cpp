@@ -12,6 +12,7 @@
 #include "common/resource/frame_resource.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
+#include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {
 namespace {
@@ -145,6 +146,18 @@ TEST(FusedFrames, AServerThatRefusesFromTheStartIsNotWaitedFor) {
     return fail(ErrorCode::NotFound, "frame", "no such thing");
   });
   EXPECT_THAT(read_fused_frames(none.url(), std::chrono::hours(1)), FailsWith(ErrorCode::NotFound));
+}
+
+TEST(FusedFrames, EvaluateListensToAServer) {
+  FrameServer cell([](int request) -> Result<http::DocumentPtr> {
+    return http::make_document("application/json", frame_text(request), {std::to_string(request)});
+  });
+  const auto judged = [](const std::string& url) {
+    return run_chorus({"evaluate", "--tracking", url, "--inertial", "none.sto", "--seconds", "1"})
+        .error;
+  };
+  EXPECT_THAT(judged(cell.url()), HasSubstr("none.sto")) << "the tracker was read";
+  EXPECT_THAT(judged("http://127.0.0.1:1/"), HasSubstr("cannot connect"));
 }
 
 TEST(FusedFrames, SourcesThatAreNoneAreRefused) {
