@@ -17,6 +17,7 @@
 #include "services/ctl/align/site_walk.h"
 #include "services/ctl/line/command.h"
 #include "services/ctl/line/number_range.h"
+#include "services/ctl/line/server_option.h"
 #include "services/ctl/line/text_file.h"
 
 namespace chorus::ctl {
@@ -60,6 +61,11 @@ Result<site::SitePlaces> from_walk(const SiteArguments& arguments,
     if (!cell) return pass(cell);
     cells.push_back(std::move(*cell));
   }
+  if (cells.size() < 2)
+    return fail(ErrorCode::InvalidArgument, "register",
+                "two cells at least are wanted, each as NAME=SOURCE");
+  for (const NamedCell& cell : cells)
+    if (const auto ok = answers(cell); !ok) return pass(ok);
   const auto listen = std::chrono::milliseconds(std::llround(arguments.seconds * 1e3));
   const auto live = [](const NamedCell& cell) { return is_live(cell.source); };
   if (std::ranges::any_of(cells, live))
@@ -110,7 +116,7 @@ void print_places(const site::SitePlaces& places) {
 
 Result<int> run_site(const SiteArguments& arguments) {
   if (arguments.cells.empty() == arguments.marks.empty())
-    return fail(ErrorCode::InvalidArgument, "chorus site register",
+    return fail(ErrorCode::InvalidArgument, "register",
                 "wants two cells or more as NAME=SOURCE, or --mark, not both");
   const auto config = places_config(arguments);
   if (!config) return pass(config);
@@ -144,6 +150,8 @@ Run add_site(CLI::App& options) {
       ->check(number_range(1.0, 3600.0))
       ->capture_default_str();
   options.add_option("--out", arguments->out, "The file of places to write")->capture_default_str();
+  add_authority_option(options);
+  add_token_footer(options);
   return [arguments] { return run_site(*arguments); };
 }
 

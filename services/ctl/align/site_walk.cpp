@@ -1,6 +1,7 @@
 #include "services/ctl/align/site_walk.h"
 
 #include "common/alignment/marked_points.h"
+#include "common/client/service_client.h"
 #include "services/ctl/convert/fused_frames.h"
 
 namespace chorus::ctl {
@@ -54,6 +55,17 @@ Result<site::CellMark> read_cell_mark(std::string_view text) {
 
 bool is_live(const std::string& source) {
   return source.starts_with("http://") || source.starts_with("https://");
+}
+
+Result<void> answers(const NamedCell& cell) {
+  if (!is_live(cell.source)) return {};
+  const auto url = http::parse_url(cell.source);
+  if (!url) return pass(url);
+  http::ClientRequest request;
+  request.target = url->target;
+  const auto answer = client::fetch_trusted(*url, request);
+  if (!answer) return fail(answer.error().code, cell.source, answer.error().message);
+  return {};
 }
 
 Result<site::CellWalk> walk_of(const NamedCell& cell, std::chrono::milliseconds listen) {

@@ -23,6 +23,9 @@ struct NamedCell {
 
 [[nodiscard]] bool is_live(const std::string& source);
 
+/// Unavailable at once if a live cell's server does not answer at all.
+[[nodiscard]] Result<void> answers(const NamedCell& cell);
+
 /// Reads the source to its end, or listens to an address for `listen`.
 [[nodiscard]] Result<site::CellWalk> walk_of(const NamedCell& cell,
                                              std::chrono::milliseconds listen);

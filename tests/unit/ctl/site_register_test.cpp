@@ -99,6 +99,13 @@ TEST(SiteRegister, TakesMarksOnTheFloor) {
 
 TEST(SiteRegister, RefusesWhatIsNoCellAndNoMark) {
   EXPECT_THAT(run_chorus({"site", "register"}).error, HasSubstr("NAME=SOURCE"));
+  EXPECT_THAT(run_chorus({"site", "register", "a=http://127.0.0.1:1/"}).error,
+              HasSubstr("two cells at least"));
+  const auto from = std::chrono::steady_clock::now();
+  EXPECT_THAT(
+      run_chorus({"site", "register", "a=http://127.0.0.1:1/", "b=http://127.0.0.1:1/"}).error,
+      HasSubstr("cannot connect"));
+  EXPECT_LT(std::chrono::steady_clock::now() - from, std::chrono::seconds(20)) << "not 180 s";
   EXPECT_THAT(run_chorus({"site", "register", "a"}).error, HasSubstr("NAME=SOURCE"));
   EXPECT_THAT(run_chorus({"site", "register", "--mark", "a:1,2"}).error, HasSubstr("is no mark"));
   EXPECT_THAT(run_chorus({"site", "register", "--mark", "a:1,2=b:1"}).error,
