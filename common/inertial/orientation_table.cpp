@@ -40,6 +40,9 @@ double stated_rate(const std::vector<std::string>& preamble) {
 
 Result<void> read_line(const TextColumns& lines, double time, std::vector<SensorLog>& out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
+    if (lines.cell(i + 1).empty())
+      return fail(ErrorCode::Malformed, lines.where(),
+                  "has nothing for column " + out[i].sensor + ": the line is too short");
     const auto q = quaternion_in(lines.cell(i + 1));
     if (!q)
       return fail(ErrorCode::Malformed, lines.where(),

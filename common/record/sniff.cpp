@@ -73,6 +73,7 @@ constexpr Words kWords[] = {
     {"<", {"<mvnx"}, "mvnx", "an MVNX file", "chorus import mvnx reads it"},
     {"<", {"<?xml"}, "", "an XML file of another kind", kFromIts},
     {"", {"[Header]", "EulerRotationOrder"}, "htr", "an HTR file of Motion Analysis", "chorus import htr reads it"},
+    {"", {"DataType=Quaternion", "endheader", "time"}, "inertial", "a table (.sto) of OpenSim with orientations", "chorus import inertial reads it"},
     {"", {"endheader", "time"}, "", "a table (.mot, .sto) of OpenSim with angles, without places of joints", "export the markers as TRC"},
     {"{", {"\"@type\"", "\"Frame\"", "\"bodies\""}, "ndjson", "frames of Chorus in lines", "chorus import ndjson reads it"},
     {"{", {"\"schemaVersion\"", "\"master\""}, "", "a registration of Chorus", "chorus fuse takes it as --registration"},

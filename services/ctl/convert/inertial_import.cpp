@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/importers/import_options.h"
 #include "common/record/cell_writer.h"
 #include "services/ctl/convert/import_output.h"
 #include "services/ctl/evaluate/inertial_files.h"
@@ -27,6 +28,13 @@ void shift(std::vector<InertialFrame>& instants, Duration by) {
     instant.received += by;
     for (inertial::InertialReading& reading : instant.readings) reading.captured += by;
   }
+}
+
+/// When the first instant shall be: as stated, and where times count from zero, as in all imports.
+std::optional<Timestamp> first_instant(Timestamp found, std::optional<Timestamp> stated) {
+  constexpr Duration kNoDate = std::chrono::hours(24 * 365);  // after 1970
+  if (stated || found.time_since_epoch() > kNoDate) return stated;
+  return importers::ImportOptions{}.start;
 }
 
 Result<void> write_batch(record::CellWriter& writer, const SensorId& source,
@@ -74,7 +82,8 @@ Result<ImportedSuit> import_inertial(const std::vector<std::string>& files, cons
   if (!instants) return pass(instants);
   if (instants->empty())
     return fail(ErrorCode::NotFound, files.front(), "holds no reading of a sensor");
-  if (how.start) shift(*instants, *how.start - instants->front().captured);
+  if (const auto start = first_instant(instants->front().captured, how.start))
+    shift(*instants, *start - instants->front().captured);
   ImportedSuit suit{
       folder / (how.source.str() + ".mcap"), how.source, std::move(*instants), {}, {}};
   for (const inertial::SensorLog& log : *logs) {

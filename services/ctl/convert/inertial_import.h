@@ -22,7 +22,8 @@ inline constexpr std::string_view kInertialReads =
 struct InertialImport {
   /// What the source is called, and the recording's file.
   SensorId source = SensorId::parse("suit").value();
-  /// Of the first instant; none: as the files say, which is 1970 where they state no date.
+  /// Of the first instant; none: as the files say, or ImportOptions::start where they state no
+  /// date.
   std::optional<Timestamp> start;
 };
 

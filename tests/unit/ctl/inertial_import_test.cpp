@@ -61,6 +61,18 @@ TEST_F(ImportedLogs, GiveTheSameBytesAgain) {
   EXPECT_EQ(bytes_of(at("rec/w.mcap")), first);
 }
 
+TEST_F(ImportedLogs, WithoutADateBeginAsAllImportsDo) {
+  const Outcome done = run_chorus({"import", "inertial", sto_, "--out", at("rec")});
+  EXPECT_THAT(done.out, HasSubstr("from 2020-01-01T00:00:00"));
+}
+
+TEST_F(ImportedLogs, OfACutFileSayThatALineIsShort) {
+  (void)folder_.write("cut.sto", bytes_of(sto_).substr(0, bytes_of(sto_).find("0.02") + 12));
+  const Outcome cut = run_chorus({"import", "inertial", at("cut.sto"), "--out", at("rec")});
+  EXPECT_THAT(cut.error, HasSubstr("has nothing for column pelvis_imu: the line is too short"));
+  EXPECT_THAT(cut.error, ::testing::Not(HasSubstr("with angles")));
+}
+
 TEST_F(ImportedLogs, AreRefusedWithWhatToChange) {
   const Outcome floor =
       run_chorus({"import", "inertial", sto_, "--out", at("rec"), "--floor", "0,1,0,0"});
