@@ -346,7 +346,7 @@ bool any_given(const std::vector<CLI::Option*>& options) {
 
 Run add_origin(CLI::App& options) {
   const auto arguments = std::make_shared<OriginArguments>();
-  add_server_option(options, arguments->url, "The fusion server");
+  add_server_option(options, arguments->url, "The fusion server", "url,--url");
   auto* here = options.add_flag("--here", arguments->here,
                                 "Where one person stands, facing what shall be the front");
   const Ways ways{add_numbers(options, *arguments),

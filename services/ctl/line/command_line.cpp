@@ -52,12 +52,18 @@ std::vector<const char*> words_of(int argc, const char* const* argv) {
   return words;
 }
 
-/// What is wrong with the words, and whose help explains them.
-std::string usage_advice(const CLI::App* app, const CLI::Error& wrong) {
+/// "chorus calibrate place": the name with those of the parsed commands below it.
+std::string name_with_parts(const CLI::App* app) {
   std::string name = app->get_name();
   for (auto chosen = app->get_subcommands(); !chosen.empty();
        chosen = chosen.front()->get_subcommands())
     name += " " + chosen.front()->get_name();
+  return name;
+}
+
+/// What is wrong with the words, and whose help explains them.
+std::string usage_advice(const CLI::App* app, const CLI::Error& wrong) {
+  const std::string name = name_with_parts(app);
   return fmt::format("{}: {}\n{} --help shows what it takes.\n", name, printable(wrong.what()),
                      name);
 }
@@ -67,7 +73,7 @@ int run_added(const std::vector<Added>& all) {
     if (!each.options->parsed()) continue;
     const Result<int> code = each.run();
     if (code) return *code;
-    std::cerr << fmt::format("chorus {}: {}\n", each.options->get_name(),
+    std::cerr << fmt::format("chorus {}: {}\n", name_with_parts(each.options),
                              printable(to_string(code.error())));
     return kExitFailed;
   }

@@ -69,7 +69,8 @@ constexpr std::array kRecordingCommands{
         "  chorus calibrate camera --fov 70 --size 1280x720 --out lens.json\n"
         "  chorus calibrate place /dev/video0 --intrinsics lens.json --out place.json    a board "
         "on the floor\n"
-        "Exit code 0: the lens is written; 1: the pictures are not enough, and what to do is "
+        "Exit code 0: the lens or the place is written; 1: the pictures are not enough, and what "
+        "to do is "
         "printed.\n"
         "Then: device.camera.intrinsics, or chorus import video --intrinsics lens.json.",
         &add_calibrate},

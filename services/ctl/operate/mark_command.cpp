@@ -52,7 +52,7 @@ Result<int> run_mark(const MarkArguments& arguments) {
 Run add_mark(CLI::App& options) {
   const auto arguments = std::make_shared<MarkArguments>();
   options.add_option("text", arguments->text, "What happens now, at most 200 bytes")->required();
-  add_server_option(options, arguments->url, "The fusion server that records");
+  add_server_option(options, arguments->url, "The fusion server that records", "url,--url");
   return [arguments] { return run_mark(*arguments); };
 }
 

@@ -363,7 +363,7 @@ Result<int> run_register(const RegisterArguments& arguments) {
 
 Run add_register(CLI::App& options) {
   const auto arguments = std::make_shared<RegisterArguments>();
-  add_server_option(options, arguments->url, "The fusion server");
+  add_server_option(options, arguments->url, "The fusion server", "url,--url");
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
       ->check(number_range(wire::kMinSession, wire::kMaxSession))
       ->capture_default_str();

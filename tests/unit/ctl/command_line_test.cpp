@@ -35,7 +35,8 @@ TEST(CommandLine, HelpMayAlsoBeTheFirstWord) {
 }
 
 TEST(CommandLine, WhoeverAsksAServerMayNameItsAuthority) {
-  for (const char* command : {"status", "register", "origin", "record", "export", "doctor"})
+  for (const char* command : {"status", "register", "origin", "record", "export", "doctor",
+                              "report", "compare", "evaluate", "score", "site"})
     EXPECT_THAT(run_chorus({command, "--help"}).out, HasSubstr("--ca")) << command;
 }
 
@@ -90,7 +91,10 @@ TEST(CommandLine, ErrorsBeginWithTheCommandAndHaveOneLine) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"status", "--url", "ftp://x/\x1b[31m"},
         {"fuse", "/nowhere", "--out", "y"},
-        {"record", "ftp://x/", "--out", "/tmp/x.mcap"}}) {
+        {"record", "ftp://x/", "--out", "/tmp/x.mcap"},
+        {"mark", "lifted", "ftp://x/"},
+        {"register", "ftp://x/"},
+        {"origin", "ftp://x/"}}) {
     const Outcome told = run_chorus(words);
     EXPECT_EQ(told.code, kExitFailed) << words[0];
     EXPECT_EQ(told.out, "");
@@ -107,7 +111,7 @@ TEST(CommandLine, SaysItsVersion) {
 }
 
 TEST(CommandLine, WrongUsageIsToldWithTheCommandThatExplains) {
-  const Outcome extra = run_chorus({"status", "extra"});
+  const Outcome extra = run_chorus({"status", "http://x/", "extra"});
   EXPECT_EQ(extra.code, kExitUsage);
   EXPECT_EQ(extra.error,
             "chorus status: The following argument was not expected: extra\n"
