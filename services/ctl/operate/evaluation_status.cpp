@@ -30,6 +30,13 @@ bool is_this_host(const std::string& host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
+/// The client's words are of a tracker.
+void name_evaluation(Error& error) {
+  constexpr std::string_view kTracker = "chorus-fusion";
+  if (const auto at = error.message.find(kTracker); at != std::string::npos)
+    error.message.replace(at, kTracker.size(), "chorus-evaluation");
+}
+
 /// Whether an evaluation on the tracker's host that names its tracker so means this one.
 bool judges(const nlohmann::json& evaluation, const http::Url& tracker) {
   const auto told = http::parse_url(client::text_at(evaluation, "tracker", ""));
@@ -44,7 +51,9 @@ Result<nlohmann::json> evaluation_of(const std::string& url, const client::Servi
   if (!url.empty()) {
     const auto service = client::ServiceClient::of(url);
     if (!service) return pass(service);
-    return service->get("/evaluation");
+    auto told = service->get("/evaluation");
+    if (!told) name_evaluation(told.error());
+    return told;
   }
   if (auto relayed = tracker.get("/evaluation"); relayed && relayed->is_object()) return relayed;
   const auto own = http::parse_url(tracker_url);

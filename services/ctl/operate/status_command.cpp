@@ -191,7 +191,7 @@ Result<Told> asked(const client::ServiceClient& server, const StatusArguments& a
   auto registration = server.get("/registration");
   if (!registration) return pass(registration);
   auto evaluation = evaluation_of(arguments.evaluation, server, arguments.url);
-  if (!evaluation) return pass(evaluation);
+  if (!evaluation) std::cerr << "note: " << printable(to_string(evaluation.error())) << '\n';
   Told told;
   told.sensors = client::part_at(*sensors, "sensors");
   ask_the_silent(told.sensors);
@@ -200,7 +200,7 @@ Result<Told> asked(const client::ServiceClient& server, const StatusArguments& a
   told.frame = server.get("/frame").value_or(nlohmann::json());
   told.configuration = server.get("/configuration").value_or(nlohmann::json());
   told.outputs = server.get("/outputs/").value_or(nlohmann::json());
-  told.evaluation = std::move(*evaluation);
+  told.evaluation = std::move(evaluation).value_or(nlohmann::json());
   // Older servers have no /inertial/.
   const nlohmann::json inertial = server.get("/inertial/").value_or(nlohmann::json());
   told.inertial = client::part_at(inertial, "inertialSources");

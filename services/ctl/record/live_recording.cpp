@@ -47,6 +47,15 @@ record::CellHead head_of(const nlohmann::json& self, bool tracker) {
   return head;
 }
 
+Result<void> in_a_hall(const client::ServiceClient& server, bool tracker, const std::string& url) {
+  if (!tracker)
+    return fail(ErrorCode::Unsupported, url, "is no fusion server, so it is in no hall");
+  const auto cells = server.get("/site/cells/");
+  if (!cells && cells.error().code == ErrorCode::NotFound)
+    return fail(ErrorCode::NotFound, url, "belongs to no site: record without --site");
+  return {};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io,
@@ -64,8 +73,8 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io
     return fail(ErrorCode::Unsupported, url, "is neither a sensor nor a fusion server");
   }
   Result<nlohmann::json> sensors = nlohmann::json();
-  if (options.site && !tracker)
-    return fail(ErrorCode::Unsupported, url, "is no fusion server, so it is in no hall");
+  if (options.site)
+    if (const auto ok = in_a_hall(*server, tracker, url); !ok) return pass(ok);
   if (tracker && !(sensors = server->get("/sensors/"))) return pass(sensors);
   // A tracker of an earlier version has no inertial sources.
   const auto inertial = tracker ? server->get("/inertial/") : Result<nlohmann::json>();

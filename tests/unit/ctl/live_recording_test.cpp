@@ -45,6 +45,7 @@ class BrokenCell : public ::testing::Test {
     };
     json("/", R"({"@type":["Tracker"],"title":"broken"})");
     json("/sensors/", R"({"sensors":{"s1":{},"s2":{},"s3":{}}})");
+    json("/site/cells/", "{}");
     router->get("/sensors/{id}/frame", [this](const http::Request&, const http::PathParams& path) {
       return frame(path.at("id"));
     });

@@ -124,6 +124,24 @@ TEST(Status, NamesTheServerThatIsNotThere) {
   EXPECT_THAT(told.error, HasSubstr(gone.substr(7, gone.size() - 8)));
 }
 
+TEST(Status, IsToldThoughTheEvaluationIsNotThere) {
+  const ScriptedServer server(calm());
+  const Outcome told = status_of(server, {"--evaluation", "http://127.0.0.1:1/"});
+  EXPECT_EQ(told.code, kExitOk);
+  EXPECT_THAT(told.out, HasSubstr("registration: Good"));
+  EXPECT_THAT(told.error, HasSubstr("is chorus-evaluation running there?"));
+}
+
+TEST(Record, OfAHallWantsAServerThatBelongsToOne) {
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/", {R"({"@type":["Tracker"]})"}}, {"/sensors/", {kLive}}});
+  const chorus::testing::TemporaryFolder folder;
+  const Outcome told =
+      run_chorus({"record", server.url(), "--site", "--out", (folder / "hall.mcap").string()});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("belongs to no site"));
+}
+
 TEST(Status, TakesTheServerFromTheSurroundings) {
   const ScriptedServer server(calm());
   ::setenv("CHORUS_URL", server.url().c_str(), 1);
