@@ -21,8 +21,8 @@ constexpr std::size_t kMaxLineBytes = 16u << 20;
 
 tl::unexpected<Error> not_fused(const std::string& sensor, const std::string& at) {
   return fail(ErrorCode::Unsupported, at,
-              fmt::format("is of sensor {} in its own space. Fuse first: chorus fuse DIR --out - "
-                          "| chorus export - ...",
+              fmt::format("is of sensor {} in its own space. Fuse first: chorus fuse DIR --out "
+                          "fused.mcap, and name fused.mcap",
                           sensor));
 }
 
@@ -48,8 +48,8 @@ Result<Notes> each_of_recording(const std::string& source, const TakeFrame& take
   if (frames == 0 && !raw.empty()) return not_fused(raw, source);
   if (frames == 0)
     return fail(ErrorCode::NotFound, source,
-                "holds no fused frames (topic /frame). Fuse its sensors: chorus fuse DIR --out - | "
-                "chorus export - ...");
+                "holds no fused frames (topic /frame). Fuse its sensors: chorus fuse DIR --out "
+                "fused.mcap, and name fused.mcap");
   return notes_of(stream.finish());
 }
 

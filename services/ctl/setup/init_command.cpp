@@ -137,7 +137,10 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
                              arguments.sensor.id, url, wishes.read_token.empty() ? "" : ",",
                              wishes.read_token);
   } else {
-    std::cerr << "  chorus doctor\n  " << url << "viewer/ in a browser"
+    const std::string folder = std::filesystem::path(arguments.out).parent_path().string();
+    std::cerr << "  chorus doctor"
+              << (of_the_unit ? "" : " --folder " + (folder.empty() ? "." : folder)) << "\n  "
+              << url << "viewer/ in a browser"
               << (wishes.token.empty() ? "\n" : ": any name, a token of the file as password\n");
   }
 }

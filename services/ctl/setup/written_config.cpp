@@ -232,7 +232,7 @@ Result<PolledWish> polled_wish(std::string_view text) {
         why + "; write a sensor as ID=URL or ID=URL,TOKEN, such as s1=http://10.0.0.11:8081/");
   };
   const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) return refuse("has no id");
+  if (equals == std::string_view::npos) return refuse("has no URL");
   PolledWish wish{std::string(text.substr(0, equals)), {}, {}};
   const std::string_view rest = text.substr(equals + 1);
   const std::size_t comma = std::min(rest.find(','), rest.size());
