@@ -17,5 +17,6 @@ int main(int argc, char** argv) {
   if (!stated)
     for (std::string& word : chosen) arguments.push_back(word.data());
   return chorus::service::run_service<SensorSettings, SensorHost>(
-      about_sensor(), &read_sensor_settings, static_cast<int>(arguments.size()), arguments.data());
+      about_positioner(), &read_sensor_settings, static_cast<int>(arguments.size()),
+      arguments.data());
 }

@@ -244,4 +244,14 @@ service::About about_sensor() {
           "/usr/share/doc/chorus-sensor/examples/sensor.json every key with its default\n"};
 }
 
+service::About about_positioner() {
+  service::About about = about_sensor();
+  about.name = "chorus-positioner";
+  about.description =
+      "chorus-positioner: people from several placed cameras, as linked-data REST resources.\n"
+      "It is chorus-sensor with the device `positioner`.";
+  about.examples = "  chorus-positioner --config positioner.json    (docs/guide/suit.md)\n";
+  return about;
+}
+
 }  // namespace chorus::sensor_service

@@ -74,5 +74,7 @@ class SensorHost {
 
 /// How chorus-sensor describes itself.
 [[nodiscard]] service::About about_sensor();
+/// The same of chorus-positioner, whose device is `positioner` unless another one is named.
+[[nodiscard]] service::About about_positioner();
 
 }  // namespace chorus::sensor_service
