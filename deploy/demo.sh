@@ -292,7 +292,8 @@ judge_tracker() {
   while kill -0 "$recorder" 2>/dev/null; do
     sleep 1
     [[ -z "$said" ]] || continue
-    said=$("$bin/chorus" status --url "$base/" 2>/dev/null | grep ' off by ' || true)
+    # A limb that has been off for more than 10 s: passing doubts are no news.
+    said=$("$bin/chorus" status --url "$base/" 2>/dev/null | grep -E ' off by .* for [1-9][0-9]+ s' | head -n 1 || true)
     [[ -z "$said" ]] || printf 'chorus status: %s\n' "$said"
   done
   wait "$recorder" || { tail -n 3 "$logs/record.log"; return 1; }
