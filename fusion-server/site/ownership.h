@@ -1,7 +1,7 @@
 // Which cell answers for a person, and when that changes.
 //
 // The cell that names a person claims them.  Another cell takes them over when it has stated the
-// smaller error for half a second, or at once when the holder no longer sees them.  All changes are
+// smaller error for half a second, or when the holder has not seen them for 0.3 s.  All changes are
 // compare-and-set (claim.h), so two cells that want the same person cannot both get them.
 #pragma once
 
