@@ -60,7 +60,7 @@ TEST(FusedFrames, WrongLinesAreNamed) {
   EXPECT_THAT(to_string(broken.error()), HasSubstr("fused.ndjson:2"));
   const auto raw = lines(frame_text(0, resource::SpaceKind::Sensor));
   ASSERT_THAT(raw, FailsWith(ErrorCode::Unsupported));
-  EXPECT_THAT(to_string(raw.error()), HasSubstr("Fuse first: chorus fuse"));
+  EXPECT_THAT(to_string(raw.error()), HasSubstr("Fuse first: chorus fuse DIR --out fused.mcap"));
   EXPECT_THAT(lines(std::string(20u << 20, ' ')), FailsWith(ErrorCode::TooLarge));
 }
 

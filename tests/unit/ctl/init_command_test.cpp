@@ -33,6 +33,15 @@ server::FusionSettings settings_of(const std::string& text) {
   return settings.value_or(server::FusionSettings{});
 }
 
+TEST(Init, PrintsNextStepsThatFindTheFile) {
+  const chorus::testing::TemporaryFolder folder;
+  const Outcome made = run({"fusion", "--out", (folder / "fusion.json").string(), "--no-announce"});
+  ASSERT_EQ(made.code, kExitOk) << made.error;
+  EXPECT_THAT(made.error,
+              HasSubstr("chorus doctor --folder " + (folder / "").parent_path().string()));
+  EXPECT_THAT(run({"fusion", "--out", "-", "--sensor", "s1"}).error, HasSubstr("has no URL"));
+}
+
 TEST(Init, WritesAFusionConfigurationThatTheServerReads) {
   const Outcome made =
       run({"fusion", "--out", "-", "--sensor", "s1=http://10.0.0.11:8081/,abcdefabcdef", "--sensor",
