@@ -18,8 +18,8 @@ class OrientationBatch {
  public:
   /// The time between two documents, at least.
   static constexpr Duration kInterval = std::chrono::milliseconds(20);
-  /// Readings after which a document is full: what readers take has 2 MB, a reading at most 800 B.
-  static constexpr std::size_t kMaxReadings = 2500;
+  /// Readings after which a document is full: what readers take has 2 MB, a reading at most 1.1 kB.
+  static constexpr std::size_t kMaxReadings = 1700;
 
   /// Takes an instant at the steady time `now`.  Returns the document of all instants since the
   /// last one if that is kInterval ago, or if it is full; otherwise null.

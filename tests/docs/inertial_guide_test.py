@@ -207,7 +207,7 @@ class InertialGuide(unittest.TestCase):
         (folder / "vicon.c3d").rename(folder / "inches.c3d")
         write_reference(folder, speed=0.0)  # somebody who stands
         for reference, more, said in (("vicon.c3d", [], "do not move alike"), ("other.trc", [], "other.joints.txt lists the file's names"),
-                                      ("none.c3d", [], "none.c3d"), ("vicon.c3d", ["--reference-unit", "ell"], "--reference-unit: is a unit"),
+                                      ("none.c3d", [], "none.c3d"), ("vicon.c3d", ["--reference-unit", "ell"], "\"ell\" is neither a unit"),
                                       ("walk.ndjson", ["--reference-unit", "mm"], "is for motion files"),
                                       ("inches.c3d", ["--reference-unit", "in"], "has bones 25.4 times as long as the tracker's")):
             done = subprocess.run(["chorus", "evaluate", "--tracking", "walk.ndjson", "--inertial", "suit.sto", "--reference", reference, *more,

@@ -6,10 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "common/base/file.h"
 #include "common/positioning/body_size.h"
 #include "common/record/frame_recording.h"
-#include "fusion-server/wire/registration_file.h"
+#include "fusion-server/server/registration_store.h"
 #include "services/ctl/calibrate/lens_file.h"
 #include "services/ctl/convert/video_import.h"
 #include "services/ctl/convert/video_sights.h"
@@ -21,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using positioning::CameraTake;
 using positioning::Method;
-
-constexpr std::uintmax_t kMaxPlacesFile = 1u << 22;
 
 bool is_suit(const fs::path& file) {
   const auto format = motion_format(file.string());
@@ -208,9 +205,7 @@ Result<LearnedLength> found_size(const PositionArguments& arguments) {
     looked = std::move(videos->front());
   }
   if (auto size = positioning::size_by_depth(looked.recording.frames)) return size;
-  const auto text = read_file(arguments.places, kMaxPlacesFile);
-  if (!text) return pass(text);
-  const auto registration = wire::read_registration(*text);
+  const auto registration = server::load_registration_file(arguments.places);
   if (!registration) return pass(registration);
   const auto place = registration->sensors.find(looked.recording.sensor);
   if (place == registration->sensors.end())
@@ -227,9 +222,7 @@ Result<PlacedCameras> placed_cameras(const PositionInputs& inputs,
   if (arguments.background == "network" && method != Method::Both)
     return fail(ErrorCode::InvalidArgument, "--background",
                 "network is for --method both: only there a network looks for an outline");
-  const auto text = read_file(arguments.places, kMaxPlacesFile);
-  if (!text) return pass(text);
-  const auto registration = wire::read_registration(*text);
+  const auto registration = server::load_registration_file(arguments.places);
   if (!registration) return pass(registration);
   if (const auto ok = check_places(inputs, arguments.places, *registration); !ok) return pass(ok);
   auto looked = all_looked(inputs, arguments, method);

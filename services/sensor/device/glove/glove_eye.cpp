@@ -29,7 +29,9 @@ Result<hand::Skeleton> hand_in(const std::string& file) {
                 "is missing: the .json that `chorus scan hand.png --out hand.bvh` writes");
   const auto text = read_file(file, kMostHandBytes);
   if (!text) return pass(text);
-  return hand::read_skeleton(*text);
+  auto skeleton = hand::read_skeleton(*text);
+  if (!skeleton) return fail(skeleton.error().code, file, to_string(skeleton.error()));
+  return skeleton;
 }
 
 Result<hand::GloveTake> take_in(const std::string& file, hand::Side side) {
