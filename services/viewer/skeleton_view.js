@@ -88,9 +88,9 @@ export class Instances {
 /// All fused bodies, each person in a colour of its own: solid bones, joints as balls, inferred parts paler, left limbs darker.
 export class FusedView {
   constructor() {
-    this.material = new THREE.MeshStandardMaterial({ color: 0xffffff, roughness: 0.35 });
-    this.bones = new Instances(new THREE.CylinderGeometry(0.022, 0.022, 1, 8), this.material, MOST_BODIES * BONES.length);
-    this.joints = new Instances(new THREE.SphereGeometry(0.03, 12, 8), this.material, MOST_BODIES * 25);
+    this.material = new THREE.MeshLambertMaterial({ color: 0xffffff });
+    this.bones = new Instances(new THREE.CylinderGeometry(0.022, 0.022, 1, 6, 1, true), this.material, MOST_BODIES * BONES.length);
+    this.joints = new Instances(new THREE.SphereGeometry(0.03, 8, 6), this.material, MOST_BODIES * 25);
     this.object = new THREE.Group();
     this.object.add(this.bones.mesh, this.joints.mesh);
     this.guessed = GUESSED.dark;
