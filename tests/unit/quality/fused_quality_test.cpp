@@ -25,7 +25,7 @@ TEST(FusedQuality, CountsCoverageAndGapsOfAJoint) {
     if (i >= 80) body.joints[kWrist].state = JointState::Inferred;
     judge.add(frame_at(i, {body}));
   }
-  const JointQuality& wrist = judge.finish().joints[kWrist];
+  const JointQuality wrist = judge.finish().joints[kWrist];
   EXPECT_NEAR(wrist.missing, 0.2, 1e-9);
   EXPECT_NEAR(wrist.inferred, 0.2, 1e-9);
   EXPECT_NEAR(wrist.tracked, 0.6, 1e-9);
@@ -46,7 +46,7 @@ TEST(FusedQuality, MeasuresJitterAtRestAndInMotionAsTheNoiseOfOneAxis) {
         joint.position += Eigen::Vector3d(noise(random), noise(random), noise(random));
       judge.add(frame_at(i, {body}));
     }
-    const JointQuality& wrist = judge.finish().joints[kWrist];
+    const JointQuality wrist = judge.finish().joints[kWrist];
     EXPECT_NEAR(speed > 0.0 ? wrist.jitter_in_motion : wrist.jitter_at_rest, 0.002, 0.0002)
         << speed;
     EXPECT_EQ(wrist.jumps, 0);
